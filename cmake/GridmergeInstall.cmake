@@ -1,0 +1,1 @@
+# install() rules: headers, libraries, the package files for find_package(gridmerge).

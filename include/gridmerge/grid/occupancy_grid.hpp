@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "gridmerge/grid/se2.hpp"
+
+namespace gridmerge {
+
+/// What a map says of a cell.
+enum class Cell : std::uint8_t { unknown = 0, free = 1, occupied = 2 };
+
+/// An occupancy grid map: the layout of `nav_msgs/OccupancyGrid`.
+///
+/// Cells are row-major, row 0 at the bottom, y up: cell (column, row) is `cells[row * width + column]`. `origin` is the
+/// pose of the lower-left corner of cell (0, 0) in the map frame; its yaw may be any angle.
+struct OccupancyGrid {
+  int width = 0;            ///< columns
+  int height = 0;           ///< rows
+  double resolution = 1.0;  ///< metres per cell side
+  SE2 origin;               ///< T_map_grid: takes a point measured from the lower-left corner to the map frame
+  std::vector<Cell> cells;  ///< width * height values
+  /// Occupancy probabilities in [0, 1], NaN where unknown: width * height values, or empty where the input has none.
+  std::vector<float> probability;
+
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
+  }
+  Cell at(int column, int row) const { return cells[index(column, row)]; }
+  Cell& at(int column, int row) { return cells[index(column, row)]; }
+  bool contains(int column, int row) const { return column >= 0 && column < width && row >= 0 && row < height; }
+
+  /// Centre of a cell in the map frame [m].
+  Point2 cell_center(int column, int row) const {
+    return origin * Point2{(column + 0.5) * resolution, (row + 0.5) * resolution};
+  }
+};
+
+/// A grid of `width` x `height` cells, all of them `fill`.
+OccupancyGrid make_grid(int width, int height, double resolution, const SE2& origin = {}, Cell fill = Cell::unknown);
+
+struct CellCounts {
+  std::size_t unknown = 0;
+  std::size_t free = 0;
+  std::size_t occupied = 0;
+
+  std::size_t known() const { return free + occupied; }
+};
+
+/// Number of cells of each value. O(cells).
+CellCounts count_cells(const OccupancyGrid& grid);
+
+/// Throws std::invalid_argument, saying what is wrong, unless sizes are positive, the vectors' lengths fit them, and
+/// resolution and origin are finite (resolution also positive).
+void validate(const OccupancyGrid& grid);
+
+}  // namespace gridmerge

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace gridmerge {
+
+/// A point of the plane, in metres, in the frame that its context names.
+struct Point2 {
+  double x = 0.0;
+  double y = 0.0;
+
+  friend bool operator==(const Point2&, const Point2&) = default;
+};
+
+/// A rigid transform of the plane: a counter-clockwise rotation by `theta` about the origin, then the translation
+/// (`x`, `y`) (Birk & Carpin 2006, eq. 1). Metres and radians; `theta` is kept in (-pi, pi].
+/// Named after its frames: `T_a_b` takes a point given in frame b to frame a.
+struct SE2 {
+  double x = 0.0;
+  double y = 0.0;
+  double theta = 0.0;
+
+  friend bool operator==(const SE2&, const SE2&) = default;
+};
+
+/// The same angle [rad] in (-pi, pi].
+double normalize_angle(double angle);
+
+/// T_a_c = T_a_b * T_b_c.
+SE2 operator*(const SE2& T_a_b, const SE2& T_b_c);
+
+/// p_a = T_a_b * p_b.
+Point2 operator*(const SE2& T_a_b, const Point2& p_b);
+
+/// T_b_a.
+SE2 inverse(const SE2& T_a_b);
+
+}  // namespace gridmerge

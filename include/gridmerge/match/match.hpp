@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "gridmerge/grid/occupancy_grid.hpp"
+
+namespace gridmerge {
+
+enum class Verdict { refused, accepted };
+
+/// One way in which the moving map may lie on the fixed one.
+struct Hypothesis {
+  SE2 T_fixed_moving;        ///< between the map frames
+  double score = 0.0;        ///< log-likelihood ratio "same place" against "unrelated" [nats]; larger is better
+  double probability = 0.0;  ///< that this pose is the true one
+};
+
+struct MatchOptions {
+  int threads = 0;                  ///< worker threads; 0 = one a core. The result does not depend on it.
+  std::size_t max_hypotheses = 10;  ///< how many distinct hypotheses the result lists
+  double accept_probability = 0.9;  ///< the verdict is `accepted` from this probability on
+  /// Called now and then with the share of the work that is done, in [0, 1]; never from two threads at once.
+  std::function<void(double)> progress;
+};
+
+struct MatchResult {
+  Verdict verdict = Verdict::refused;
+  SE2 T_fixed_moving;             ///< the best hypothesis, given for a refused pair too
+  double probability = 0.0;       ///< that the best hypothesis is the true pose
+  double acceptance_index = 0.0;  ///< agreement / (agreement + disagreement); 0 when nothing overlaps
+  std::int64_t agreement = 0;     ///< cells known in both maps and equal
+  std::int64_t disagreement = 0;  ///< cells known in both maps and different
+  double overlap = 0.0;           ///< share of the smaller map's known cells that are known in both
+  double seconds = 0.0;           ///< wall time from grids in memory to the verdict
+  std::vector<Hypothesis> hypotheses;  ///< distinct, best first; empty only when a map has nothing to go by
+};
+
+/// Finds how `moving` lies on `fixed`, searching every pose, and says whether to believe it.
+/// Throws std::invalid_argument for an invalid grid or option (see validate()).
+MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options = {});
+
+}  // namespace gridmerge

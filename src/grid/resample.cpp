@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/grid/resample.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace gridmerge {
+
+namespace {
+constexpr double kMaxCells = 268435456.0;  // 2^28
+}
+
+OccupancyGrid crop_to_known(const OccupancyGrid& grid) {
+  int left = grid.width, right = -1, bottom = grid.height, top = -1;
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      if (grid.at(column, row) == Cell::unknown) continue;
+      left = std::min(left, column);
+      right = std::max(right, column);
+      bottom = std::min(bottom, row);
+      top = row;
+    }
+  }
+  if (right < 0) left = right = bottom = top = 0;
+
+  const Point2 corner = grid.origin * Point2{left * grid.resolution, bottom * grid.resolution};
+  OccupancyGrid cropped = make_grid(right - left + 1, top - bottom + 1, grid.resolution,
+                                    {corner.x, corner.y, grid.origin.theta});
+  if (!grid.probability.empty()) cropped.probability.resize(cropped.cells.size());
+  for (int row = 0; row < cropped.height; ++row) {
+    const std::size_t from = grid.index(left, bottom + row);
+    const std::size_t to = cropped.index(0, row);
+    std::copy_n(grid.cells.begin() + from, cropped.width, cropped.cells.begin() + to);
+    if (!grid.probability.empty()) {
+      std::copy_n(grid.probability.begin() + from, cropped.width, cropped.probability.begin() + to);
+    }
+  }
+  return cropped;
+}
+
+OccupancyGrid downsample(const OccupancyGrid& grid, int factor) {
+  if (factor < 1) throw std::invalid_argument("the downsampling factor must be at least 1");
+  OccupancyGrid coarse = make_grid((grid.width + factor - 1) / factor, (grid.height + factor - 1) / factor,
+                                   grid.resolution * factor, grid.origin);
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      Cell& target = coarse.at(column / factor, row / factor);
+      target = std::max(target, grid.at(column, row));  // unknown < free < occupied
+    }
+  }
+  return coarse;
+}
+
+OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map, double resolution) {
+  const SE2 T_target_grid = T_target_map * grid.origin;
+  const double width_m = grid.width * grid.resolution;
+  const double height_m = grid.height * grid.resolution;
+  double min_x = std::numeric_limits<double>::infinity(), min_y = min_x, max_x = -min_x, max_y = -min_x;
+  for (const Point2& corner : std::array<Point2, 4>{{{0, 0}, {width_m, 0}, {0, height_m}, {width_m, height_m}}}) {
+    const Point2 p = T_target_grid * corner;
+    min_x = std::min(min_x, p.x);
+    min_y = std::min(min_y, p.y);
+    max_x = std::max(max_x, p.x);
+    max_y = std::max(max_y, p.y);
+  }
+  // The small slack keeps a grid that already fits whole cells from growing by one through rounding.
+  const double columns = std::max(1.0, std::ceil((max_x - min_x) / resolution - 1e-6));
+  const double rows = std::max(1.0, std::ceil((max_y - min_y) / resolution - 1e-6));
+  if (!(columns * rows <= kMaxCells)) throw std::invalid_argument("the transformed map would exceed 2^28 cells");
+
+  OccupancyGrid target = make_grid(static_cast<int>(columns), static_cast<int>(rows), resolution, {min_x, min_y, 0.0});
+  const SE2 T_grid_target = inverse(T_target_grid);
+  const double c = std::cos(T_grid_target.theta) / grid.resolution;
+  const double s = std::sin(T_grid_target.theta) / grid.resolution;
+  for (int row = 0; row < target.height; ++row) {
+    for (int column = 0; column < target.width; ++column) {
+      const Point2 p = target.cell_center(column, row);
+      const double source_x = c * p.x - s * p.y + T_grid_target.x / grid.resolution;
+      const double source_y = s * p.x + c * p.y + T_grid_target.y / grid.resolution;
+      const int source_column = static_cast<int>(std::floor(source_x));
+      const int source_row = static_cast<int>(std::floor(source_y));
+      if (grid.contains(source_column, source_row)) target.at(column, row) = grid.at(source_column, source_row);
+    }
+  }
+  return target;
+}
+
+}  // namespace gridmerge
