@@ -33,6 +33,7 @@ void sort_by_score(std::vector<ScoredPose>& poses) {
 std::vector<ScoredPose> keep_distinct(std::vector<ScoredPose> poses, const PoseMetric& metric,
                                       double distinct, std::size_t max_count) {
   sort_by_score(poses);
+  if (distinct <= 0.0) return poses;
   std::vector<ScoredPose> kept;
   for (const ScoredPose& pose : poses) {
     const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const ScoredPose& other) {

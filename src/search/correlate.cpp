@@ -45,9 +45,10 @@ void correlate_row(const std::int16_t* input, const std::int32_t* offsets, std::
 
 }  // namespace
 
-void correlate(const ScoreImage& input, const std::vector<std::int32_t>& offsets, ScoreImage& output) {
+void correlate(const ScoreImage& input, std::size_t first, const std::vector<std::int32_t>& offsets,
+               ScoreImage& output) {
   for (int y = 0; y < output.height; ++y) {
-    correlate_row(input.values.data() + static_cast<std::size_t>(y) * input.width, offsets.data(),
+    correlate_row(input.values.data() + first + static_cast<std::size_t>(y) * input.width, offsets.data(),
                   offsets.size(), output.values.data() + static_cast<std::size_t>(y) * output.width,
                   output.width);
   }

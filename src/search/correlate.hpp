@@ -7,7 +7,7 @@
 
 namespace gridmerge {
 
-/// An integer image with row 0 at the bottom; `width` is a multiple of kCorrelateBlock where it is an output.
+/// An integer image, row-major.
 struct ScoreImage {
   int width = 0;
   int height = 0;
@@ -17,9 +17,10 @@ struct ScoreImage {
 /// Outputs are computed in blocks of this many columns.
 inline constexpr int kCorrelateBlock = 64;
 
-/// output(x, y) = sum over `offsets` of input.values[y * input.width + x + offset]. Every index must lie
-/// inside the input, also for the columns that pad the output to whole blocks, and sums must fit 16 bits.
-/// O(output cells * offsets); vectorised.
-void correlate(const ScoreImage& input, const std::vector<std::int32_t>& offsets, ScoreImage& output);
+/// output(x, y) = sum over `offsets` of input.values[first + y * input.width + x + offset], for every value
+/// of `output`, whose width must be a multiple of kCorrelateBlock. Every index must lie inside the input, and
+/// sums must fit 16 bits. O(output values * offsets); vectorised.
+void correlate(const ScoreImage& input, std::size_t first, const std::vector<std::int32_t>& offsets,
+               ScoreImage& output);
 
 }  // namespace gridmerge

@@ -21,7 +21,8 @@ namespace {
 constexpr double kScale = 16.0;       // score units a nat
 constexpr double kMaxEvidence = 8.0;  // nats that one wall point may count, for 16-bit sums
 constexpr std::size_t kPeaksPerRotation = 96;
-constexpr int kApart = 2;  // candidates nearer than this in x, y and rotation are one
+constexpr int kPeakFloor = 4;  // peaks below the best of their rotation by this factor are dropped
+constexpr int kApart = 2;      // candidates nearer than this in x, y and rotation are one
 static_assert(kMaxSearchSamples * kMaxEvidence * kScale < 32767.0);
 
 /// A local maximum of the score, in steps of the search.
@@ -46,8 +47,6 @@ struct SearchFrame {
   int box;          // side of the box [coarse cells]
   int fixed_width;  // of the fixed map [coarse cells]
   int fixed_height;
-  int shifts_x() const { return fixed_width + box; }
-  int shifts_y() const { return fixed_height + box; }
 
   double angle(int rotation) const { return normalize_angle(2.0 * std::numbers::pi * rotation / rotations); }
 
@@ -83,8 +82,8 @@ ScoreImage make_score_image(const WallMap& fixed, const SearchFrame& frame,
   }
 
   ScoreImage image;
-  image.width = frame.shifts_x() + frame.box + kCorrelateBlock;
-  image.height = frame.shifts_y() + frame.box;
+  image.width = frame.fixed_width + 2 * frame.box + kCorrelateBlock;
+  image.height = frame.fixed_height + 2 * frame.box;
   image.values.assign(static_cast<std::size_t>(image.width) * image.height, 0);
   const double cells = static_cast<double>(options.coarse_factor) * options.coarse_factor;
   for (int y = 0; y < frame.fixed_height; ++y) {
@@ -97,37 +96,60 @@ ScoreImage make_score_image(const WallMap& fixed, const SearchFrame& frame,
   return image;
 }
 
-/// Where the turned wall points fall in the box, as offsets into the score image.
-std::vector<std::int32_t> make_offsets(const std::vector<Point2>& walls, const SearchFrame& frame,
-                                       int rotation, int image_width) {
-  const SE2 rotate{0.0, 0.0, frame.angle(rotation)};
-  const double c = std::cos(rotate.theta);
-  const double s = std::sin(rotate.theta);
-  std::vector<std::int32_t> offsets;
-  offsets.reserve(walls.size());
+/// The turned wall points in the box, and the shifts at which their bounding box touches the fixed map.
+struct TurnedWalls {
+  std::vector<std::int32_t> offsets;  // into the score image
+  int first_x = 0;                    // shifts, with one more on each side, where the score is 0
+  int first_y = 0;
+  int shifts_x = 0;
+  int shifts_y = 0;
+};
+
+TurnedWalls turn_walls(const std::vector<Point2>& walls, const SearchFrame& frame, int rotation,
+                       int image_width) {
+  const double angle = frame.angle(rotation);
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  TurnedWalls turned;
+  turned.offsets.reserve(walls.size());
+  int left = frame.box, right = 0, bottom = frame.box, top = 0;
   for (const Point2& wall : walls) {
     const double x = wall.x - frame.centre.x;
     const double y = wall.y - frame.centre.y;
     const int column = static_cast<int>(std::floor((c * x - s * y) / frame.factor + 0.5 * frame.box));
     const int row = static_cast<int>(std::floor((s * x + c * y) / frame.factor + 0.5 * frame.box));
-    offsets.push_back(row * image_width + column);
+    turned.offsets.push_back(row * image_width + column);
+    left = std::min(left, column);
+    right = std::max(right, column);
+    bottom = std::min(bottom, row);
+    top = std::max(top, row);
   }
-  return offsets;
+  turned.first_x = frame.box - right - 1;
+  turned.first_y = frame.box - top - 1;
+  turned.shifts_x = frame.fixed_width + right - left + 2;
+  turned.shifts_y = frame.fixed_height + top - bottom + 2;
+  return turned;
 }
 
 /// The best local maxima (of 3 x 3 shifts) of one rotation. On a plateau the last cell in reading order
 /// stands for all.
-void collect_peaks(const ScoreImage& scores, const SearchFrame& frame, int rotation,
-                   std::vector<Peak>& peaks) {
+std::vector<Peak> find_peaks(const ScoreImage& scores, const TurnedWalls& turned, int rotation) {
   const int width = scores.width;
-  for (int y = 1; y + 1 < frame.shifts_y(); ++y) {
-    for (int x = 1; x + 1 < frame.shifts_x(); ++x) {
+  int best = 0;
+  for (int y = 0; y < turned.shifts_y; ++y) {  // without the columns that only fill up a block
+    const auto row = scores.values.begin() + static_cast<std::ptrdiff_t>(y) * width;
+    best = std::max<int>(best, *std::max_element(row, row + turned.shifts_x));
+  }
+  const int floor = best / kPeakFloor;
+  std::vector<Peak> peaks;
+  for (int y = 1; y + 1 < turned.shifts_y; ++y) {
+    for (int x = 1; x + 1 < turned.shifts_x; ++x) {
       const std::int16_t* at = scores.values.data() + static_cast<std::size_t>(y) * width + x;
       const int score = *at;
-      if (score > 0 && score >= at[-1] && score > at[1] && score >= at[-width - 1] && score >= at[-width] &&
-          score >= at[-width + 1] && score > at[width - 1] && score > at[width] && score > at[width + 1]) {
-        // The box's corner starts box cells left of the fixed map's: see SearchFrame::pose.
-        peaks.push_back({rotation, x, y, score});
+      if (score > floor && score >= at[-1] && score > at[1] && score >= at[-width - 1] &&
+          score >= at[-width] && score >= at[-width + 1] && score > at[width - 1] && score > at[width] &&
+          score > at[width + 1]) {
+        peaks.push_back({rotation, turned.first_x + x, turned.first_y + y, score});
       }
     }
   }
@@ -135,6 +157,7 @@ void collect_peaks(const ScoreImage& scores, const SearchFrame& frame, int rotat
     std::nth_element(peaks.begin(), peaks.begin() + kPeaksPerRotation, peaks.end());
     peaks.resize(kPeaksPerRotation);
   }
+  return peaks;
 }
 
 /// Drops, best first, every peak that has a better one next to it.
@@ -189,17 +212,19 @@ std::vector<PoseCandidate> search_all_poses(const WallMap& fixed, const WallMap&
   const ScoreImage evidence = make_score_image(fixed, frame, options);
   const std::vector<Point2> walls = draw_evenly(moving.walls, options.samples);
 
-  ScoreImage empty;
-  empty.width = (frame.shifts_x() + kCorrelateBlock - 1) / kCorrelateBlock * kCorrelateBlock;
-  empty.height = frame.shifts_y();
-  empty.values.resize(static_cast<std::size_t>(empty.width) * empty.height);
-  tbb::enumerable_thread_specific<ScoreImage> scratch(empty);
+  if (walls.empty()) return {};
 
+  tbb::enumerable_thread_specific<ScoreImage> scratch;
   std::vector<std::vector<Peak>> peaks(options.rotations);
   tbb::parallel_for(0, options.rotations, [&](int rotation) {
+    const TurnedWalls turned = turn_walls(walls, frame, rotation, evidence.width);
     ScoreImage& scores = scratch.local();
-    correlate(evidence, make_offsets(walls, frame, rotation, evidence.width), scores);
-    collect_peaks(scores, frame, rotation, peaks[rotation]);
+    scores.width = (turned.shifts_x + kCorrelateBlock - 1) / kCorrelateBlock * kCorrelateBlock;
+    scores.height = turned.shifts_y;
+    scores.values.resize(static_cast<std::size_t>(scores.width) * scores.height);
+    const std::size_t first = static_cast<std::size_t>(turned.first_y) * evidence.width + turned.first_x;
+    correlate(evidence, first, turned.offsets, scores);
+    peaks[rotation] = find_peaks(scores, turned, rotation);
   });
 
   std::vector<Peak> all;

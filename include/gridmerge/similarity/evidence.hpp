@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -18,7 +19,11 @@ struct ErrorModel {
 
 /// The models that a comparison chooses among, tight (laser maps from good SLAM) to wide (bent, hand-held
 /// maps); sigma does not fall along the list.
-std::span<const ErrorModel> error_models();
+inline constexpr std::size_t kErrorModels = 42;
+std::span<const ErrorModel, kErrorModels> error_models();
+
+/// A score [nats] for each of error_models().
+using ModelScores = std::array<float, kErrorModels>;
 
 /// Log-likelihood ratio [nats] of meeting a wall at each distance, "same place" against "unrelated":
 ///   log((1 - outliers) * P(distance | sigma) / P(distance | background) + outliers),
@@ -47,18 +52,14 @@ class WallEvidence {
   Evidence operator()(const SE2& T_fixed_moving_cells, double min_sigma = 0.0) const;
 
  private:
-  struct Tables {
-    std::array<float, kDistanceBins + 1> fixed;   // moving walls met in the fixed map
-    std::array<float, kDistanceBins + 1> moving;  // fixed walls met in the moving map
-  };
-
   const WallMap& fixed_;
   const WallMap& moving_;
   std::vector<Point2> fixed_walls_;
   std::vector<Point2> moving_walls_;
-  double fixed_weight_;         // walls that a fixed point stands for
-  double moving_weight_;        // walls that a moving point stands for
-  std::vector<Tables> tables_;  // one an error model
+  float fixed_weight_;                       // walls that a fixed point stands for
+  float moving_weight_;                      // walls that a moving point stands for
+  std::vector<ModelScores> nats_in_fixed_;   // by distance bin: a moving wall met in the fixed map
+  std::vector<ModelScores> nats_in_moving_;  // by distance bin: a fixed wall met in the moving map
 };
 
 /// At most `count` of the points, evenly spaced along the list.
