@@ -16,7 +16,6 @@ namespace {
 /// Maps whose poses relative to each other are known. The group's frame is that of its first member, the
 /// lowest map.
 struct Group {
-  std::size_t id = 0;
   std::vector<Member> members;  // ascending
   std::optional<OccupancyGrid>
       fused;  // for comparisons; made when first asked for, and only of several members
@@ -29,8 +28,7 @@ class PairwiseTree {
  public:
   PairwiseTree(const std::vector<OccupancyGrid>& maps, const MergeOptions& options, const Matcher& matcher)
       : maps_(maps), options_(options), matcher_(matcher) {
-    for (std::size_t map = 0; map < maps.size(); ++map)
-      groups_.push_back({next_id_++, {{map, {}}}, std::nullopt});
+    for (std::size_t map = 0; map < maps.size(); ++map) groups_.push_back({{{map, {}}}, std::nullopt});
   }
 
   void climb() {
@@ -62,7 +60,7 @@ class PairwiseTree {
   }
 
  private:
-  using IdPair = std::pair<std::size_t, std::size_t>;
+  using Pair = std::pair<std::size_t, std::size_t>;
 
   // Compares groups below the node of the tree above the maps [begin, end) until two join; false when none is
   // left to compare. All members of a group are below the same node, so a group's first member tells where it
@@ -71,7 +69,7 @@ class PairwiseTree {
     for (std::size_t i = 0; i < groups_.size(); ++i) {
       if (groups_[i].first() < begin) continue;
       for (std::size_t j = i + 1; j < groups_.size() && groups_[j].first() < end; ++j) {
-        if (!refused_.contains({groups_[i].id, groups_[j].id}) && compare(i, j)) return true;
+        if (!refused_.contains({groups_[i].first(), groups_[j].first()}) && compare(i, j)) return true;
       }
     }
     return false;
@@ -87,7 +85,7 @@ class PairwiseTree {
     if (accepted) {
       absorb(fixed, moving, join.match.T_fixed_moving);
     } else {
-      refused_.insert({fixed_group.id, moving_group.id});
+      refused_.insert({fixed_group.first(), moving_group.first()});
     }
     joins_.push_back(std::move(join));
     if (options_.progress) options_.progress(joins_.size(), joins_.size() + open_comparisons());
@@ -95,17 +93,17 @@ class PairwiseTree {
   }
 
   void absorb(std::size_t fixed, std::size_t moving, const SE2& T_fixed_moving) {
-    Group joined{next_id_++, std::move(groups_[fixed].members), std::nullopt};
+    // What either group was refused says nothing of the two together.
+    std::erase_if(refused_, [gone = Pair{groups_[fixed].first(), groups_[moving].first()}](const Pair& pair) {
+      return pair.first == gone.first || pair.second == gone.first || pair.first == gone.second ||
+             pair.second == gone.second;
+    });
+    Group joined{std::move(groups_[fixed].members), std::nullopt};
     for (const Member& member : groups_[moving].members) {
       joined.members.push_back({member.map, T_fixed_moving * member.T_component_map});
     }
     std::sort(joined.members.begin(), joined.members.end(),
               [](const Member& a, const Member& b) { return a.map < b.map; });
-    const IdPair gone{groups_[fixed].id, groups_[moving].id};
-    std::erase_if(refused_, [&](const IdPair& pair) {
-      return pair.first == gone.first || pair.second == gone.first || pair.first == gone.second ||
-             pair.second == gone.second;
-    });
     groups_[fixed] = std::move(joined);
     groups_.erase(groups_.begin() + static_cast<std::ptrdiff_t>(moving));
   }
@@ -134,9 +132,8 @@ class PairwiseTree {
   const MergeOptions& options_;
   const Matcher& matcher_;
   std::vector<Group> groups_;  // ascending by first member
-  std::set<IdPair> refused_;   // ids of groups that still exist, the one with the lower first member first
+  std::set<Pair> refused_;     // two groups that exist, by their first members, the lower one first
   std::vector<Join> joins_;
-  std::size_t next_id_ = 0;
 };
 
 void validate_maps(const std::vector<OccupancyGrid>& maps) {

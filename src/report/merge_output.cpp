@@ -93,8 +93,8 @@ void write_merge_output(const fs::path& directory, const std::vector<std::string
   files.emplace_back(directory / kReport, report_html(sources, result, preview));
   files.emplace_back(directory / kTransforms, transforms_json(sources, result));
 
-  remove_stale_maps(directory, result.components.size());
   for (StagedFile& file : files) file.commit();
+  remove_stale_maps(directory, result.components.size());
 }
 
 }  // namespace gridmerge

@@ -114,13 +114,17 @@ TEST(DrawEvidence, AppliesTransformAndOriginYaw) {
 
 TEST(DrawEvidence, NoWallIsLostWhenCentresFallOnCellBoundaries) {
   // Half a cell off in both directions: every centre lies on a corner of the map's cells, but for rounding.
-  OccupancyGrid map = make_grid(400, 400, 0.05, {-51.225, 1000.0, 0.0}, Cell::free);
-  for (int i = 0; i < 400; i += 2) draw_line(map, i, 0, i, 399);
-  const Lattice lattice{402, 402, 0.05, {-51.25, 999.975}};
-  const EvidencePatch patch = draw_evidence({&map, {}}, lattice);
-  const auto walls =
-      std::count_if(patch.evidence.begin(), patch.evidence.end(), [](auto e) { return e > 0; });
-  EXPECT_EQ(walls, 200 * 400);
+  OccupancyGrid map = make_grid(100, 100, 0.05, {}, Cell::free);
+  for (int i = 0; i < 100; i += 2) draw_line(map, i, 0, i, 99);
+  for (int k = 0; k < 40; ++k) {
+    map.origin = {-51.225 + 0.35 * k, 10.1 * k, kPi / 2 * (k % 4)};
+    const Lattice around = cover({{&map, {}}}, 0.05);
+    const Lattice lattice{102, 102, 0.05, {around.corner.x - 0.025, around.corner.y - 0.025}};
+    const EvidencePatch patch = draw_evidence({&map, {}}, lattice);
+    const auto walls =
+        std::count_if(patch.evidence.begin(), patch.evidence.end(), [](auto e) { return e > 0; });
+    EXPECT_EQ(walls, 50 * 100) << k;
+  }
 }
 
 TEST(DrawEvidence, ProbabilitySetsTheStrengthAndTheCellTheSign) {

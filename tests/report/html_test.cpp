@@ -109,6 +109,10 @@ TEST(ReportHtml, NamesAreTextWhateverTheyHold) {
                        "<bdi>&lt;&amp;&gt;&quot;&#39;</bdi>"));
 }
 
+TEST(ReportHtml, WhatIsNoUtf8IsMarked) {
+  EXPECT_TRUE(contains(report_html({"\xff", "b", "c", "d"}, two_of_four(), ""), "<bdi>\xef\xbf\xbd</bdi>"));
+}
+
 TEST(ReportHtml, OfNothing) {
   const std::string html = report_html({}, {}, "");
   EXPECT_TRUE(contains(html, "0 maps: 0 joined in 0 components, 0 left out."));
