@@ -3,10 +3,10 @@
 
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
-#include <regex>
 #include <set>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -26,9 +26,15 @@ constexpr const char* kPreview = "preview.png";
 constexpr const char* kReport = "report.html";
 constexpr const char* kTransforms = "transforms.json";
 
-bool is_merged_map(const std::string& file_name) {
-  static const std::regex pattern(R"(merged(_[0-9]+)?\.(yaml|pgm))");
-  return std::regex_match(file_name, pattern);
+// merged.yaml, merged_<number>.yaml, and the same as .pgm.
+bool is_merged_map(const fs::path& file) {
+  if (file.extension() != ".yaml" && file.extension() != ".pgm") return false;
+  constexpr std::string_view kFirst = "merged", kFurther = "merged_";
+  const std::string stem = file.stem().string();
+  if (stem == kFirst) return true;
+  const std::string_view number = std::string_view(stem).substr(std::min(stem.size(), kFurther.size()));
+  return stem.starts_with(kFurther) && !number.empty() &&
+         number.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
 // The files in the directory whose names are those of a merge's outputs.
@@ -36,7 +42,7 @@ std::vector<fs::path> outputs_in(const fs::path& directory) {
   std::vector<fs::path> outputs;
   std::error_code error;
   for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
+    const fs::path name = entry->path().filename();
     if (is_merged_map(name) || name == kPreview || name == kReport || name == kTransforms) {
       outputs.push_back(directory / name);
     }
@@ -53,7 +59,7 @@ void remove_stale_maps(const fs::path& directory, std::size_t components) {
     current.insert(fs::path(yaml).replace_extension(".pgm"));
   }
   for (const fs::path& path : outputs_in(directory)) {
-    if (!is_merged_map(path.filename().string()) || current.contains(path)) continue;
+    if (!is_merged_map(path.filename()) || current.contains(path)) continue;
     std::error_code error;
     fs::remove(path, error);
     if (error) throw FileError(path, "is of an earlier run and cannot be removed: " + error.message());

@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <regex>
 #include <stdexcept>
 
 #include "io/support.hpp"
@@ -22,17 +21,18 @@ std::size_t occurrences(const std::string& text, const std::string& part) {
   return count;
 }
 
-// The tags that open and are not closed in their order, as text; "" for a well-formed page.
+// The first tag that is closed out of order or not at all; "" for a well-formed page.
 std::string unbalanced(const std::string& html) {
-  static const std::regex tag(R"(<(/?)([a-z0-9]+)[^>]*>)");
   std::vector<std::string> open;
-  for (std::sregex_iterator it(html.begin(), html.end(), tag), end; it != end; ++it) {
-    const std::string name = (*it)[2];
-    if (name == "meta" || name == "img") continue;
-    if ((*it)[1].length() == 0) {
+  for (auto at = html.find('<'); at != std::string::npos; at = html.find('<', at + 1)) {
+    const bool closes = html[at + 1] == '/';
+    const std::size_t begin = at + (closes ? 2 : 1);
+    const std::string name = html.substr(begin, html.find_first_of(" >\n", begin) - begin);
+    if (name == "!doctype" || name == "meta" || name == "img") continue;
+    if (!closes) {
       open.push_back(name);
     } else if (open.empty() || open.back() != name) {
-      return "</" + name + "> at " + std::to_string(it->position());
+      return "</" + name + "> at " + std::to_string(at);
     } else {
       open.pop_back();
     }
