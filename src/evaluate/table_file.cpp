@@ -10,7 +10,7 @@
 #include <memory>
 #include <system_error>
 
-#include "gridmerge/io/map_file.hpp"
+#include "gridmerge/io/file_error.hpp"
 
 namespace gridmerge {
 
@@ -20,17 +20,16 @@ namespace {
 constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
 
 std::string read_text(const std::filesystem::path& path) {
-  const std::string name = path.string();
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) throw FileError(name + ": cannot be opened: " + std::generic_category().message(errno));
+  if (!file) throw FileError(path, std::generic_category().message(errno));
   std::string text;
   std::array<char, 65536> block{};
   while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get())) {
     text.append(block.data(), count);
-    if (text.size() > kMaxBytes) throw FileError(name + ": is larger than 16 MiB, which no truth file is");
+    if (text.size() > kMaxBytes)
+      throw FileError(path, "the file is larger than 16 MiB, which no truth file is");
   }
-  if (std::ferror(file.get()))
-    throw FileError(name + ": cannot be read: " + std::generic_category().message(errno));
+  if (std::ferror(file.get())) throw FileError(path, std::generic_category().message(errno));
   return text;
 }
 
@@ -75,8 +74,7 @@ TableFile::TableFile(const std::filesystem::path& path, const std::vector<std::s
     }
     rows_.push_back(std::move(row));
   }
-  if (columns_.empty())
-    throw FileError(path_.string() + ": is empty; its first line should name the columns");
+  if (columns_.empty()) throw FileError(path_, "the file is empty; its first line should name the columns");
 }
 
 void TableFile::check_header(const Row& header, const std::vector<std::string_view>& required,
@@ -122,7 +120,7 @@ void TableFile::fail(std::size_t row, const std::string& cause) const {
 }
 
 void TableFile::fail_at_line(std::size_t line, const std::string& cause) const {
-  throw FileError(path_.string() + ":" + std::to_string(line) + ": " + cause);
+  throw FileError(path_.string() + ":" + std::to_string(line), cause);
 }
 
 }  // namespace gridmerge

@@ -28,12 +28,12 @@ MatchOutcome negative_outcome(Verdict verdict, double probability) {
 }
 
 const std::vector<MatchOutcome> kMatches = {
-    pair_outcome(Verdict::accepted, 0.99, 0.5),        // right on the tolerance
-    pair_outcome(Verdict::accepted, 0.95, 0.51),       // just beyond
-    pair_outcome(Verdict::refused, 0.60, 0.1, "B"),    //
-    pair_outcome(Verdict::refused, 0.10, 30.0, "B"),   //
-    pair_outcome(Verdict::accepted, 0.90, 0.0, ""),    //
-    negative_outcome(Verdict::refused, 0.20),          //
+    pair_outcome(Verdict::accepted, 0.99, 0.5),       // right on the tolerance
+    pair_outcome(Verdict::accepted, 0.95, 0.51),      // just beyond
+    pair_outcome(Verdict::refused, 0.60, 0.1, "B"),   //
+    pair_outcome(Verdict::refused, 0.10, 30.0, "B"),  //
+    pair_outcome(Verdict::accepted, 0.90, 0.0, ""),   //
+    negative_outcome(Verdict::refused, 0.20),         //
     negative_outcome(Verdict::accepted, 0.92),
 };
 
@@ -93,7 +93,8 @@ TEST(Counting, ByThreshold) {
 TEST(Counting, RocAreaIsTheShareOfRightOrderings) {
   // Right: 0.99, 0.60, 0.90. Not: 0.95, 0.10, 0.20, 0.92. Of 12 orderings, 4 + 2 + 2 are right.
   EXPECT_DOUBLE_EQ(roc_area(kMatches), 8.0 / 12.0);
-  EXPECT_DOUBLE_EQ(roc_area({pair_outcome(Verdict::refused, 0.5, 0.0), negative_outcome(Verdict::refused, 0.5)}), 0.5);
+  EXPECT_DOUBLE_EQ(
+      roc_area({pair_outcome(Verdict::refused, 0.5, 0.0), negative_outcome(Verdict::refused, 0.5)}), 0.5);
   EXPECT_TRUE(std::isnan(roc_area({pair_outcome(Verdict::refused, 0.5, 0.0)})));
 }
 
@@ -113,7 +114,8 @@ class Sets : public testing::Test {
     return component;
   }
 
-  static void expect(const SetOutcome& outcome, std::size_t correct, std::size_t wrong, std::size_t left_out) {
+  static void expect(const SetOutcome& outcome, std::size_t correct, std::size_t wrong,
+                     std::size_t left_out) {
     EXPECT_EQ(outcome.correct, correct);
     EXPECT_EQ(outcome.wrong, wrong);
     EXPECT_EQ(outcome.left_out, left_out);
@@ -140,7 +142,8 @@ TEST_F(Sets, AreCompleteInWhateverFrame) {
 
 TEST_F(Sets, AMisplacedFirstMemberIsTheOneThatIsWrong) {
   MergeResult result;
-  result.components = {component_of({{0, truth_[0] * SE2{3, 0, 0}}, {1, truth_[1]}, {2, truth_[2]}, {3, truth_[3]}})};
+  result.components = {
+      component_of({{0, truth_[0] * SE2{3, 0, 0}}, {1, truth_[1]}, {2, truth_[2]}, {3, truth_[3]}})};
   const SetOutcome outcome = judge_set(set_, moments_, result);
   expect(outcome, 3, 1, 0);
   EXPECT_FALSE(outcome.complete());

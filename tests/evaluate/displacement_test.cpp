@@ -24,9 +24,13 @@ double brute_force(const OccupancyGrid& map, const SE2& T_estimate, const SE2& T
   return std::sqrt(sum / count);
 }
 
-double real_between(int low, int high) { return *rc::gen::inRange(low * 1000, high * 1000) / 1000.0; }
+double real_between(int low, int high) {
+  return *rc::gen::inRange(low * 1000, high * 1000) / 1000.0;
+}
 
-SE2 any_pose() { return {real_between(-50, 50), real_between(-50, 50), normalize_angle(real_between(-4, 4))}; }
+SE2 any_pose() {
+  return {real_between(-50, 50), real_between(-50, 50), normalize_angle(real_between(-4, 4))};
+}
 
 OccupancyGrid any_map() {
   const int width = *rc::gen::inRange(1, 12), height = *rc::gen::inRange(1, 12);

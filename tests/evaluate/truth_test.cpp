@@ -6,7 +6,7 @@
 #include <clocale>
 #include <functional>
 
-#include "gridmerge/io/map_file.hpp"
+#include "gridmerge/io/file_error.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {
@@ -20,7 +20,8 @@ class TruthFiles : public testing::Test {
     return complaint_about(reader, path);
   }
 
-  std::string complaint_about(const std::function<void(const std::string&)>& reader, const std::string& path) {
+  std::string complaint_about(const std::function<void(const std::string&)>& reader,
+                              const std::string& path) {
     try {
       reader(path);
     } catch (const FileError& error) {
@@ -34,7 +35,9 @@ class TruthFiles : public testing::Test {
 
   test::TemporaryDirectory directory_;
   const std::function<void(const std::string&)> pairs_ = [](const std::string& path) { read_pairs(path); };
-  const std::function<void(const std::string&)> negatives_ = [](const std::string& path) { read_negatives(path); };
+  const std::function<void(const std::string&)> negatives_ = [](const std::string& path) {
+    read_negatives(path);
+  };
   const std::function<void(const std::string&)> sets_ = [](const std::string& path) { read_sets(path); };
 };
 
@@ -42,10 +45,10 @@ constexpr const char* kPairs = "fixed\tmoving\tx\ty\ttheta\ttolerance\ttier\tove
 constexpr const char* kSets = "set\tmap\tx\ty\ttheta\ttolerance\n";
 
 TEST_F(TruthFiles, ReadsPairs) {
-  const auto pairs = read_pairs(directory_.write("pairs.tsv", std::string(kPairs) +
-                                                                  "a/m0.yaml\ta/m1.yaml\t-1.5\t2\t1e-1\t0.5\tA\t0.84\n"
-                                                                  "\n"
-                                                                  "/abs/c.yaml\td.yaml\t0\t0\t4\t2\tB\t0\r\n"));
+  const auto pairs = read_pairs(directory_.write(
+      "pairs.tsv", std::string(kPairs) + "a/m0.yaml\ta/m1.yaml\t-1.5\t2\t1e-1\t0.5\tA\t0.84\n"
+                                         "\n"
+                                         "/abs/c.yaml\td.yaml\t0\t0\t4\t2\tB\t0\r\n"));
   ASSERT_EQ(pairs.size(), 2u);
   EXPECT_EQ(pairs[0].fixed.name, "a/m0.yaml");
   EXPECT_EQ(pairs[0].fixed.path, directory_.path() / "a/m0.yaml");
@@ -68,18 +71,18 @@ TEST_F(TruthFiles, ColumnsMayComeInAnyOrderAndTierMayBeAbsent) {
 }
 
 TEST_F(TruthFiles, ReadsNegatives) {
-  const auto negatives = read_negatives(directory_.write("n.tsv", "fixed\tmoving\na.yaml\tb.yaml\nc.yaml\td.yaml\n"));
+  const auto negatives =
+      read_negatives(directory_.write("n.tsv", "fixed\tmoving\na.yaml\tb.yaml\nc.yaml\td.yaml\n"));
   ASSERT_EQ(negatives.size(), 2u);
   EXPECT_EQ(negatives[1].fixed.path, directory_.path() / "c.yaml");
   EXPECT_EQ(negatives[1].moving.name, "d.yaml");
 }
 
 TEST_F(TruthFiles, ReadsSetsInTheOrderOfTheirFirstLine) {
-  const auto sets = read_sets(directory_.write("s.tsv", std::string(kSets) +
-                                                            "z\tz0.yaml\t0\t0\t0\t0.5\n"
-                                                            "a\ta0.yaml\t0\t0\t0\t0.5\n"
-                                                            "z\tz1.yaml\t1\t2\t3\t0.25\n"
-                                                            "a\ta1.yaml\t0\t0\t0\t0.5\n"));
+  const auto sets = read_sets(directory_.write("s.tsv", std::string(kSets) + "z\tz0.yaml\t0\t0\t0\t0.5\n"
+                                                                             "a\ta0.yaml\t0\t0\t0\t0.5\n"
+                                                                             "z\tz1.yaml\t1\t2\t3\t0.25\n"
+                                                                             "a\ta1.yaml\t0\t0\t0\t0.5\n"));
   ASSERT_EQ(sets.size(), 2u);
   EXPECT_EQ(sets[0].name, "z");
   ASSERT_EQ(sets[0].members.size(), 2u);
@@ -91,24 +94,28 @@ TEST_F(TruthFiles, ReadsSetsInTheOrderOfTheirFirstLine) {
 
 TEST_F(TruthFiles, NumbersDoNotDependOnTheLocale) {
   const std::string before = std::setlocale(LC_ALL, nullptr);
-  if (std::setlocale(LC_ALL, "de_DE.UTF-8") == nullptr) GTEST_SKIP() << "the locale de_DE.UTF-8 is not installed";
-  const auto pairs = read_pairs(directory_.write("p.tsv", std::string(kPairs) + "a\tb\t1.5\t0\t0\t0.5\tA\t0\n"));
+  if (std::setlocale(LC_ALL, "de_DE.UTF-8") == nullptr)
+    GTEST_SKIP() << "the locale de_DE.UTF-8 is not installed";
+  const auto pairs =
+      read_pairs(directory_.write("p.tsv", std::string(kPairs) + "a\tb\t1.5\t0\t0\t0.5\tA\t0\n"));
   std::setlocale(LC_ALL, before.c_str());
   EXPECT_EQ(pairs.at(0).T_fixed_moving.x, 1.5);
 }
 
 TEST_F(TruthFiles, ARefusedFileIsNamedWithItsCause) {
-  EXPECT_EQ(complaint_about(pairs_, directory_.file("none.tsv")), "none.tsv: cannot be opened: No such file or directory");
+  EXPECT_EQ(complaint_about(pairs_, directory_.file("none.tsv")), "none.tsv: No such file or directory");
   std::filesystem::create_directory(directory_.path() / "folder");
-  EXPECT_EQ(complaint_about(pairs_, directory_.file("folder")), "folder: cannot be read: Is a directory");
-  EXPECT_EQ(complaint(pairs_, ""), "truth.tsv: is empty; its first line should name the columns");
-  EXPECT_EQ(complaint(pairs_, "\n\r\n"), "truth.tsv: is empty; its first line should name the columns");
+  EXPECT_EQ(complaint_about(pairs_, directory_.file("folder")), "folder: Is a directory");
+  EXPECT_EQ(complaint(pairs_, ""), "truth.tsv: the file is empty; its first line should name the columns");
+  EXPECT_EQ(complaint(pairs_, "\n\r\n"),
+            "truth.tsv: the file is empty; its first line should name the columns");
 }
 
 TEST_F(TruthFiles, ARefusedHeaderIsExplained) {
   EXPECT_EQ(complaint(negatives_, "fixed moving\n"), "truth.tsv:1: names no column 'fixed'");
   EXPECT_EQ(complaint(negatives_, "\nfixed\n"), "truth.tsv:2: names no column 'moving'");
-  EXPECT_EQ(complaint(negatives_, "fixed\tmoving\ttier\n"), "truth.tsv:1: names a column 'tier' that is not known here");
+  EXPECT_EQ(complaint(negatives_, "fixed\tmoving\ttier\n"),
+            "truth.tsv:1: names a column 'tier' that is not known here");
   EXPECT_EQ(complaint(negatives_, "fixed\tmoving\tmoving\n"), "truth.tsv:1: names the column 'moving' twice");
   EXPECT_EQ(complaint(pairs_, "fixed\tmoving\tx\ty\ttheta\n"), "truth.tsv:1: names no column 'tolerance'");
   EXPECT_EQ(complaint(sets_, "map\tx\ty\ttheta\ttolerance\n"), "truth.tsv:1: names no column 'set'");
@@ -116,8 +123,10 @@ TEST_F(TruthFiles, ARefusedHeaderIsExplained) {
 
 TEST_F(TruthFiles, ARefusedFieldIsNamedWithItsLine) {
   const auto pair = [&](const std::string& line) { return complaint(pairs_, kPairs + line + "\n"); };
-  EXPECT_EQ(pair("a\tb\t0\t0\t0\t1\tA\t0\n\nc\td\t1\n"), "truth.tsv:4: has 3 fields where the first line names 8 columns");
-  EXPECT_EQ(pair("a\tb\t0\t0\t0\t1\tA\t0\t"), "truth.tsv:2: has 9 fields where the first line names 8 columns");
+  EXPECT_EQ(pair("a\tb\t0\t0\t0\t1\tA\t0\n\nc\td\t1\n"),
+            "truth.tsv:4: has 3 fields where the first line names 8 columns");
+  EXPECT_EQ(pair("a\tb\t0\t0\t0\t1\tA\t0\t"),
+            "truth.tsv:2: has 9 fields where the first line names 8 columns");
   EXPECT_EQ(pair("\tb\t0\t0\t0\t1\tA\t0"), "truth.tsv:2: fixed is empty");
   EXPECT_EQ(pair("a\tb\t0\t\t0\t1\tA\t0"), "truth.tsv:2: y is empty");
   EXPECT_EQ(pair("a\tb\t0\t0\t0\t1\t\t0"), "truth.tsv:2: tier is empty");
@@ -132,8 +141,9 @@ TEST_F(TruthFiles, ARefusedFieldIsNamedWithItsLine) {
 }
 
 TEST_F(TruthFiles, ASetOfOneMapIsRefused) {
-  EXPECT_EQ(complaint(sets_, std::string(kSets) + "s\ta\t0\t0\t0\t1\ns\tb\t0\t0\t0\t1\nlone\tc\t0\t0\t0\t1\n"),
-            "truth.tsv:4: set 'lone' has a single map");
+  EXPECT_EQ(
+      complaint(sets_, std::string(kSets) + "s\ta\t0\t0\t0\t1\ns\tb\t0\t0\t0\t1\nlone\tc\t0\t0\t0\t1\n"),
+      "truth.tsv:4: set 'lone' has a single map");
 }
 
 }  // namespace

@@ -16,9 +16,9 @@ namespace {
 constexpr double kResolution = 0.1;
 constexpr int kColumns = 180;
 constexpr int kRows = 130;
-constexpr int kWall = 2;       // cells
-constexpr int kDoor = 9;       // cells
-constexpr int kMinRoom = 22;   // cells
+constexpr int kWall = 2;      // cells
+constexpr int kDoor = 9;      // cells
+constexpr int kMinRoom = 22;  // cells
 
 struct Room {
   int left, bottom, right, top;  // right and top exclusive
@@ -40,7 +40,9 @@ class Draughtsman {
 
  private:
   // Not a standard distribution: those differ between standard libraries, the engine does not.
-  int pick(int low, int high) { return low + static_cast<int>(random_() % static_cast<unsigned>(high - low + 1)); }
+  int pick(int low, int high) {
+    return low + static_cast<int>(random_() % static_cast<unsigned>(high - low + 1));
+  }
 
   void fill(const Room& room, Cell cell) {
     for (int row = room.bottom; row < room.top; ++row) {
@@ -86,7 +88,9 @@ class Draughtsman {
 
 }  // namespace
 
-OccupancyGrid draw_building(unsigned seed) { return Draughtsman(seed).draw(); }
+OccupancyGrid draw_building(unsigned seed) {
+  return Draughtsman(seed).draw();
+}
 
 OccupancyGrid map_part(const OccupancyGrid& building, const Window& window, const SE2& T_map_building) {
   OccupancyGrid part = building;
@@ -100,7 +104,8 @@ OccupancyGrid map_part(const OccupancyGrid& building, const Window& window, cons
   return crop_to_known(transform_grid(part, T_map_building, part.resolution));
 }
 
-std::string write_map(const TemporaryDirectory& directory, const std::string& name, const OccupancyGrid& map) {
+std::string write_map(const TemporaryDirectory& directory, const std::string& name,
+                      const OccupancyGrid& map) {
   std::string pgm = "P5\n" + std::to_string(map.width) + " " + std::to_string(map.height) + "\n255\n";
   for (int row = map.height - 1; row >= 0; --row) {
     for (int column = 0; column < map.width; ++column) {
