@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <numbers>
 #include <stdexcept>
 #include <system_error>
 
@@ -37,6 +38,11 @@ void print(const std::string& text) {
 
 void print_error(const std::string& message) {
   print_line_to_stderr("gridmerge: " + message);
+}
+
+std::string describe(const SE2& T) {
+  return fmt::format("x {:.3f} m, y {:.3f} m, theta {:.4f} rad ({:.2f} deg)", T.x, T.y, T.theta,
+                     T.theta * 180.0 / std::numbers::pi);
 }
 
 Console::Console(const CommonOptions& options)

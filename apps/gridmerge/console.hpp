@@ -16,6 +16,9 @@ void print(const std::string& text);
 /// Prints "gridmerge: message" to stderr as one line, whatever the message holds.
 void print_error(const std::string& message);
 
+/// A transform or a pose as people read it, on one line.
+std::string describe(const SE2& T);
+
 /// stderr while a command runs: warnings, remarks, and a progress bar when it is a terminal.
 class Console {
  public:

@@ -5,7 +5,6 @@
 
 #include <iterator>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -25,11 +24,6 @@ struct MatchCommandOptions {
   double accept_probability = MatchOptions{}.accept_probability;
   bool json = false;
 };
-
-std::string describe(const SE2& T) {
-  return fmt::format("x {:.3f} m, y {:.3f} m, theta {:.4f} rad ({:.2f} deg)", T.x, T.y, T.theta,
-                     T.theta * 180.0 / std::numbers::pi);
-}
 
 std::string describe_verdict(const MatchResult& result) {
   if (result.verdict == Verdict::accepted) {

@@ -183,6 +183,10 @@ TEST_F(Sets, EachMapHasItsOwnTolerance) {
   result.components = {component_of({{0, truth_[0]}, {1, SE2{1.5, 0, 0} * truth_[1]}, {2, truth_[2]}})};
   expect(judge_set(set, moments_, result), 3, 0, 1);
   expect(judge_set(set_, moments_, result), 2, 1, 1);
+  // Nor does a map borrow that of the one it is compared with.
+  set = set_;
+  set.members[0].tolerance = 2.0;
+  expect(judge_set(set, moments_, result), 2, 1, 1);
 }
 
 TEST_F(Sets, AreSummed) {
