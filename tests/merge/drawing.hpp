@@ -10,7 +10,7 @@
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/merge/evidence.hpp"
 
-namespace gridmerge::testing {
+namespace gridmerge::test {
 
 /// A map from text, top row first: '#' occupied, '.' free, anything else unknown.
 inline OccupancyGrid map_from(const std::vector<std::string>& rows, double resolution = 1.0,
@@ -85,4 +85,4 @@ inline int count_wall_pieces(const EvidencePatch& patch) {
   return count_pieces(patch.width, patch.height, occupied);
 }
 
-}  // namespace gridmerge::testing
+}  // namespace gridmerge::test

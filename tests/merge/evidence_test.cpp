@@ -14,9 +14,9 @@
 namespace gridmerge {
 namespace {
 
-using testing::count_wall_pieces;
-using testing::draw_line;
-using testing::map_from;
+using test::count_wall_pieces;
+using test::draw_line;
+using test::map_from;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

@@ -16,10 +16,10 @@
 namespace gridmerge {
 namespace {
 
-using testing::count_wall_pieces;
-using testing::draw_line;
-using testing::map_from;
-using testing::text_of;
+using test::count_wall_pieces;
+using test::draw_line;
+using test::map_from;
+using test::text_of;
 using Rows = std::vector<std::string>;
 
 constexpr double kPi = std::numbers::pi;

@@ -16,7 +16,7 @@
 namespace gridmerge {
 namespace {
 
-using testing::map_from;
+using test::map_from;
 
 constexpr double kPi = std::numbers::pi;
 using Maps = std::set<std::size_t>;
