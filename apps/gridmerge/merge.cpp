@@ -11,7 +11,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "gridmerge/report/json.hpp"
-#include "gridmerge/report/output.hpp"
+#include "gridmerge/report/merge_output.hpp"
 
 namespace gridmerge::cli {
 
@@ -68,9 +68,10 @@ int run_merge(const MergeCommandOptions& options) {
   Console console(options.common);
   std::vector<OccupancyGrid> maps;
   for (const std::string& path : options.maps) maps.push_back(load(path, options.resolution, console));
+  prepare_merge_output(options.output, options.maps);
   const MergeResult result = merge_maps(maps, options, console);
   console.clear();
-  write_merge(options.output, options.maps, maps, result);
+  write_merge_output(options.output, options.maps, maps, result);
   if (options.common.verbose) print(describe_joins(options.maps, result));
   if (!options.common.quiet) print(describe(options.maps, result));
   console.remark("wrote " + options.output);
