@@ -40,7 +40,7 @@ void print_error(const std::string& message) {
   print_line_to_stderr("gridmerge: " + message);
 }
 
-std::string describe(const SE2& T) {
+std::string describe_pose(const SE2& T) {
   return fmt::format("x {:.3f} m, y {:.3f} m, theta {:.4f} rad ({:.2f} deg)", T.x, T.y, T.theta,
                      T.theta * 180.0 / std::numbers::pi);
 }

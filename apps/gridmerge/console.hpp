@@ -17,7 +17,7 @@ void print(const std::string& text);
 void print_error(const std::string& message);
 
 /// A transform or a pose as people read it, on one line.
-std::string describe(const SE2& T);
+std::string describe_pose(const SE2& T);
 
 /// stderr while a command runs: warnings, remarks, and a progress bar when it is a terminal.
 class Console {

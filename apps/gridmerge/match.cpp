@@ -39,7 +39,7 @@ std::string describe(const MatchResult& result, bool verbose) {
   const auto line = [&](const std::string& name, const std::string& value) {
     fmt::format_to(std::back_inserter(text), "  {:<14}{}\n", name, value);
   };
-  line("T_fixed_moving", " " + describe(result.T_fixed_moving));
+  line("T_fixed_moving", " " + describe_pose(result.T_fixed_moving));
   line("agreement", fmt::format(" {} cells agree, {} do not (acceptance index {:.3f})", result.agreement,
                                 result.disagreement, result.acceptance_index));
   line("overlap", fmt::format(" {:.1f} % of the smaller map", 100.0 * result.overlap));
@@ -48,7 +48,7 @@ std::string describe(const MatchResult& result, bool verbose) {
   for (std::size_t i = 0; i < result.hypotheses.size(); ++i) {
     const Hypothesis& hypothesis = result.hypotheses[i];
     line(fmt::format("hypothesis {}", i + 1),
-         fmt::format(" {}, score {:.1f}, probability {:.4f}", describe(hypothesis.T_fixed_moving),
+         fmt::format(" {}, score {:.1f}, probability {:.4f}", describe_pose(hypothesis.T_fixed_moving),
                      hypothesis.score, hypothesis.probability));
   }
   return text;

@@ -55,7 +55,8 @@ std::string describe(const std::vector<std::string>& names, const MergeResult& r
     const Component& component = result.components[i];
     fmt::format_to(out, "{}: {} of {} maps\n", component_file(i), component.members.size(), names.size());
     for (const Member& member : component.members) {
-      fmt::format_to(out, "  {}: {}\n", escape_controls(names[member.map]), describe(member.T_component_map));
+      fmt::format_to(out, "  {}: {}\n", escape_controls(names[member.map]),
+                     describe_pose(member.T_component_map));
     }
   }
   for (const std::size_t map : result.left_out) {

@@ -33,25 +33,25 @@ TEST_F(EvaluateCommand, WritesTheJsonOfTheContractAndASummary) {
 
   Json result = Json::parse(read_file(json));
   expect_keys(result, {"pairs", "negatives", "sets", "seconds", "cases"});
-  EXPECT_EQ(result["pairs"],
+  EXPECT_EQ(result.at("pairs"),
             Json::parse(R"({"total": 1, "accepted_correct": 1, "accepted_wrong": 0, "refused": 0,
                                              "best_correct": 1})"));
-  EXPECT_EQ(result["negatives"], Json::parse(R"({"total": 2, "accepted": 0})"));
-  EXPECT_EQ(result["sets"], Json::parse(R"({"total": 1, "maps": 2, "maps_correct": 2, "maps_wrong": 0,
+  EXPECT_EQ(result.at("negatives"), Json::parse(R"({"total": 2, "accepted": 0})"));
+  EXPECT_EQ(result.at("sets"), Json::parse(R"({"total": 1, "maps": 2, "maps_correct": 2, "maps_wrong": 0,
                                             "maps_left_out": 0, "complete": 1})"));
-  expect_keys(result["seconds"], {"median", "p90", "max"});
-  ASSERT_EQ(result["cases"].size(), 3u);
-  for (const Json& one : result["cases"]) {
+  expect_keys(result.at("seconds"), {"median", "p90", "max"});
+  ASSERT_EQ(result.at("cases").size(), 3u);
+  for (const Json& one : result.at("cases")) {
     expect_keys(one,
                 {"fixed", "moving", "verdict", "probability", "error", "tolerance", "correct", "seconds"});
   }
-  EXPECT_EQ(result["cases"][0]["moving"], "right.yaml");
-  EXPECT_EQ(result["cases"][0]["correct"], true);
-  EXPECT_LE(result["cases"][0]["error"], 0.2);
-  EXPECT_EQ(result["cases"][1]["moving"], "other.yaml");
-  EXPECT_TRUE(result["cases"][1]["error"].is_null());
-  EXPECT_TRUE(result["cases"][1]["correct"].is_null());
-  EXPECT_EQ(result["cases"][2]["fixed"], "other.yaml");
+  EXPECT_EQ(result.at("cases").at(0).at("moving"), "right.yaml");
+  EXPECT_EQ(result.at("cases").at(0).at("correct"), true);
+  EXPECT_LE(result.at("cases").at(0).at("error"), 0.2);
+  EXPECT_EQ(result.at("cases").at(1).at("moving"), "other.yaml");
+  EXPECT_TRUE(result.at("cases").at(1).at("error").is_null());
+  EXPECT_TRUE(result.at("cases").at(1).at("correct").is_null());
+  EXPECT_EQ(result.at("cases").at(2).at("fixed"), "other.yaml");
 }
 
 TEST_F(EvaluateCommand, TheNumberOfThreadsChangesNothingButTheTimes) {
@@ -60,7 +60,7 @@ TEST_F(EvaluateCommand, TheNumberOfThreadsChangesNothingButTheTimes) {
                                         "-", "--threads", threads})
                                        .out);
     json_result.erase("seconds");
-    for (Json& one : json_result["cases"]) one.erase("seconds");
+    for (Json& one : json_result.at("cases")) one.erase("seconds");
     return json_result;
   };
   EXPECT_EQ(result("1"), result("2"));

@@ -36,18 +36,18 @@ TEST_F(Info, TellsPrograms) {
   EXPECT_EQ(outcome.exit_code, 0);
   const Json json = Json::parse(outcome.out);
   expect_keys(json, {"maps"});
-  ASSERT_EQ(json["maps"].size(), 2u);
-  EXPECT_EQ(json["maps"][0], (Json{{"source", small},
-                                   {"width", 4},
-                                   {"height", 3},
-                                   {"resolution", 0.5},
-                                   {"origin", {{"x", 1.5}, {"y", -2.0}, {"theta", 0.0}}},
-                                   {"occupied", 2},
-                                   {"free", 3},
-                                   {"unknown", 7},
-                                   {"known_size", {{"width", 1.5}, {"height", 1.0}}},
-                                   {"warnings", Json::array()}}));
-  EXPECT_EQ(json["maps"][1]["source"], left);
+  ASSERT_EQ(json.at("maps").size(), 2u);
+  EXPECT_EQ(json.at("maps").at(0), (Json{{"source", small},
+                                         {"width", 4},
+                                         {"height", 3},
+                                         {"resolution", 0.5},
+                                         {"origin", {{"x", 1.5}, {"y", -2.0}, {"theta", 0.0}}},
+                                         {"occupied", 2},
+                                         {"free", 3},
+                                         {"unknown", 7},
+                                         {"known_size", {{"width", 1.5}, {"height", 1.0}}},
+                                         {"warnings", Json::array()}}));
+  EXPECT_EQ(json.at("maps").at(1).at("source"), left);
 }
 
 TEST_F(Info, ShowsWarningsAsPartOfTheResult) {
@@ -58,7 +58,7 @@ TEST_F(Info, ShowsWarningsAsPartOfTheResult) {
   EXPECT_NE(outcome.out.find("known area  0.00 m x 0.00 m"), std::string::npos) << outcome.out;
   EXPECT_EQ(outcome.err, "");
   const Json json = Json::parse(run({"info", "--json", blank}).out);
-  EXPECT_EQ(json["maps"][0]["warnings"], Json::array({"the map has no known cell"}));
+  EXPECT_EQ(json.at("maps").at(0).at("warnings"), Json::array({"the map has no known cell"}));
 }
 
 TEST_F(Info, ReadsABareImageWithItsResolution) {

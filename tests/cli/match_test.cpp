@@ -34,13 +34,13 @@ TEST_F(Match, JsonOfAnAcceptedPairIsAllThereIsOnStdout) {
   EXPECT_EQ(outcome.err, "");
   const Json json = Json::parse(outcome.out);
   expect_contract(json);
-  EXPECT_EQ(json["fixed"], left);
-  EXPECT_EQ(json["moving"], right);
-  EXPECT_EQ(json["verdict"], "accepted");
-  expect_near(json["transform"], T_left_right, 2 * kHalfACell, 2 * kFifthOfADegree);
-  ASSERT_FALSE(json["hypotheses"].empty());
-  EXPECT_EQ(json["hypotheses"][0]["transform"], json["transform"]);
-  EXPECT_EQ(json["hypotheses"][0]["probability"], json["probability"]);
+  EXPECT_EQ(json.at("fixed"), left);
+  EXPECT_EQ(json.at("moving"), right);
+  EXPECT_EQ(json.at("verdict"), "accepted");
+  expect_near(json.at("transform"), T_left_right, 2 * kHalfACell, 2 * kFifthOfADegree);
+  ASSERT_FALSE(json.at("hypotheses").empty());
+  EXPECT_EQ(json.at("hypotheses").at(0).at("transform"), json.at("transform"));
+  EXPECT_EQ(json.at("hypotheses").at(0).at("probability"), json.at("probability"));
 }
 
 TEST_F(Match, JsonOfARefusedPairHasTheSameForm) {
@@ -49,7 +49,7 @@ TEST_F(Match, JsonOfARefusedPairHasTheSameForm) {
   EXPECT_EQ(outcome.err, "");
   const Json json = Json::parse(outcome.out);
   expect_contract(json);
-  EXPECT_EQ(json["verdict"], "refused");
+  EXPECT_EQ(json.at("verdict"), "refused");
 }
 
 TEST_F(Match, TellsPeopleTheVerdictFirst) {
@@ -87,8 +87,8 @@ TEST_F(Match, TheSameFileTwiceAndACopyOfItAreAcceptedAtTheIdentity) {
     const Outcome outcome = run({"match", left, moving, "--json"});
     EXPECT_EQ(outcome.exit_code, 0);
     const Json json = Json::parse(outcome.out);
-    expect_near(json["transform"], {}, kHalfACell, kFifthOfADegree);
-    EXPECT_GT(json["acceptance_index"], 0.99);
+    expect_near(json.at("transform"), {}, kHalfACell, kFifthOfADegree);
+    EXPECT_GT(json.at("acceptance_index"), 0.99);
   }
 }
 
@@ -105,9 +105,9 @@ TEST_F(Match, BareImagesTakeTheirResolutionFromTheOption) {
       {"match", directory.file("left.pgm"), directory.file("right.pgm"), "--resolution", "0.1", "--json"});
   EXPECT_EQ(outcome.exit_code, 0);
   // Without a YAML the origin is zero; the turn is what it was.
-  EXPECT_NEAR(
-      normalize_angle(Json::parse(outcome.out)["transform"]["theta"].get<double>() - T_left_right.theta), 0.0,
-      2 * kFifthOfADegree);
+  EXPECT_NEAR(normalize_angle(Json::parse(outcome.out).at("transform").at("theta").get<double>() -
+                              T_left_right.theta),
+              0.0, 2 * kFifthOfADegree);
 }
 
 TEST_F(Match, MapsWithNothingToGoByAreRefused) {

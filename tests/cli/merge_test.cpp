@@ -29,34 +29,34 @@ TEST_F(Merge, WritesTheFilesOfTheContract) {
 
   const Json json = Json::parse(read_file(output + "/transforms.json"));
   expect_keys(json, {"components", "joins", "left_out"});
-  EXPECT_EQ(json["left_out"], Json::array());
-  ASSERT_EQ(json["components"].size(), 1u);
-  expect_keys(json["components"][0], {"map", "members"});
-  EXPECT_EQ(json["components"][0]["map"], "merged.yaml");
-  ASSERT_EQ(json["components"][0]["members"].size(), 2u);
-  const Json& members = json["components"][0]["members"];
+  EXPECT_EQ(json.at("left_out"), Json::array());
+  ASSERT_EQ(json.at("components").size(), 1u);
+  expect_keys(json.at("components").at(0), {"map", "members"});
+  EXPECT_EQ(json.at("components").at(0).at("map"), "merged.yaml");
+  ASSERT_EQ(json.at("components").at(0).at("members").size(), 2u);
+  const Json& members = json.at("components").at(0).at("members");
   for (const Json& member : members) expect_keys(member, {"source", "transform"});
-  EXPECT_EQ(members[0]["source"], left);
-  expect_near(members[0]["transform"], {}, 1e-12, 1e-12);
-  EXPECT_EQ(members[1]["source"], right);
-  expect_near(members[1]["transform"], T_left_right, 0.1, 0.007);
-  ASSERT_EQ(json["joins"].size(), 1u);
-  expect_keys(json["joins"][0], {"fixed", "moving", "transform", "verdict", "probability"});
-  EXPECT_EQ(json["joins"][0]["fixed"], left);
-  EXPECT_EQ(json["joins"][0]["moving"], right);
-  EXPECT_EQ(json["joins"][0]["verdict"], "accepted");
+  EXPECT_EQ(members.at(0).at("source"), left);
+  expect_near(members.at(0).at("transform"), {}, 1e-12, 1e-12);
+  EXPECT_EQ(members.at(1).at("source"), right);
+  expect_near(members.at(1).at("transform"), T_left_right, 0.1, 0.007);
+  ASSERT_EQ(json.at("joins").size(), 1u);
+  expect_keys(json.at("joins").at(0), {"fixed", "moving", "transform", "verdict", "probability"});
+  EXPECT_EQ(json.at("joins").at(0).at("fixed"), left);
+  EXPECT_EQ(json.at("joins").at(0).at("moving"), right);
+  EXPECT_EQ(json.at("joins").at(0).at("verdict"), "accepted");
 }
 
 TEST_F(Merge, ItsMapIsAMapThatKnowsMoreThanEach) {
   ASSERT_EQ(run({"merge", left, right, "-o", output}).exit_code, 0);
   const Json info = Json::parse(run({"info", "--json", left, right, output + "/merged.yaml"}).out);
   const auto known = [&](int i) {
-    return info["maps"][i]["free"].get<int>() + info["maps"][i]["occupied"].get<int>();
+    return info.at("maps").at(i).at("free").get<int>() + info.at("maps").at(i).at("occupied").get<int>();
   };
   EXPECT_GT(known(2), known(0));
   EXPECT_GT(known(2), known(1));
   EXPECT_LT(known(2), known(0) + known(1));
-  EXPECT_EQ(info["maps"][2]["resolution"], 0.1);
+  EXPECT_EQ(info.at("maps").at(2).at("resolution"), 0.1);
 }
 
 TEST_F(Merge, LeavesOutWhatDoesNotFit) {
@@ -66,16 +66,16 @@ TEST_F(Merge, LeavesOutWhatDoesNotFit) {
   EXPECT_NE(outcome.out.find("left out: " + other + "\n"), std::string::npos) << outcome.out;
   EXPECT_EQ(files_in(output), all_files);
   const Json json = Json::parse(read_file(output + "/transforms.json"));
-  EXPECT_EQ(json["left_out"], Json::array({other}));
-  EXPECT_EQ(json["components"][0]["members"].size(), 2u);
+  EXPECT_EQ(json.at("left_out"), Json::array({other}));
+  EXPECT_EQ(json.at("components").at(0).at("members").size(), 2u);
 }
 
 TEST_F(Merge, OfMapsThatAllDifferSaysSo) {
   const Outcome outcome = run({"merge", left, other, "-o", output});
   EXPECT_EQ(outcome.exit_code, 3);
   const Json json = Json::parse(read_file(output + "/transforms.json"));
-  EXPECT_EQ(json["components"], Json::array());
-  EXPECT_EQ(json["left_out"], Json::array({left, other}));
+  EXPECT_EQ(json.at("components"), Json::array());
+  EXPECT_EQ(json.at("left_out"), Json::array({left, other}));
   EXPECT_EQ(files_in(output).count("merged.yaml"), 0u);
 }
 
@@ -83,7 +83,7 @@ TEST_F(Merge, OfOneMapTwiceIsThatMap) {
   const Outcome outcome = run({"merge", left, left, "-o", output});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const Json json = Json::parse(read_file(output + "/transforms.json"));
-  expect_near(json["components"][0]["members"][1]["transform"], {}, 0.05, 0.0035);
+  expect_near(json.at("components").at(0).at("members").at(1).at("transform"), {}, 0.05, 0.0035);
 }
 
 TEST_F(Merge, LeavesOutMapsWithNothingToGoBy) {
@@ -92,7 +92,7 @@ TEST_F(Merge, LeavesOutMapsWithNothingToGoBy) {
   const Outcome outcome = run({"merge", blank, left, dot, right, "-o", output, "--quiet"});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
   EXPECT_EQ(outcome.out + outcome.err, "");
-  EXPECT_EQ(Json::parse(read_file(output + "/transforms.json"))["left_out"], Json::array({blank, dot}));
+  EXPECT_EQ(Json::parse(read_file(output + "/transforms.json")).at("left_out"), Json::array({blank, dot}));
 }
 
 TEST_F(Merge, TheNumberOfThreadsChangesNoByte) {
@@ -107,7 +107,7 @@ TEST_F(Merge, TheNumberOfThreadsChangesNoByte) {
 TEST_F(Merge, OutputResolutionIsThatOfTheMergedMap) {
   ASSERT_EQ(run({"merge", left, right, "-o", output, "--output-resolution", "0.2"}).exit_code, 0);
   const Json info = Json::parse(run({"info", "--json", output + "/merged.yaml"}).out);
-  EXPECT_EQ(info["maps"][0]["resolution"], 0.2);
+  EXPECT_EQ(info.at("maps").at(0).at("resolution"), 0.2);
 
   const std::string too_fine = directory.file("fine");
   expect_error(run({"merge", left, right, "-o", too_fine, "--output-resolution", "1e-6"}), "", "cells");
@@ -118,7 +118,7 @@ TEST_F(Merge, ReplacesAnEarlierResult) {
   ASSERT_EQ(run({"merge", left, other, right, "-o", output}).exit_code, 3);
   ASSERT_EQ(run({"merge", left, right, "-o", output}).exit_code, 0);
   EXPECT_EQ(files_in(output), all_files);
-  EXPECT_EQ(Json::parse(read_file(output + "/transforms.json"))["left_out"], Json::array());
+  EXPECT_EQ(Json::parse(read_file(output + "/transforms.json")).at("left_out"), Json::array());
 }
 
 TEST_F(Merge, AnOutputDirectoryThatCannotBeWrittenIsAnError) {
