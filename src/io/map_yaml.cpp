@@ -2,6 +2,7 @@
 #include "map_yaml.hpp"
 
 #include <fmt/format.h>
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -38,6 +39,8 @@ std::string to_lower(std::string text) {
 YAML::Node load_yaml(std::string_view text) {
   try {
     return YAML::Load(std::string(text));
+  } catch (const YAML::DeepRecursion&) {  // whose own words are "bad file"
+    throw ParseError("not valid YAML: nested too deeply");
   } catch (const YAML::Exception& error) {
     throw ParseError(fmt::format("not valid YAML: line {}: {}", error.mark.line + 1, error.msg));
   }

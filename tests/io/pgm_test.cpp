@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <ostream>
 #include <string>
 
 #include "io/parse_error.hpp"
@@ -96,6 +97,8 @@ struct BadPgm {
   const char* name;
   std::string text;
   const char* message;
+
+  friend void PrintTo(const BadPgm& bad, std::ostream* out) { *out << bad.name; }
 };
 
 class PgmRefuses : public testing::TestWithParam<BadPgm> {};
