@@ -11,6 +11,12 @@ namespace gridmerge {
 namespace {
 constexpr int kAdvance = kGlyphWidth + 1;
 constexpr std::size_t kChannels = 3;
+
+std::size_t sample_at(const PngImage& image, int x, int y) {
+  return (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)) *
+         kChannels;
+}
+
 }  // namespace
 
 Canvas::Canvas(int width, int height, Colour colour) {
@@ -24,25 +30,24 @@ void Canvas::fill(int x, int y, int width, int height, Colour colour) {
   const int left = std::max(x, 0), right = std::min(x + width, image_.width);
   const int top = std::max(y, 0), bottom = std::min(y + height, image_.height);
   for (int row = top; row < bottom; ++row) {
+    std::size_t sample = sample_at(image_, left, row);
     for (int column = left; column < right; ++column) {
-      const std::size_t pixel = static_cast<std::size_t>(row) * static_cast<std::size_t>(image_.width) +
-                                static_cast<std::size_t>(column);
-      image_.samples[pixel * kChannels] = colour.red;
-      image_.samples[pixel * kChannels + 1] = colour.green;
-      image_.samples[pixel * kChannels + 2] = colour.blue;
+      image_.samples[sample++] = colour.red;
+      image_.samples[sample++] = colour.green;
+      image_.samples[sample++] = colour.blue;
     }
   }
 }
 
 void Canvas::draw(int x, int y, const Canvas& other) {
-  for (int row = 0; row < other.height(); ++row) {
-    for (int column = 0; column < other.width(); ++column) {
-      const std::size_t pixel = (static_cast<std::size_t>(row) * static_cast<std::size_t>(other.width()) +
-                                 static_cast<std::size_t>(column)) *
-                                kChannels;
-      const auto& samples = other.image_.samples;
-      fill(x + column, y + row, 1, 1, {samples[pixel], samples[pixel + 1], samples[pixel + 2]});
-    }
+  const int left = std::max(x, 0), right = std::min(x + other.width(), image_.width);
+  const int top = std::max(y, 0), bottom = std::min(y + other.height(), image_.height);
+  if (left >= right) return;
+  for (int row = top; row < bottom; ++row) {
+    const auto from = other.image_.samples.begin() +
+                      static_cast<std::ptrdiff_t>(sample_at(other.image_, left - x, row - y));
+    const auto to = image_.samples.begin() + static_cast<std::ptrdiff_t>(sample_at(image_, left, row));
+    std::copy_n(from, static_cast<std::size_t>(right - left) * kChannels, to);
   }
 }
 
