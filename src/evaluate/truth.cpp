@@ -1,90 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/evaluate/truth.hpp"
 
-#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <system_error>
 
-#include "table_file.hpp"
+#include "gridmerge/io/file_error.hpp"
+#include "parse_truth.hpp"
 
 namespace gridmerge {
 
 namespace {
 
-// Reads the columns that the formats share, one row at a time.
-class TruthRows {
- public:
-  TruthRows(const std::filesystem::path& path, const std::vector<std::string_view>& required,
-            const std::vector<std::string_view>& optional = {})
-      : table_(path, required, optional), directory_(path.parent_path()) {}
+// Bounds what a wrong argument (a device, a disk image) makes us read.
+constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
 
-  const TableFile& table() const { return table_; }
-
-  TruthMap map(std::size_t row, std::string_view column) const {
-    const std::string& name = table_.text(row, column);
-    return {name, directory_ / name};
+std::string read_text(const std::filesystem::path& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) throw FileError(path, std::generic_category().message(errno));
+  std::string text;
+  std::array<char, 65536> block{};
+  while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get())) {
+    text.append(block.data(), count);
+    if (text.size() > kMaxBytes)
+      throw FileError(path, "the file is larger than 16 MiB, which no truth file is");
   }
-
-  SE2 transform(std::size_t row) const {
-    return {table_.number(row, "x"), table_.number(row, "y"), normalize_angle(table_.number(row, "theta"))};
-  }
-
-  double tolerance(std::size_t row) const {
-    const double tolerance = table_.number(row, "tolerance");
-    if (tolerance <= 0.0) table_.fail(row, "tolerance must be positive");
-    return tolerance;
-  }
-
-  void check_overlap(std::size_t row) const {
-    const double overlap = table_.number(row, "overlap");
-    if (overlap < 0.0 || overlap > 1.0) table_.fail(row, "overlap must be between 0 and 1");
-  }
-
- private:
-  TableFile table_;
-  std::filesystem::path directory_;
-};
+  if (std::ferror(file.get())) throw FileError(path, std::generic_category().message(errno));
+  return text;
+}
 
 }  // namespace
 
 std::vector<TruePair> read_pairs(const std::filesystem::path& path) {
-  const TruthRows rows(path, {"fixed", "moving", "x", "y", "theta", "tolerance"}, {"tier", "overlap"});
-  const TableFile& table = rows.table();
-  std::vector<TruePair> pairs;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (table.has("overlap")) rows.check_overlap(row);
-    pairs.push_back({rows.map(row, "fixed"), rows.map(row, "moving"), rows.transform(row),
-                     rows.tolerance(row), table.has("tier") ? table.text(row, "tier") : std::string()});
-  }
-  return pairs;
+  return parse_pairs(path, read_text(path));
 }
 
 std::vector<NegativePair> read_negatives(const std::filesystem::path& path) {
-  const TruthRows rows(path, {"fixed", "moving"});
-  std::vector<NegativePair> negatives;
-  for (std::size_t row = 0; row < rows.table().rows(); ++row) {
-    negatives.push_back({rows.map(row, "fixed"), rows.map(row, "moving")});
-  }
-  return negatives;
+  return parse_negatives(path, read_text(path));
 }
 
 std::vector<TrueSet> read_sets(const std::filesystem::path& path) {
-  const TruthRows rows(path, {"set", "map", "x", "y", "theta", "tolerance"});
-  std::vector<TrueSet> sets;
-  std::vector<std::size_t> first_rows;
-  for (std::size_t row = 0; row < rows.table().rows(); ++row) {
-    const std::string& name = rows.table().text(row, "set");
-    auto set =
-        std::find_if(sets.begin(), sets.end(), [&](const TrueSet& other) { return other.name == name; });
-    if (set == sets.end()) {
-      set = sets.insert(sets.end(), {name, {}});
-      first_rows.push_back(row);
-    }
-    set->members.push_back({rows.map(row, "map"), rows.transform(row), rows.tolerance(row)});
-  }
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    if (sets[i].members.size() < 2)
-      rows.table().fail(first_rows[i], "set '" + sets[i].name + "' has a single map");
-  }
-  return sets;
+  return parse_sets(path, read_text(path));
 }
 
 }  // namespace gridmerge

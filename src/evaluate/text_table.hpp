@@ -11,11 +11,12 @@ namespace gridmerge {
 
 /// A tab-separated text file whose first line names the columns. Knows files, lines and columns, not their
 /// meaning. Every failure is a FileError that says "file:line: cause".
-class TableFile {
+class TextTable {
  public:
-  /// Reads the file and checks its shape: every required column once, no column that is neither required nor
+  /// Checks the shape of the file's text: every required column once, no column that is neither required nor
   /// optional, and as many fields in every line as there are columns.
-  TableFile(const std::filesystem::path& path, const std::vector<std::string_view>& required,
+  TextTable(const std::filesystem::path& path, std::string_view text,
+            const std::vector<std::string_view>& required,
             const std::vector<std::string_view>& optional = {});
 
   std::size_t rows() const { return rows_.size(); }
