@@ -27,8 +27,8 @@ OccupancyGrid crop_to_known(const OccupancyGrid& grid) {
   if (right < 0) left = right = bottom = top = 0;
 
   const Point2 corner = grid.origin * Point2{left * grid.resolution, bottom * grid.resolution};
-  OccupancyGrid cropped = make_grid(right - left + 1, top - bottom + 1, grid.resolution,
-                                    {corner.x, corner.y, grid.origin.theta});
+  OccupancyGrid cropped =
+      make_grid(right - left + 1, top - bottom + 1, grid.resolution, {corner.x, corner.y, grid.origin.theta});
   if (!grid.probability.empty()) cropped.probability.resize(cropped.cells.size());
   for (int row = 0; row < cropped.height; ++row) {
     const std::size_t from = grid.index(left, bottom + row);
@@ -43,7 +43,7 @@ OccupancyGrid crop_to_known(const OccupancyGrid& grid) {
 
 OccupancyGrid downsample(const OccupancyGrid& grid, int factor) {
   if (factor < 1) throw std::invalid_argument("the downsampling factor must be at least 1");
-  OccupancyGrid coarse = make_grid((grid.width + factor - 1) / factor, (grid.height + factor - 1) / factor,
+  OccupancyGrid coarse = make_grid((grid.width - 1) / factor + 1, (grid.height - 1) / factor + 1,
                                    grid.resolution * factor, grid.origin);
   for (int row = 0; row < grid.height; ++row) {
     for (int column = 0; column < grid.width; ++column) {
@@ -55,11 +55,14 @@ OccupancyGrid downsample(const OccupancyGrid& grid, int factor) {
 }
 
 OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map, double resolution) {
+  if (!std::isfinite(resolution) || resolution <= 0.0)
+    throw std::invalid_argument("the resolution must be a positive number of metres");
   const SE2 T_target_grid = T_target_map * grid.origin;
   const double width_m = grid.width * grid.resolution;
   const double height_m = grid.height * grid.resolution;
   double min_x = std::numeric_limits<double>::infinity(), min_y = min_x, max_x = -min_x, max_y = -min_x;
-  for (const Point2& corner : std::array<Point2, 4>{{{0, 0}, {width_m, 0}, {0, height_m}, {width_m, height_m}}}) {
+  for (const Point2& corner :
+       std::array<Point2, 4>{{{0, 0}, {width_m, 0}, {0, height_m}, {width_m, height_m}}}) {
     const Point2 p = T_target_grid * corner;
     min_x = std::min(min_x, p.x);
     min_y = std::min(min_y, p.y);
@@ -69,9 +72,11 @@ OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map,
   // The small slack keeps a grid that already fits whole cells from growing by one through rounding.
   const double columns = std::max(1.0, std::ceil((max_x - min_x) / resolution - 1e-6));
   const double rows = std::max(1.0, std::ceil((max_y - min_y) / resolution - 1e-6));
-  if (!(columns * rows <= kMaxCells)) throw std::invalid_argument("the transformed map would exceed 2^28 cells");
+  if (!(columns * rows <= kMaxCells))
+    throw std::invalid_argument("the transformed map would exceed 2^28 cells");
 
-  OccupancyGrid target = make_grid(static_cast<int>(columns), static_cast<int>(rows), resolution, {min_x, min_y, 0.0});
+  OccupancyGrid target =
+      make_grid(static_cast<int>(columns), static_cast<int>(rows), resolution, {min_x, min_y, 0.0});
   const SE2 T_grid_target = inverse(T_target_grid);
   const double c = std::cos(T_grid_target.theta) / grid.resolution;
   const double s = std::sin(T_grid_target.theta) / grid.resolution;
@@ -80,9 +85,10 @@ OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map,
       const Point2 p = target.cell_center(column, row);
       const double source_x = c * p.x - s * p.y + T_grid_target.x / grid.resolution;
       const double source_y = s * p.x + c * p.y + T_grid_target.y / grid.resolution;
-      const int source_column = static_cast<int>(std::floor(source_x));
-      const int source_row = static_cast<int>(std::floor(source_y));
-      if (grid.contains(source_column, source_row)) target.at(column, row) = grid.at(source_column, source_row);
+      // Compared before the cast: with a coarse target the centre may be further away than an int can tell.
+      const bool inside =
+          source_x >= 0.0 && source_x < grid.width && source_y >= 0.0 && source_y < grid.height;
+      if (inside) target.at(column, row) = grid.at(static_cast<int>(source_x), static_cast<int>(source_y));
     }
   }
   return target;

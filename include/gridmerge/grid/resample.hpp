@@ -5,17 +5,19 @@
 
 namespace gridmerge {
 
-/// The smallest sub-grid that holds every known cell; its origin moves along, so points keep their coordinates in the
-/// map frame. A grid with no known cell becomes a single unknown cell. O(cells).
+/// The smallest sub-grid that holds every known cell; its origin moves along, so points keep their
+/// coordinates in the map frame. A grid with no known cell becomes a single unknown cell. O(cells).
 OccupancyGrid crop_to_known(const OccupancyGrid& grid);
 
-/// The grid with cells `factor` times as large (factor >= 1): occupied where any of the factor x factor cells is, else
-/// free where any is, else unknown. Same origin. Probabilities are dropped. O(cells).
+/// The grid with cells `factor` times as large (factor >= 1): occupied where any of the factor x factor cells
+/// is, else free where any is, else unknown. Same origin. Probabilities are dropped. Throws
+/// std::invalid_argument when the factor is below 1. O(cells).
 OccupancyGrid downsample(const OccupancyGrid& grid, int factor);
 
-/// The grid seen from another frame: T_target_map is applied to the map, and the result is drawn on an upright
-/// (yaw 0) grid of `resolution` that just holds it. Every target cell takes the value of the source cell under its
-/// centre (nearest cell). Throws std::invalid_argument when the result would exceed 2^28 cells. O(result cells).
+/// The grid seen from another frame: T_target_map is applied to the map, and the result is drawn on an
+/// upright (yaw 0) grid of `resolution` that just holds it. Every target cell takes the value of the source
+/// cell under its centre (nearest cell); probabilities are dropped. Throws std::invalid_argument when the
+/// resolution is not positive or the result would exceed 2^28 cells. O(result cells).
 OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map, double resolution);
 
 }  // namespace gridmerge

@@ -3,36 +3,55 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/io/file_error.hpp"
 
 namespace gridmerge {
 
-/// A file that cannot be read or written: the message names the file and the cause, on one line.
-class FileError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 struct LoadOptions {
-  double resolution = 0.0;          ///< [m/cell] of a bare image; 0 = a bare image is an error
-  std::size_t max_cells = 1u << 28;  ///< larger maps are refused
+  double resolution = 0.0;           ///< [m/cell] of a bare image; 0 = a bare image is an error
+  std::size_t max_cells = 1u << 28;  ///< larger maps are refused before memory is taken for them
 };
 
 struct LoadedMap {
   OccupancyGrid grid;
-  std::vector<std::string> warnings;  ///< what the file says that its author may not have meant, a sentence each
+  std::vector<std::string>
+      warnings;  ///< what the file says that its author may not have meant, a sentence each
 };
 
-/// Reads a map_server YAML with its image (PGM or PNG), or a bare image with `options.resolution`.
-/// Follows nav2's map_io. Throws FileError.
+/// Reads a map_server YAML with its image (PGM or PNG, told apart by content), or a bare image with
+/// `options.resolution`, origin 0 and nav2's usual thresholds (0.65 and 0.196).
+///
+/// A pixel's occupancy p is 1 - lightness (lightness with `negate`), lightness the mean of its colour
+/// channels.
+/// - `trinary`: occupied where p > occupied_thresh, free where p < free_thresh, else unknown.
+/// - `scale`: the same cells; `probability` is 1, 0 and, between the thresholds, p stretched to [0, 1].
+/// - `raw`: the 8-bit lightness is the occupancy in percent, above 100 unknown; `probability` holds it.
+/// Occupied from
+///   occupied_thresh on, free up to free_thresh (what map_saver does with percentages), else unknown. No
+///   `negate`.
+///
+/// This is nav2's map_io but for alpha: a pixel that is not opaque is unknown in `trinary` and `scale`, and
+/// alpha never counts as colour. (nav2 averages it into the lightness in `trinary`; a warning says where that
+/// makes a difference.)
+///
+/// Refused: resolutions outside [1e-6, 1e3] m, origins that are not finite or beyond 1e9 m, thresholds
+/// outside [0, 1] or crossed, YAML above 1 MiB, images with less data than their header promises (more is
+/// tolerated). Throws FileError. O(pixels); peak memory is the file, its decoded pixels and 3 to 8 bytes a
+/// cell.
 LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options = {});
 
-/// Writes `<stem>.yaml` and `<stem>.pgm` for map_server (trinary: occupied 0, free 254, unknown 205; thresholds 0.65
-/// and 0.196), each to a temporary file that is then renamed. Throws FileError.
+/// Writes the map for map_server: the YAML, and beside it the image, of the same name but for its ending
+/// `.pgm` (trinary: occupied 0, free 254, unknown 205; thresholds 0.65 and 0.196). `yaml_path` must end in
+/// .yaml or .yml. Loading gives the same cells, resolution and origin, to the bit; probabilities are not
+/// kept.
+///
+/// Both files are complete on disk before either takes its place, the image first. Throws FileError, then
+/// nothing is left behind (but a new image if only the YAML cannot take its place), or std::invalid_argument
+/// for a grid that `validate` refuses.
 void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
 
 }  // namespace gridmerge

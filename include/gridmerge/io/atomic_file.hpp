@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "gridmerge/io/file_error.hpp"
+
+namespace gridmerge {
+
+/// A file in two steps: the constructor writes the bytes to a temporary file in the same directory and
+/// flushes them to the disk; commit() renames it into place. Without commit the temporary file disappears
+/// with this object. Outputs that belong together are staged first and committed after, so that a full disk
+/// leaves none of them.
+///
+/// An existing file is replaced as a whole (a symbolic link too, not its target); readers see the old bytes
+/// or the new ones. Permissions are those of any new file: 0666 less the umask. A process over its file size
+/// limit gets a FileError only if it ignores SIGXFSZ.
+class StagedFile {
+ public:
+  /// Throws FileError; then nothing is left behind.
+  StagedFile(std::filesystem::path path, std::string_view bytes);
+  ~StagedFile();
+  StagedFile(StagedFile&& other) noexcept;
+  StagedFile(const StagedFile&) = delete;
+  StagedFile& operator=(const StagedFile&) = delete;
+  StagedFile& operator=(StagedFile&&) = delete;
+
+  /// Once only. Throws FileError; then the destination is as it was.
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;  // empty once it is gone
+};
+
+/// One file, staged and committed. Throws FileError.
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace gridmerge

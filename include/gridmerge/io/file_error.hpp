@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string_view>
+
+namespace gridmerge {
+
+/// A file that cannot be read or written. The message names the file and the cause, "a.yaml: missing key
+/// 'origin'", on one line: control characters (file names and file contents are not ours to choose) are shown
+/// as escapes.
+class FileError : public std::runtime_error {
+ public:
+  explicit FileError(std::string_view message);
+  FileError(const std::filesystem::path& file, std::string_view cause);
+};
+
+}  // namespace gridmerge

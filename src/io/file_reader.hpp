@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+namespace gridmerge {
+
+/// Reads a file in steps, so that its first bytes can decide how many more are worth having. Pipes work too.
+class FileReader {
+ public:
+  /// Throws FileError when `path` is missing, unreadable or a directory.
+  explicit FileReader(std::filesystem::path path);
+  ~FileReader();
+  FileReader(const FileReader&) = delete;
+  FileReader& operator=(const FileReader&) = delete;
+
+  /// Reads on until `count` bytes are held or the file ends, and returns all bytes held. Throws FileError.
+  const std::string& read_up_to(std::size_t count);
+
+  /// All of the file. Throws FileError when it is longer than `max_bytes`.
+  const std::string& read_all(std::size_t max_bytes);
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_;
+  std::size_t size_hint_ = 0;
+  std::string bytes_;
+};
+
+}  // namespace gridmerge

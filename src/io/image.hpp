@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace gridmerge {
+
+/// What a map needs of a picture, top row first. A pixel's lightness is `lightness / white`, exactly:
+/// integers, so that every value can be looked up and thresholds are never missed by a rounding.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::uint16_t white = 255;             ///< 1..65535
+  std::vector<std::uint16_t> lightness;  ///< width * height values up to `white`
+  std::vector<std::uint8_t>
+      alpha;  ///< as many, 255 only where fully opaque; empty if the picture has no alpha
+};
+
+/// Whether the bytes begin as a PNG or PGM file does. Eight bytes suffice.
+bool looks_like_image(std::string_view bytes);
+
+/// Reads a PGM or PNG. Throws ParseError. O(pixels).
+Image decode_image(std::string_view bytes, std::size_t max_pixels);
+
+/// Throws ParseError unless width and height are positive and width * height <= max_pixels.
+void check_image_size(std::uint64_t width, std::uint64_t height, std::size_t max_pixels);
+
+}  // namespace gridmerge

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "interpret.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace gridmerge {
+
+namespace {
+
+constexpr float kUnknownProbability = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint8_t kOpaque = 255;
+
+// What a pixel means.
+struct Meaning {
+  Cell cell = Cell::unknown;
+  float probability = kUnknownProbability;
+};
+
+Cell classify(double occupancy, const MapYaml& yaml) {
+  if (occupancy > yaml.occupied_thresh) return Cell::occupied;
+  return occupancy < yaml.free_thresh ? Cell::free : Cell::unknown;
+}
+
+// map_saver compares percentages with `<=` and `>=`; so must we, or 0 with a free_thresh of 0 would get lost.
+Meaning raw_meaning(double shade, const MapYaml& yaml) {
+  const double percent = std::round(shade * 255.0);
+  if (percent > 100.0) return {};
+  const double occupancy = percent / 100.0;
+  const Cell cell = occupancy >= yaml.occupied_thresh ? Cell::occupied
+                    : occupancy <= yaml.free_thresh   ? Cell::free
+                                                      : Cell::unknown;
+  return {cell, static_cast<float>(occupancy)};
+}
+
+double occupancy_of(double shade, const MapYaml& yaml) {
+  return yaml.negate ? shade : 1.0 - shade;
+}
+
+Meaning scale_meaning(double shade, const MapYaml& yaml) {
+  const double occupancy = occupancy_of(shade, yaml);
+  const Cell cell = classify(occupancy, yaml);
+  if (cell != Cell::unknown) return {cell, cell == Cell::occupied ? 1.0f : 0.0f};
+  const double span = yaml.occupied_thresh - yaml.free_thresh;
+  return {cell, span > 0.0 ? static_cast<float>((occupancy - yaml.free_thresh) / span) : 0.5f};
+}
+
+Meaning opaque_meaning(double shade, const MapYaml& yaml) {
+  switch (yaml.mode) {
+    case MapMode::raw:
+      return raw_meaning(shade, yaml);
+    case MapMode::scale:
+      return scale_meaning(shade, yaml);
+    case MapMode::trinary:
+      break;
+  }
+  return {classify(occupancy_of(shade, yaml), yaml), kUnknownProbability};
+}
+
+// One entry for each lightness a pixel can have: pixels are many, values few.
+std::vector<Meaning> opaque_meanings(std::uint16_t white, const MapYaml& yaml) {
+  std::vector<Meaning> meanings(white + std::size_t{1});
+  for (std::size_t value = 0; value < meanings.size(); ++value) {
+    meanings[value] = opaque_meaning(static_cast<double>(value) / white, yaml);
+  }
+  return meanings;
+}
+
+const char* name(Cell cell) {
+  return cell == Cell::occupied ? "occupied" : cell == Cell::free ? "free" : "unknown";
+}
+
+// Lightness 205 of 255 is how map_saver writes "unknown": p is 0.196, above a free_thresh of 0.196 by a hair,
+// and below the 0.25 that many a YAML has.
+void warn_of_unknown_gray(const MapYaml& yaml, const Image& image, const std::vector<Meaning>& meanings,
+                          std::vector<std::string>& warnings) {
+  if (image.white * 205 % 255 != 0) return;
+  const auto gray = static_cast<std::uint16_t>(image.white * 205 / 255);
+  const Cell cell = meanings[gray].cell;
+  if (cell == Cell::unknown) return;
+  std::size_t count = 0;
+  for (std::size_t pixel = 0; pixel < image.lightness.size(); ++pixel) {
+    const bool opaque = image.alpha.empty() || image.alpha[pixel] == kOpaque;
+    if (opaque && image.lightness[pixel] == gray) ++count;
+  }
+  if (count == 0) return;
+  warnings.push_back(
+      fmt::format("{} pixels of lightness 205, which map_saver writes for unknown, load as {} with "
+                  "free_thresh {} and negate {}",
+                  count, name(cell), yaml.free_thresh, yaml.negate ? 1 : 0));
+}
+
+void warn_of_alpha(const MapYaml& yaml, const Image& image, const OccupancyGrid& grid,
+                   std::vector<std::string>& warnings) {
+  if (image.alpha.empty()) return;
+  std::size_t count = 0;
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column) {
+      const std::size_t pixel = grid.index(column, row);
+      const double shade = static_cast<double>(image.lightness[pixel]) / image.white;
+      const double shade_in_nav2 = (3.0 * shade + image.alpha[pixel] / 255.0) / 4.0;
+      if (classify(occupancy_of(shade_in_nav2, yaml), yaml) != grid.at(column, image.height - 1 - row))
+        ++count;
+    }
+  }
+  if (count == 0) return;
+  warnings.push_back(
+      fmt::format("{} pixels load otherwise in nav2, which averages alpha into the lightness; here alpha "
+                  "only marks unknown cells",
+                  count));
+}
+
+void warn_of_missing_cells(const OccupancyGrid& grid, std::vector<std::string>& warnings) {
+  const CellCounts counts = count_cells(grid);
+  if (counts.known() == 0) {
+    warnings.emplace_back("the map has no known cell");
+  } else if (counts.occupied == 0) {
+    warnings.emplace_back("the map has no occupied cell");
+  } else if (counts.free == 0) {
+    warnings.emplace_back("the map has no free cell");
+  }
+}
+
+}  // namespace
+
+LoadedMap interpret(const MapYaml& yaml, const Image& image) {
+  const std::vector<Meaning> meanings = opaque_meanings(image.white, yaml);
+  const bool alpha_counts = !image.alpha.empty() && yaml.mode != MapMode::raw;
+  const bool keep_probability = yaml.mode != MapMode::trinary;
+
+  LoadedMap map;
+  map.grid = make_grid(image.width, image.height, yaml.resolution, yaml.origin);
+  if (keep_probability) map.grid.probability.resize(map.grid.cells.size());
+  for (int row = 0; row < image.height; ++row) {
+    std::size_t pixel = map.grid.index(0, row);
+    std::size_t cell =
+        map.grid.index(0, image.height - 1 - row);  // pictures begin at the top, grids at the bottom
+    for (int column = 0; column < image.width; ++column, ++pixel, ++cell) {
+      const bool unknown = alpha_counts && image.alpha[pixel] != kOpaque;
+      const Meaning meaning = unknown ? Meaning{} : meanings[image.lightness[pixel]];
+      map.grid.cells[cell] = meaning.cell;
+      if (keep_probability) map.grid.probability[cell] = meaning.probability;
+    }
+  }
+
+  if (yaml.mode == MapMode::trinary) {
+    warn_of_unknown_gray(yaml, image, meanings, map.warnings);
+    warn_of_alpha(yaml, image, map.grid, map.warnings);
+  }
+  if (yaml.mode == MapMode::raw && yaml.negate) {
+    map.warnings.emplace_back("negate has no effect in raw mode");
+  }
+  warn_of_missing_cells(map.grid, map.warnings);
+  return map;
+}
+
+}  // namespace gridmerge

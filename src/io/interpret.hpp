@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "gridmerge/io/map_file.hpp"
+#include "image.hpp"
+#include "map_yaml.hpp"
+
+namespace gridmerge {
+
+/// The map that a picture is under the YAML's rules, which load_map documents, and what is odd about it.
+/// O(pixels).
+LoadedMap interpret(const MapYaml& yaml, const Image& image);
+
+}  // namespace gridmerge

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/io/map_file.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <new>
+#include <utility>
+
+#include "file_reader.hpp"
+#include "gridmerge/io/atomic_file.hpp"
+#include "image.hpp"
+#include "interpret.hpp"
+#include "map_yaml.hpp"
+#include "parse_error.hpp"
+#include "pgm.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+constexpr std::size_t kMagicBytes = 8;
+constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20;
+
+// No sensible image takes more: 8 bytes a pixel are RGBA of 16 bits, uncompressed.
+std::size_t max_image_bytes(const LoadOptions& options) {
+  constexpr std::size_t kBytesPerPixel = 8, kRest = std::size_t{1} << 20;
+  constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
+  return options.max_cells > (kMost - kRest) / kBytesPerPixel ? kMost
+                                                              : options.max_cells * kBytesPerPixel + kRest;
+}
+
+// Calls `parse`, and tells which file it was about when that fails.
+template <typename Parse>
+auto blaming(const std::filesystem::path& path, const Parse& parse) {
+  try {
+    return parse();
+  } catch (const ParseError& error) {
+    throw FileError(path, error.what());
+  } catch (const std::bad_alloc&) {
+    throw FileError(path, "the map needs more memory than there is");
+  }
+}
+
+Image read_image(FileReader& file, const LoadOptions& options) {
+  // What is no image, a device without end for one, is not worth reading further.
+  const std::string& head = file.read_up_to(kMagicBytes);
+  return decode_image(looks_like_image(head) ? file.read_all(max_image_bytes(options)) : head,
+                      options.max_cells);
+}
+
+LoadedMap load_bare_image(const std::filesystem::path& path, FileReader& file, const LoadOptions& options) {
+  if (options.resolution == 0.0) {
+    throw FileError(path, "an image without a YAML needs a resolution (metres a cell) to be given");
+  }
+  return blaming(path, [&] {
+    MapYaml yaml;
+    yaml.resolution = options.resolution;
+    check_resolution(yaml.resolution);
+    return interpret(yaml, read_image(file, options));
+  });
+}
+
+LoadedMap load_image_of(const MapYaml& yaml, const std::filesystem::path& yaml_path,
+                        const LoadOptions& options) {
+  const std::filesystem::path path = yaml_path.parent_path() / yaml.image;
+  try {
+    FileReader file(path);
+    return blaming(path, [&] { return interpret(yaml, read_image(file, options)); });
+  } catch (const FileError& error) {
+    throw FileError(fmt::format("{} (the image of {})", error.what(), yaml_path.string()));
+  }
+}
+
+// Pixels as map_saver writes them, top row first.
+std::vector<std::uint8_t> to_pixels(const OccupancyGrid& grid) {
+  constexpr std::uint8_t kPixels[] = {205, 254, 0};  // by Cell: unknown, free, occupied
+  std::vector<std::uint8_t> pixels;
+  pixels.reserve(grid.cells.size());
+  for (int row = grid.height - 1; row >= 0; --row) {
+    for (int column = 0; column < grid.width; ++column) {
+      pixels.push_back(kPixels[static_cast<std::size_t>(grid.at(column, row))]);
+    }
+  }
+  return pixels;
+}
+
+}  // namespace
+
+LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options) {
+  FileReader file(path);
+  if (looks_like_image(file.read_up_to(kMagicBytes))) return load_bare_image(path, file, options);
+  const MapYaml yaml = blaming(path, [&] {
+    const std::string& text = file.read_all(kMaxYamlBytes);
+    if (text.empty()) throw ParseError("the file is empty");
+    return parse_map_yaml(text);
+  });
+  return load_image_of(yaml, path, options);
+}
+
+void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path) {
+  validate(grid);
+  if (yaml_path.extension() != ".yaml" && yaml_path.extension() != ".yml") {
+    throw FileError(yaml_path, "cannot be written: a map's name must end in .yaml or .yml");
+  }
+  const std::filesystem::path image_path = std::filesystem::path(yaml_path).replace_extension(".pgm");
+  const std::string yaml_text = blaming(yaml_path, [&] {
+    MapYaml yaml;
+    yaml.image = image_path.filename().string();
+    yaml.resolution = grid.resolution;
+    yaml.origin = grid.origin;
+    return format_map_yaml(yaml);
+  });
+  StagedFile image(image_path, encode_pgm(grid.width, grid.height, to_pixels(grid)));
+  StagedFile yaml(yaml_path, yaml_text);
+  image.commit();
+  yaml.commit();
+}
+
+}  // namespace gridmerge

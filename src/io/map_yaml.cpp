@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "map_yaml.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "number.hpp"
+#include "parse_error.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+// Far beyond any map, and still far from where a double stops resolving micrometres.
+constexpr double kMaxOrigin = 1e9;
+constexpr double kMinResolution = 1e-6;
+constexpr double kMaxResolution = 1e3;
+
+constexpr std::array<const char*, 3> kModeNames{"trinary", "scale", "raw"};
+
+// A value as errors show it: the whole of it may be a megabyte.
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kShown = 60;
+  return text.size() <= kShown ? fmt::format("'{}'", text) : fmt::format("'{}...'", text.substr(0, kShown));
+}
+
+// YAML 1.1 writes its words in three ways: true, True, TRUE.
+std::string to_lower(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return text;
+}
+
+YAML::Node load_yaml(std::string_view text) {
+  try {
+    return YAML::Load(std::string(text));
+  } catch (const YAML::Exception& error) {
+    throw ParseError(fmt::format("not valid YAML: line {}: {}", error.mark.line + 1, error.msg));
+  }
+}
+
+const std::string& scalar(const YAML::Node& node, const char* key) {
+  if (!node.IsScalar()) throw ParseError(fmt::format("'{}' is not a single value", key));
+  return node.Scalar();
+}
+
+YAML::Node required(const YAML::Node& map, const char* key) {
+  const YAML::Node node = map[key];
+  if (!node.IsDefined()) throw ParseError(fmt::format("missing key '{}'", key));
+  return node;
+}
+
+double to_number(const YAML::Node& node, const char* key) {
+  const std::string& text = scalar(node, key);
+  const auto number = parse_number(text);
+  if (!number) throw ParseError(fmt::format("'{}' is {}, not a finite number", key, quoted(text)));
+  return *number;
+}
+
+std::string read_image(const YAML::Node& map) {
+  const std::string& image = scalar(required(map, "image"), "image");
+  if (image.empty()) throw ParseError("'image' is empty");
+  // The system would read the name up to there, and open another file than the one that messages show.
+  if (image.find('\0') != std::string::npos) throw ParseError("'image' holds a NUL character");
+  return image;
+}
+
+SE2 read_origin(const YAML::Node& map) {
+  const YAML::Node node = required(map, "origin");
+  if (!node.IsSequence() || node.size() != 3)
+    throw ParseError("'origin' is not a list of three numbers [x, y, yaw]");
+  const double x = to_number(node[0], "origin");
+  const double y = to_number(node[1], "origin");
+  const double yaw = to_number(node[2], "origin");
+  if (std::max(std::abs(x), std::abs(y)) > kMaxOrigin) {
+    throw ParseError(fmt::format("'origin' is further than {} m from zero", kMaxOrigin));
+  }
+  return {x, y, normalize_angle(yaw)};
+}
+
+double read_threshold(const YAML::Node& map, const char* key) {
+  const double threshold = to_number(required(map, key), key);
+  if (threshold < 0.0 || threshold > 1.0)
+    throw ParseError(fmt::format("'{}' is {}, not in 0..1", key, threshold));
+  return threshold;
+}
+
+bool read_negate(const YAML::Node& map) {
+  const std::string& text = scalar(required(map, "negate"), "negate");
+  const std::string word = to_lower(text);
+  const auto is_word = [&](const char* candidate) { return word == candidate; };
+  if (std::ranges::any_of(std::array{"1", "true", "yes", "on", "y"}, is_word)) return true;
+  if (std::ranges::any_of(std::array{"0", "false", "no", "off", "n"}, is_word)) return false;
+  throw ParseError(fmt::format("'negate' is {}, not 0, 1, true or false", quoted(text)));
+}
+
+MapMode read_mode(const YAML::Node& map) {
+  const YAML::Node node = map["mode"];
+  if (!node.IsDefined()) return MapMode::trinary;
+  const std::string& text = scalar(node, "mode");
+  const auto found = std::ranges::find(kModeNames, to_lower(text));
+  if (found == kModeNames.end())
+    throw ParseError(fmt::format("'mode' is {}, not trinary, scale or raw", quoted(text)));
+  return static_cast<MapMode>(found - kModeNames.begin());
+}
+
+}  // namespace
+
+MapYaml parse_map_yaml(std::string_view text) {
+  const YAML::Node document = load_yaml(text);
+  if (!document.IsMap()) throw ParseError("not a YAML map of keys and values");
+  MapYaml map;
+  map.image = read_image(document);
+  map.resolution = to_number(required(document, "resolution"), "resolution");
+  check_resolution(map.resolution);
+  map.origin = read_origin(document);
+  map.occupied_thresh = read_threshold(document, "occupied_thresh");
+  map.free_thresh = read_threshold(document, "free_thresh");
+  if (map.free_thresh > map.occupied_thresh) {
+    throw ParseError(
+        fmt::format("'free_thresh' {} is above 'occupied_thresh' {}", map.free_thresh, map.occupied_thresh));
+  }
+  map.negate = read_negate(document);
+  map.mode = read_mode(document);
+  return map;
+}
+
+std::string format_map_yaml(const MapYaml& map) {
+  YAML::Emitter image;  // for its quoting: names may hold anything
+  image << map.image;
+  std::string text = fmt::format(
+      "image: {}\nmode: {}\nresolution: {}\norigin: [{}, {}, {}]\nnegate: {}\noccupied_thresh: "
+      "{}\nfree_thresh: {}\n",
+      image.c_str(), kModeNames[static_cast<std::size_t>(map.mode)], format_number(map.resolution),
+      format_number(map.origin.x), format_number(map.origin.y), format_number(map.origin.theta),
+      map.negate ? 1 : 0, format_number(map.occupied_thresh), format_number(map.free_thresh));
+  if (!image.good() || parse_map_yaml(text).image != map.image) {
+    throw ParseError("the image's name cannot be written in YAML");
+  }
+  return text;
+}
+
+void check_resolution(double resolution) {
+  if (!(resolution >= kMinResolution && resolution <= kMaxResolution)) {
+    throw ParseError(fmt::format("the resolution {} is not in {}..{} metres a cell", resolution,
+                                 kMinResolution, kMaxResolution));
+  }
+}
+
+}  // namespace gridmerge
