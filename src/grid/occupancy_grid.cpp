@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/grid/occupancy_grid.hpp"
 
-#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -18,7 +17,7 @@ OccupancyGrid make_grid(int width, int height, double resolution, const SE2& ori
 }
 
 CellCounts count_cells(const OccupancyGrid& grid) {
-  std::array<std::size_t, 3> counts{};
+  std::size_t counts[3] = {0, 0, 0};
   for (const Cell cell : grid.cells) ++counts[static_cast<std::size_t>(cell)];
   return {counts[0], counts[1], counts[2]};
 }
