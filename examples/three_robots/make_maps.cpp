@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws the example: three robots' maps of one office floor, a map of another building, and the truth about
 // them.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

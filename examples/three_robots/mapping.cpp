@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <stdexcept>
+#include <string>
 
 #include "gridmerge/grid/resample.hpp"
 
@@ -233,8 +237,7 @@ Pose relative_to(const Pose& frame, const Pose& pose) {
   return {turned(pose.position - frame.position, back), turned(pose.heading, back)};
 }
 
-/// One scan taken at `pose` and drawn where the robot believes it was taken. Both in the robot's frame or the
-/// building's, as named.
+/// One scan: taken at a pose of the building, drawn where the robot believes itself to be in its own map.
 void add_scan(LogOddsMap& map, const Building& building, const Pose& pose_in_building,
               const Pose& believed_in_map, Chance& chance) {
   static const std::vector<Point2> beams = beam_directions();
