@@ -42,12 +42,12 @@ def evaluate(build: pathlib.Path, folder: pathlib.Path, result_file: pathlib.Pat
 
 
 def tiers(folder: pathlib.Path, result: dict) -> dict[str, list[dict]]:
-    """The cases of the pairs file by tier, as the file orders them."""
-    with open(folder / "pairs.tsv", newline="") as file:
-        rows = list(csv.DictReader(file, delimiter="\t"))
+    """The cases of the true pairs by tier."""
+    cases = {(case["fixed"], case["moving"]): case for case in result["cases"]}
     by_tier: dict[str, list[dict]] = {}
-    for row, case in zip(rows, result["cases"]):
-        by_tier.setdefault(row["tier"], []).append(case)
+    with open(folder / "pairs.tsv", newline="") as file:
+        for row in csv.DictReader(file, delimiter="\t"):
+            by_tier.setdefault(row["tier"], []).append(cases[row["fixed"], row["moving"]])
     return by_tier
 
 
