@@ -1,12 +1,158 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/match/match.hpp"
 
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <tuple>
+
+#include "gridmerge/grid/resample.hpp"
+#include "gridmerge/match/refine.hpp"
+#include "gridmerge/match/verdict.hpp"
+#include "gridmerge/search/exhaustive.hpp"
+#include "gridmerge/similarity/agreement.hpp"
+#include "gridmerge/similarity/wall_map.hpp"
+
 namespace gridmerge {
 
-MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions&) {
+namespace {
+
+/// Larger maps are compared in larger cells, so that time and memory stay bounded.
+constexpr double kMaxCellsAlongSide = 800.0;
+/// Poses nearer than this share of the larger map's side, and never less than kMinDistinct, are one
+/// hypothesis.
+constexpr double kDistinctShare = 0.03;
+constexpr double kMinDistinct = 10.0;  // cells
+
+double longer_side(const OccupancyGrid& grid) {
+  return std::max(grid.width, grid.height) * grid.resolution;
+}
+
+/// The coarser map's resolution, or the multiple of it that keeps both maps within kMaxCellsAlongSide.
+double working_cell(const OccupancyGrid& a, const OccupancyGrid& b) {
+  const double resolution = std::max(a.resolution, b.resolution);
+  const double side = std::max(longer_side(a), longer_side(b)) / resolution;
+  return resolution * std::max(1.0, std::ceil(side / kMaxCellsAlongSide));
+}
+
+/// Whether `a` should be searched as the moving map: the one with fewer known cells, so that its walls have
+/// the best chance to be met in the other. Any further difference breaks ties, so that the answer does not
+/// depend on which map the caller called fixed.
+bool is_smaller(const OccupancyGrid& a, const OccupancyGrid& b) {
+  const auto key = [](const OccupancyGrid& grid) {
+    const CellCounts counts = count_cells(grid);
+    return std::tuple(static_cast<double>(counts.known()) * grid.resolution * grid.resolution,
+                      counts.occupied, grid.width, grid.height);
+  };
+  const auto key_a = key(a);
+  const auto key_b = key(b);
+  return key_a != key_b ? key_a < key_b : a.cells < b.cells;
+}
+
+/// A hypothesis between map frames, from one between grid frames in cells.
+SE2 to_map_frames(const SE2& T_cells, const WallMap& fixed, const WallMap& moving) {
+  const SE2 T_metres{T_cells.x * fixed.cell, T_cells.y * fixed.cell, T_cells.theta};
+  return fixed.T_map_grid * T_metres * inverse(moving.T_map_grid);
+}
+
+void report(const MatchOptions& options, double share) {
+  if (options.progress) options.progress(share);
+}
+
+/// `moving` is the map that is_smaller() picked.
+std::vector<Hypothesis> find_hypotheses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                        const MatchOptions& options) {
+  const double cell = working_cell(fixed, moving);
+  const WallMap fixed_walls = make_wall_map(fixed, cell);
+  const WallMap moving_walls = make_wall_map(moving, cell);
+  report(options, 0.1);
+
+  const ExhaustiveSearchOptions search;
+  const std::vector<PoseCandidate> candidates = search_all_poses(fixed_walls, moving_walls, search);
+  report(options, 0.5);
+
+  RefineOptions refinement;
+  refinement.coarse_cell = search.coarse_factor;
+  refinement.distinct =
+      std::max(kMinDistinct, kDistinctShare * std::max(longer_side(fixed), longer_side(moving)) / cell);
+  refinement.max_poses = std::max<std::size_t>(2, options.max_hypotheses);  // the verdict needs the runner-up
+  const std::vector<ScoredPose> poses = refine(fixed_walls, moving_walls, candidates, refinement,
+                                               [&](double share) { report(options, 0.5 + 0.45 * share); });
+  std::vector<Hypothesis> hypotheses;
+  for (const ScoredPose& pose : poses) {
+    if (pose.evidence.score <= 0.0) break;  // speaks against its own pose
+    hypotheses.push_back(
+        {to_map_frames(pose.T_fixed_moving, fixed_walls, moving_walls), pose.evidence.score, 0.0});
+  }
+  return hypotheses;
+}
+
+/// The best hypothesis has the verdict's probability; the others share the rest in proportion to their
+/// scores.
+void assign_probabilities(std::vector<Hypothesis>& hypotheses) {
+  if (hypotheses.empty()) return;
+  std::vector<double> scores;
+  for (const Hypothesis& hypothesis : hypotheses) scores.push_back(hypothesis.score);
+  const double best = probability_of(make_verdict_features(scores));
+  double others = 0.0;
+  for (std::size_t i = 1; i < hypotheses.size(); ++i) others += hypotheses[i].score;
+  hypotheses[0].probability = best;
+  // A runner-up is never called likelier than the best.
+  for (std::size_t i = 1; i < hypotheses.size(); ++i) {
+    hypotheses[i].probability = std::min(best, (1.0 - best) * hypotheses[i].score / others);
+  }
+}
+
+MatchResult match_in_arena(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                           const MatchOptions& options) {
+  const OccupancyGrid fixed_known = crop_to_known(fixed);
+  const OccupancyGrid moving_known = crop_to_known(moving);
+  const bool swapped = is_smaller(fixed_known, moving_known);
+  const OccupancyGrid& larger = swapped ? moving_known : fixed_known;
+  const OccupancyGrid& smaller = swapped ? fixed_known : moving_known;
+
+  MatchResult result;
+  result.hypotheses = find_hypotheses(larger, smaller, options);
+  if (result.hypotheses.empty()) return result;
+  assign_probabilities(result.hypotheses);
+
+  const Agreement agreement = measure_agreement(larger, smaller, result.hypotheses.front().T_fixed_moving);
+  result.acceptance_index = agreement.acceptance_index();
+  result.agreement = agreement.agreement;
+  result.disagreement = agreement.disagreement;
+  result.overlap = agreement.overlap;
+
+  if (swapped) {
+    for (Hypothesis& hypothesis : result.hypotheses)
+      hypothesis.T_fixed_moving = inverse(hypothesis.T_fixed_moving);
+  }
+  const Hypothesis& best = result.hypotheses.front();
+  result.T_fixed_moving = best.T_fixed_moving;
+  result.probability = best.probability;
+  result.verdict = best.probability >= options.accept_probability ? Verdict::accepted : Verdict::refused;
+  if (result.hypotheses.size() > options.max_hypotheses) result.hypotheses.resize(options.max_hypotheses);
+  return result;
+}
+
+}  // namespace
+
+MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options) {
   validate(fixed);
   validate(moving);
-  return {};
+  if (options.threads < 0) throw std::invalid_argument("threads must not be negative");
+  if (!(options.accept_probability >= 0.0 && options.accept_probability <= 1.0)) {
+    throw std::invalid_argument("accept_probability must lie in [0, 1]");
+  }
+
+  const auto start = std::chrono::steady_clock::now();
+  tbb::task_arena arena(options.threads == 0 ? tbb::task_arena::automatic : options.threads);
+  MatchResult result = arena.execute([&] { return match_in_arena(fixed, moving, options); });
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report(options, 1.0);
+  return result;
 }
 
 }  // namespace gridmerge

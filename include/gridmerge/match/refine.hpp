@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "gridmerge/search/exhaustive.hpp"
+#include "gridmerge/similarity/evidence.hpp"
+
+namespace gridmerge {
+
+/// Measures how far apart two poses put the moving map.
+struct PoseMetric {
+  Point2 pivot;         ///< centroid of the moving map's walls [cells, grid frame]
+  double radius = 1.0;  ///< root mean square distance of the walls from the pivot [cells], at least 1
+
+  /// Root mean square displacement of the moving map's walls between two poses [cells].
+  double displacement(const SE2& a, const SE2& b) const;
+
+  /// `pose` shifted by (dx, dy) [cells] and turned by `turn` [rad] about the pivot.
+  SE2 moved(const SE2& pose, double dx, double dy, double turn) const;
+};
+
+/// O(walls).
+PoseMetric make_pose_metric(const WallMap& moving);
+
+/// A pose between grid frames [cells] and what speaks for it.
+struct ScoredPose {
+  SE2 T_fixed_moving;
+  Evidence evidence;
+};
+
+struct RefineOptions {
+  double distinct = 20.0;      ///< poses displaced by less than this are one hypothesis [cells]
+  double coarse_cell = 4.0;    ///< spacing of the candidates [cells]
+  std::size_t max_poses = 10;  ///< how many distinct poses are returned
+};
+
+/// Climbs from the candidates to the local maxima of the evidence, in rounds: few points and many candidates
+/// first, all points and few candidates last, with steps from half a coarse cell down to a quarter of a cell.
+/// Returns distinct poses, best first. `progress` is called with shares of the work in [0, 1]. Deterministic;
+/// runs in the calling TBB arena.
+std::vector<ScoredPose> refine(const WallMap& fixed, const WallMap& moving,
+                               const std::vector<PoseCandidate>& candidates, const RefineOptions& options,
+                               const std::function<void(double)>& progress = {});
+
+}  // namespace gridmerge

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "gridmerge/similarity/wall_map.hpp"
+
+namespace gridmerge {
+
+/// How two maps of one place differ: a wall point of one lies off the other's wall by a normal error, or,
+/// with probability `outliers`, anywhere (a moved chair, a bend, a wall that one of them never saw).
+struct ErrorModel {
+  double sigma = 1.0;     ///< standard deviation of the error [cells]
+  double outliers = 0.1;  ///< share in (0, 1)
+};
+
+/// The models that a comparison chooses among, tight (laser maps from good SLAM) to wide (bent, hand-held
+/// maps); sigma does not fall along the list.
+inline constexpr std::size_t kErrorModels = 42;
+std::span<const ErrorModel, kErrorModels> error_models();
+
+/// A score [nats] for each of error_models().
+using ModelScores = std::array<float, kErrorModels>;
+
+/// Log-likelihood ratio [nats] of meeting a wall at each distance, "same place" against "unrelated":
+///   log((1 - outliers) * P(distance | sigma) / P(distance | background) + outliers),
+/// and 0 for kUnseen.
+std::array<float, kDistanceBins + 1> evidence_table(const ErrorModel& model,
+                                                    const std::array<double, kDistanceBins>& background);
+
+/// The score of a pose, and the error model under which it is best.
+struct Evidence {
+  double score = 0.0;  ///< log-likelihood ratio "same place" against "unrelated" [nats]
+  ErrorModel model;
+  double seen_walls = 0.0;  ///< wall points of either map that lie where the other one has seen
+};
+
+/// Scores poses of one pair of maps. Every wall point of each map is looked up in the other's distance map;
+/// the pose is judged by the error model that explains the distances best (maximum likelihood), so one scale
+/// serves clean maps and bent ones.
+class WallEvidence {
+ public:
+  /// Both maps must have cells of the same size and outlive this object. Uses at most `max_points` wall
+  /// points of each map, evenly drawn, each standing for its share of the walls.
+  WallEvidence(const WallMap& fixed, const WallMap& moving, std::size_t max_points);
+
+  /// Evidence for a pose between the grid frames, in cells. Only models of sigma >= min_sigma [cells] are
+  /// tried. O(points + models * bins).
+  Evidence operator()(const SE2& T_fixed_moving_cells, double min_sigma = 0.0) const;
+
+ private:
+  const WallMap& fixed_;
+  const WallMap& moving_;
+  std::vector<Point2> fixed_walls_;
+  std::vector<Point2> moving_walls_;
+  float fixed_weight_;                       // walls that a fixed point stands for
+  float moving_weight_;                      // walls that a moving point stands for
+  std::vector<ModelScores> nats_in_fixed_;   // by distance bin: a moving wall met in the fixed map
+  std::vector<ModelScores> nats_in_moving_;  // by distance bin: a fixed wall met in the moving map
+};
+
+/// At most `count` of the points, evenly spaced along the list.
+std::vector<Point2> draw_evenly(const std::vector<Point2>& points, std::size_t count);
+
+}  // namespace gridmerge

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/match/refine.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace gridmerge {
+
+namespace {
+
+/// One pass over the surviving poses.
+struct Round {
+  std::size_t points;  // wall points of each map that are looked at
+  std::size_t poses;   // how many of the best poses are climbed from
+  double first_step;   // [coarse cells]
+  double last_step;    // [cells]
+  double min_sigma;    // [coarse cells]
+  double distinct;     // poses nearer than this afterwards are one [cells]
+};
+
+/// Best first. The sort is stable, so equal scores keep the order of the search and the result is
+/// deterministic.
+void sort_by_score(std::vector<ScoredPose>& poses) {
+  std::stable_sort(poses.begin(), poses.end(), [](const ScoredPose& a, const ScoredPose& b) {
+    return a.evidence.score > b.evidence.score;
+  });
+}
+
+std::vector<ScoredPose> keep_distinct(std::vector<ScoredPose> poses, const PoseMetric& metric,
+                                      double distinct, std::size_t max_count) {
+  sort_by_score(poses);
+  if (distinct <= 0.0) return poses;
+  std::vector<ScoredPose> kept;
+  for (const ScoredPose& pose : poses) {
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const ScoredPose& other) {
+      return metric.displacement(pose.T_fixed_moving, other.T_fixed_moving) < distinct;
+    });
+    if (is_new) kept.push_back(pose);
+    if (kept.size() == max_count) break;
+  }
+  return kept;
+}
+
+/// Steepest ascent over steps of +-x, +-y and +-rotation; the step is halved whenever none of them helps.
+ScoredPose climb(const WallEvidence& evidence, const PoseMetric& metric, const SE2& start, double first_step,
+                 double last_step, double min_sigma) {
+  constexpr int kMaxMoves = 20;  // a step; far more than a climb between neighbouring candidates takes
+  constexpr std::array<std::array<double, 3>, 6> kMoves{
+      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+  ScoredPose best{start, evidence(start, min_sigma)};
+  for (double step = first_step; step >= last_step; step /= 2.0) {
+    for (int i = 0; i < kMaxMoves; ++i) {
+      const SE2 from = best.T_fixed_moving;
+      bool improved = false;
+      for (const auto& move : kMoves) {
+        const SE2 pose = metric.moved(from, step * move[0], step * move[1], step * move[2] / metric.radius);
+        const Evidence found = evidence(pose, min_sigma);
+        if (found.score > best.evidence.score) {
+          best = {pose, found};
+          improved = true;
+        }
+      }
+      if (!improved) break;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+double PoseMetric::displacement(const SE2& a, const SE2& b) const {
+  const Point2 at_a = a * pivot;
+  const Point2 at_b = b * pivot;
+  const double dx = at_a.x - at_b.x;
+  const double dy = at_a.y - at_b.y;
+  return std::sqrt(dx * dx + dy * dy + 2.0 * (1.0 - std::cos(a.theta - b.theta)) * radius * radius);
+}
+
+SE2 PoseMetric::moved(const SE2& pose, double dx, double dy, double turn) const {
+  const Point2 before = pose * pivot;
+  const SE2 turned{0.0, 0.0, normalize_angle(pose.theta + turn)};
+  const Point2 after = turned * pivot;
+  return {before.x + dx - after.x, before.y + dy - after.y, turned.theta};
+}
+
+PoseMetric make_pose_metric(const WallMap& moving) {
+  PoseMetric metric;
+  if (moving.walls.empty()) return metric;
+  for (const Point2& wall : moving.walls) {
+    metric.pivot.x += wall.x;
+    metric.pivot.y += wall.y;
+  }
+  const double count = static_cast<double>(moving.walls.size());
+  metric.pivot.x /= count;
+  metric.pivot.y /= count;
+  double sum = 0.0;
+  for (const Point2& wall : moving.walls) {
+    const double dx = wall.x - metric.pivot.x;
+    const double dy = wall.y - metric.pivot.y;
+    sum += dx * dx + dy * dy;
+  }
+  metric.radius = std::max(1.0, std::sqrt(sum / count));
+  return metric;
+}
+
+std::vector<ScoredPose> refine(const WallMap& fixed, const WallMap& moving,
+                               const std::vector<PoseCandidate>& candidates, const RefineOptions& options,
+                               const std::function<void(double)>& progress) {
+  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  const double coarse = options.coarse_cell;
+  const std::array<Round, 4> rounds{{
+      {250, kAll, 0.0, 1.0, 0.35, 0.0},                   // score only
+      {250, 300, 0.5, coarse / 4.0, 0.35, coarse / 4.0},  // into the basin
+      {500, 60, 0.25, 1.0, 0.0, coarse / 2.0},            // the error model settles
+      {2000, 2 * options.max_poses, 0.25, 0.25, 0.0, options.distinct},
+  }};
+
+  const PoseMetric metric = make_pose_metric(moving);
+  std::vector<ScoredPose> poses;
+  poses.reserve(candidates.size());
+  for (const PoseCandidate& candidate : candidates) poses.push_back({candidate.T_fixed_moving, {}});
+
+  for (std::size_t r = 0; r < rounds.size(); ++r) {
+    const Round& round = rounds[r];
+    const WallEvidence evidence(fixed, moving, round.points);
+    poses.resize(std::min(poses.size(), round.poses));
+    tbb::parallel_for(std::size_t{0}, poses.size(), [&](std::size_t i) {
+      poses[i] = climb(evidence, metric, poses[i].T_fixed_moving, round.first_step * coarse, round.last_step,
+                       round.min_sigma * coarse);
+    });
+    poses = keep_distinct(std::move(poses), metric, round.distinct, kAll);
+    if (progress) progress(static_cast<double>(r + 1) / rounds.size());
+  }
+  if (poses.size() > options.max_poses) poses.resize(options.max_poses);
+
+  const WallEvidence all_points(fixed, moving, kAll);
+  for (ScoredPose& pose : poses) pose.evidence = all_points(pose.T_fixed_moving);
+  sort_by_score(poses);
+  return poses;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/search/exhaustive.hpp"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <tuple>
+#include <unordered_map>
+
+#include "correlate.hpp"
+#include "gridmerge/similarity/evidence.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+constexpr double kScale = 16.0;       // score units a nat
+constexpr double kMaxEvidence = 8.0;  // nats that one wall point may count, for 16-bit sums
+constexpr std::size_t kPeaksPerRotation = 96;
+constexpr int kPeakFloor = 4;  // peaks below the best of their rotation by this factor are dropped
+constexpr int kApart = 2;      // candidates nearer than this in x, y and rotation are one
+static_assert(kMaxSearchSamples * kMaxEvidence * kScale < 32767.0);
+
+/// A local maximum of the score, in steps of the search.
+struct Peak {
+  int rotation;
+  int x;
+  int y;
+  int score;
+
+  /// Best first; the rest of the order only has to be total, so that it does not depend on threads.
+  friend bool operator<(const Peak& a, const Peak& b) {
+    return std::tuple(-a.score, a.rotation, a.y, a.x) < std::tuple(-b.score, b.rotation, b.y, b.x);
+  }
+};
+
+/// The frame of the search: the moving map turns about its centre inside a square box of coarse cells, and
+/// the box slides over the fixed map from one touch to the last.
+struct SearchFrame {
+  double factor;  // cells to a coarse cell
+  int rotations;
+  Point2 centre;    // of the moving map [cells]
+  int box;          // side of the box [coarse cells]
+  int fixed_width;  // of the fixed map [coarse cells]
+  int fixed_height;
+
+  double angle(int rotation) const { return normalize_angle(2.0 * std::numbers::pi * rotation / rotations); }
+
+  /// Grid frames, cells.
+  SE2 pose(const Peak& peak) const {
+    const SE2 rotate{0.0, 0.0, angle(peak.rotation)};
+    const Point2 turned = rotate * centre;
+    return {(peak.x - 0.5 * box) * factor - turned.x, (peak.y - 0.5 * box) * factor - turned.y, rotate.theta};
+  }
+};
+
+SearchFrame make_frame(const WallMap& fixed, const WallMap& moving, const ExhaustiveSearchOptions& options) {
+  const double factor = options.coarse_factor;
+  const auto coarse = [&](double cells) { return static_cast<int>(std::ceil(cells / factor)); };
+  SearchFrame frame{factor, options.rotations,   {0.5 * moving.width, 0.5 * moving.height},
+                    0,      coarse(fixed.width), coarse(fixed.height)};
+  frame.box = coarse(std::hypot(moving.width, moving.height)) + 2;
+  return frame;
+}
+
+/// The evidence of a wall in each coarse cell of the fixed map, with a rim of zeros on all sides for every
+/// shift of the box, so that the kernel needs no bounds checks.
+ScoreImage make_score_image(const WallMap& fixed, const SearchFrame& frame,
+                            const ExhaustiveSearchOptions& options) {
+  const auto table = evidence_table({options.sigma, options.outliers}, fixed.background);
+  std::vector<float> sums(static_cast<std::size_t>(frame.fixed_width) * frame.fixed_height, 0.0F);
+  for (int y = 0; y < fixed.height; ++y) {
+    const std::size_t line = static_cast<std::size_t>(y / options.coarse_factor) * frame.fixed_width;
+    for (int x = 0; x < fixed.width; ++x) {
+      sums[line + x / options.coarse_factor] +=
+          table[fixed.distance[static_cast<std::size_t>(y) * fixed.width + x]];
+    }
+  }
+
+  ScoreImage image;
+  image.width = frame.fixed_width + 2 * frame.box + kCorrelateBlock;
+  image.height = frame.fixed_height + 2 * frame.box;
+  image.values.assign(static_cast<std::size_t>(image.width) * image.height, 0);
+  const double cells = static_cast<double>(options.coarse_factor) * options.coarse_factor;
+  for (int y = 0; y < frame.fixed_height; ++y) {
+    for (int x = 0; x < frame.fixed_width; ++x) {
+      const double mean = sums[static_cast<std::size_t>(y) * frame.fixed_width + x] / cells;
+      image.values[static_cast<std::size_t>(y + frame.box) * image.width + x + frame.box] =
+          static_cast<std::int16_t>(std::lround(kScale * std::clamp(mean, -kMaxEvidence, kMaxEvidence)));
+    }
+  }
+  return image;
+}
+
+/// The turned wall points in the box, and the shifts at which their bounding box touches the fixed map.
+struct TurnedWalls {
+  std::vector<std::int32_t> offsets;  // into the score image
+  int first_x = 0;                    // shifts, with one more on each side, where the score is 0
+  int first_y = 0;
+  int shifts_x = 0;
+  int shifts_y = 0;
+};
+
+TurnedWalls turn_walls(const std::vector<Point2>& walls, const SearchFrame& frame, int rotation,
+                       int image_width) {
+  const double angle = frame.angle(rotation);
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  TurnedWalls turned;
+  turned.offsets.reserve(walls.size());
+  int left = frame.box, right = 0, bottom = frame.box, top = 0;
+  for (const Point2& wall : walls) {
+    const double x = wall.x - frame.centre.x;
+    const double y = wall.y - frame.centre.y;
+    const int column = static_cast<int>(std::floor((c * x - s * y) / frame.factor + 0.5 * frame.box));
+    const int row = static_cast<int>(std::floor((s * x + c * y) / frame.factor + 0.5 * frame.box));
+    turned.offsets.push_back(row * image_width + column);
+    left = std::min(left, column);
+    right = std::max(right, column);
+    bottom = std::min(bottom, row);
+    top = std::max(top, row);
+  }
+  turned.first_x = frame.box - right - 1;
+  turned.first_y = frame.box - top - 1;
+  turned.shifts_x = frame.fixed_width + right - left + 2;
+  turned.shifts_y = frame.fixed_height + top - bottom + 2;
+  return turned;
+}
+
+/// The best local maxima (of 3 x 3 shifts) of one rotation. On a plateau the last cell in reading order
+/// stands for all.
+std::vector<Peak> find_peaks(const ScoreImage& scores, const TurnedWalls& turned, int rotation) {
+  const int width = scores.width;
+  int best = 0;
+  for (int y = 0; y < turned.shifts_y; ++y) {  // without the columns that only fill up a block
+    const auto row = scores.values.begin() + static_cast<std::ptrdiff_t>(y) * width;
+    best = std::max<int>(best, *std::max_element(row, row + turned.shifts_x));
+  }
+  const int floor = best / kPeakFloor;
+  std::vector<Peak> peaks;
+  for (int y = 1; y + 1 < turned.shifts_y; ++y) {
+    for (int x = 1; x + 1 < turned.shifts_x; ++x) {
+      const std::int16_t* at = scores.values.data() + static_cast<std::size_t>(y) * width + x;
+      const int score = *at;
+      if (score > floor && score >= at[-1] && score > at[1] && score >= at[-width - 1] &&
+          score >= at[-width] && score >= at[-width + 1] && score > at[width - 1] && score > at[width] &&
+          score > at[width + 1]) {
+        peaks.push_back({rotation, turned.first_x + x, turned.first_y + y, score});
+      }
+    }
+  }
+  if (peaks.size() > kPeaksPerRotation) {
+    std::nth_element(peaks.begin(), peaks.begin() + kPeaksPerRotation, peaks.end());
+    peaks.resize(kPeaksPerRotation);
+  }
+  return peaks;
+}
+
+/// Drops, best first, every peak that has a better one next to it.
+std::vector<Peak> keep_distinct(std::vector<Peak> peaks, int rotations, std::size_t max_count) {
+  std::sort(peaks.begin(), peaks.end());
+  const auto bucket = [](int x, int y) {
+    return (static_cast<std::int64_t>(x) << 32) ^ static_cast<std::uint32_t>(y);
+  };
+  constexpr int kBucket = kApart + 1;
+  std::unordered_map<std::int64_t, std::vector<Peak>> kept_near;
+  std::vector<Peak> kept;
+  for (const Peak& peak : peaks) {
+    const int bx = peak.x / kBucket;
+    const int by = peak.y / kBucket;
+    const auto is_near = [&](const Peak& other) {
+      const int turn = std::abs(other.rotation - peak.rotation);
+      return std::min(turn, rotations - turn) <= kApart && std::abs(other.x - peak.x) <= kApart &&
+             std::abs(other.y - peak.y) <= kApart;
+    };
+    bool distinct = true;
+    for (int dx = -1; dx <= 1 && distinct; ++dx) {
+      for (int dy = -1; dy <= 1 && distinct; ++dy) {
+        const auto found = kept_near.find(bucket(bx + dx, by + dy));
+        if (found != kept_near.end())
+          distinct = std::none_of(found->second.begin(), found->second.end(), is_near);
+      }
+    }
+    if (!distinct) continue;
+    kept_near[bucket(bx, by)].push_back(peak);
+    kept.push_back(peak);
+    if (kept.size() == max_count) break;
+  }
+  return kept;
+}
+
+void check(const WallMap& fixed, const WallMap& moving, const ExhaustiveSearchOptions& options) {
+  if (fixed.cell != moving.cell) throw std::invalid_argument("both wall maps must have cells of one size");
+  if (options.coarse_factor < 1) throw std::invalid_argument("coarse_factor must be at least 1");
+  if (options.rotations < 1) throw std::invalid_argument("rotations must be at least 1");
+  if (options.samples > kMaxSearchSamples) throw std::invalid_argument("samples must be at most 240");
+  if (!(options.sigma > 0.0)) throw std::invalid_argument("sigma must be positive");
+  if (!(options.outliers > 0.0 && options.outliers < 1.0))
+    throw std::invalid_argument("outliers must lie in (0, 1)");
+}
+
+}  // namespace
+
+std::vector<PoseCandidate> search_all_poses(const WallMap& fixed, const WallMap& moving,
+                                            const ExhaustiveSearchOptions& options) {
+  check(fixed, moving, options);
+  const SearchFrame frame = make_frame(fixed, moving, options);
+  const ScoreImage evidence = make_score_image(fixed, frame, options);
+  const std::vector<Point2> walls = draw_evenly(moving.walls, options.samples);
+
+  if (walls.empty()) return {};
+
+  tbb::enumerable_thread_specific<ScoreImage> scratch;
+  std::vector<std::vector<Peak>> peaks(options.rotations);
+  tbb::parallel_for(0, options.rotations, [&](int rotation) {
+    const TurnedWalls turned = turn_walls(walls, frame, rotation, evidence.width);
+    ScoreImage& scores = scratch.local();
+    scores.width = (turned.shifts_x + kCorrelateBlock - 1) / kCorrelateBlock * kCorrelateBlock;
+    scores.height = turned.shifts_y;
+    scores.values.resize(static_cast<std::size_t>(scores.width) * scores.height);
+    const std::size_t first = static_cast<std::size_t>(turned.first_y) * evidence.width + turned.first_x;
+    correlate(evidence, first, turned.offsets, scores);
+    peaks[rotation] = find_peaks(scores, turned, rotation);
+  });
+
+  std::vector<Peak> all;
+  for (const std::vector<Peak>& some : peaks) all.insert(all.end(), some.begin(), some.end());
+  std::vector<PoseCandidate> candidates;
+  for (const Peak& peak : keep_distinct(std::move(all), options.rotations, options.max_candidates)) {
+    candidates.push_back({frame.pose(peak), peak.score});
+  }
+  return candidates;
+}
+
+}  // namespace gridmerge

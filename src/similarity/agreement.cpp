@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/similarity/agreement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gridmerge {
+
+Agreement measure_agreement(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                            const SE2& T_fixed_moving) {
+  const SE2 T_fixedgrid_movinggrid = inverse(fixed.origin) * T_fixed_moving * moving.origin;
+  const double scale = moving.resolution / fixed.resolution;
+  const double step_x = std::cos(T_fixedgrid_movinggrid.theta) * scale;
+  const double step_y = std::sin(T_fixedgrid_movinggrid.theta) * scale;
+
+  Agreement result;
+  for (int row = 0; row < moving.height; ++row) {
+    const double row_x = T_fixedgrid_movinggrid.x / fixed.resolution - step_y * (row + 0.5);
+    const double row_y = T_fixedgrid_movinggrid.y / fixed.resolution + step_x * (row + 0.5);
+    for (int column = 0; column < moving.width; ++column) {
+      const Cell ours = moving.at(column, row);
+      if (ours == Cell::unknown) continue;
+      const double x = row_x + step_x * (column + 0.5);
+      const double y = row_y + step_y * (column + 0.5);
+      if (!(x >= 0.0 && y >= 0.0 && x < fixed.width && y < fixed.height)) continue;
+      const Cell theirs = fixed.at(static_cast<int>(x), static_cast<int>(y));
+      if (theirs == Cell::unknown) continue;
+      ++(ours == theirs ? result.agreement : result.disagreement);
+    }
+  }
+
+  const double both_area =
+      static_cast<double>(result.agreement + result.disagreement) * moving.resolution * moving.resolution;
+  const double smaller_area =
+      std::min(static_cast<double>(count_cells(fixed).known()) * fixed.resolution * fixed.resolution,
+               static_cast<double>(count_cells(moving).known()) * moving.resolution * moving.resolution);
+  result.overlap = smaller_area > 0.0 ? std::min(1.0, both_area / smaller_area) : 0.0;
+  return result;
+}
+
+}  // namespace gridmerge
