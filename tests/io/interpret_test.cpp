@@ -88,6 +88,12 @@ TEST(Trinary, WarnsOfUnknownThatLoadsAsFree) {
   EXPECT_EQ(interpret(yaml, row_of({0, 204, 254})).warnings, Warnings{});
 }
 
+TEST(Trinary, UnknownGrayThatIsTransparentIsUnknownIndeed) {
+  MapYaml yaml = yaml_of();
+  yaml.free_thresh = 0.25;
+  EXPECT_EQ(interpret(yaml, row_of({0, 205, 254}, {255, 0, 255})).warnings, Warnings{});
+}
+
 TEST(Trinary, WarnsOfUnknownThatLoadsAsOccupied) {
   MapYaml yaml = yaml_of();
   yaml.negate = true;
@@ -119,7 +125,8 @@ TEST(Trinary, WarnsWhereNav2WouldAverageAlpha) {
   EXPECT_EQ(map.grid.cells, (Cells{kOccupied, kFree, kUnknown, kUnknown, kUnknown}));
   ASSERT_EQ(map.warnings.size(), 1u);
   EXPECT_TRUE(contains(map.warnings[0], "2 pixels load otherwise in nav2"));
-  EXPECT_EQ(interpret(yaml_of(), row_of({0, 254}, {255, 255})).warnings, Warnings{});
+  const Image two_rows{.width = 1, .height = 2, .white = 255, .lightness = {0, 254}, .alpha = {255, 255}};
+  EXPECT_EQ(interpret(yaml_of(), two_rows).warnings, Warnings{});
 }
 
 TEST(Scale, StretchesOccupancyBetweenTheThresholds) {

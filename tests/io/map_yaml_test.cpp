@@ -198,6 +198,16 @@ RC_GTEST_PROP(MapYaml, ReadsWhatItWrites, ()) {
   RC_ASSERT(read.mode == map.mode);
 }
 
+TEST(MapYaml, QuotesNamesThatNeedIt) {
+  for (const char* name :
+       {"\r", " a", "a ", "a: b", "a #b", "#a", "- a", "-", "[a]", "'a'", "\"a\"", "~", "Küche"}) {
+    MapYaml map;
+    map.resolution = 0.05;
+    map.image = name;
+    EXPECT_EQ(parse_map_yaml(format_map_yaml(map)).image, name);
+  }
+}
+
 TEST(MapYaml, RefusesToWriteANameThatYamlCannotHold) {
   MapYaml map;
   map.resolution = 0.05;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <limits>
 #include <ostream>
 #include <string>
 
@@ -138,6 +139,13 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Pgm, TakesAsManyPixelsAsTheLimitAllows) {
   EXPECT_NO_THROW(decode_pgm("P2 2 2 9 1 2 3 4", 4));
   EXPECT_THROW(decode_pgm("P2 2 2 9 1 2 3 4", 3), ParseError);
+}
+
+TEST(Pgm, TakesNoSideThatAnIntCannotHold) {
+  const auto decode_unlimited = [] {
+    decode_pgm("P5 2147483648 1 255\n", std::numeric_limits<std::size_t>::max());
+  };
+  EXPECT_TRUE(contains(test::message_of<ParseError>(decode_unlimited), "exceed the limit"));
 }
 
 RC_GTEST_PROP(Pgm, ReadsWhatItWrites, ()) {

@@ -61,9 +61,9 @@ RC_GTEST_PROP(SaveMap, LoadsAgainToTheSameBits, (const OccupancyGrid& grid)) {
 TEST(SaveMap, TakesAnyName) {
   const TemporaryDirectory directory;
   const std::string long_name = std::string(250, 'x') + ".yml";
-  for (const std::string& name :
-       {std::string("a.b.yaml"), std::string("ground floor #1: 'x'.yaml"), std::string("- 1.yml"),
-        std::string("Küche.yaml"), std::string("null.yaml"), std::string("new\nline.yaml"), long_name}) {
+  for (const std::string& name : {std::string("a.b.yaml"), std::string("ground floor #1: 'x'.yaml"),
+                                  std::string("- 1.yml"), std::string("Küche.yaml"), std::string("null.yaml"),
+                                  std::string("new\nline.yaml"), std::string("\r.yaml"), long_name}) {
     save_map(small_grid(), directory.file(name));
     EXPECT_EQ(load_map(directory.file(name)).grid.cells, small_grid().cells) << name;
   }
