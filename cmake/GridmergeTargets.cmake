@@ -10,6 +10,11 @@ function(gridmerge_configure target)
                                              -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${GRIDMERGE_SANITIZE})
   endif()
+  if(GRIDMERGE_BUILD_FUZZERS AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    # libFuzzer finds its way through the libraries by their coverage.
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+    target_link_options(${target} PUBLIC -fsanitize=fuzzer-no-link)
+  endif()
 endfunction()
 
 # gridmerge_add_library(<name> SOURCES ... [PUBLIC libs...] [PRIVATE libs...]): builds libgridmerge_<name>, exported as

@@ -2,6 +2,7 @@
 #include "map_yaml.hpp"
 
 #include <fmt/format.h>
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -38,6 +39,8 @@ std::string to_lower(std::string text) {
 YAML::Node load_yaml(std::string_view text) {
   try {
     return YAML::Load(std::string(text));
+  } catch (const YAML::DeepRecursion&) {  // whose own words are "bad file"
+    throw ParseError("not valid YAML: nested too deeply");
   } catch (const YAML::Exception& error) {
     throw ParseError(fmt::format("not valid YAML: line {}: {}", error.mark.line + 1, error.msg));
   }
@@ -108,6 +111,16 @@ MapMode read_mode(const YAML::Node& map) {
   return static_cast<MapMode>(found - kModeNames.begin());
 }
 
+// Quoted only where need be: plain names are for scripts that take YAML apart by the line.
+std::string yaml_string(const std::string& text) {
+  constexpr std::string_view kAlwaysPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-";
+  if (text.find_first_not_of(kAlwaysPlain) == std::string::npos && !text.starts_with('-')) return text;
+  YAML::Emitter emitter;
+  emitter << YAML::DoubleQuoted << text;
+  return emitter.c_str();
+}
+
 }  // namespace
 
 MapYaml parse_map_yaml(std::string_view text) {
@@ -130,15 +143,19 @@ MapYaml parse_map_yaml(std::string_view text) {
 }
 
 std::string format_map_yaml(const MapYaml& map) {
-  YAML::Emitter image;  // for its quoting: names may hold anything
-  image << map.image;
+  const std::string image = yaml_string(map.image);
   std::string text = fmt::format(
-      "image: {}\nmode: {}\nresolution: {}\norigin: [{}, {}, {}]\nnegate: {}\noccupied_thresh: "
-      "{}\nfree_thresh: {}\n",
-      image.c_str(), kModeNames[static_cast<std::size_t>(map.mode)], format_number(map.resolution),
+      "image: {}\n"
+      "mode: {}\n"
+      "resolution: {}\n"
+      "origin: [{}, {}, {}]\n"
+      "negate: {}\n"
+      "occupied_thresh: {}\n"
+      "free_thresh: {}\n",
+      image, kModeNames[static_cast<std::size_t>(map.mode)], format_number(map.resolution),
       format_number(map.origin.x), format_number(map.origin.y), format_number(map.origin.theta),
       map.negate ? 1 : 0, format_number(map.occupied_thresh), format_number(map.free_thresh));
-  if (!image.good() || parse_map_yaml(text).image != map.image) {
+  if (parse_map_yaml(text).image != map.image) {
     throw ParseError("the image's name cannot be written in YAML");
   }
   return text;

@@ -17,9 +17,8 @@ namespace gridmerge {
 
 namespace {
 
-// libpng reports errors by longjmp, which must not skip a destructor: the two functions below that call
-// setjmp hold plain values only, and everything with a destructor lives in their callers. libpng's simplified
-// interface would spare us this, but it takes 16-bit samples for linear light and changes them.
+// libpng's simplified interface would spare us the longjmp below, but it takes 16-bit samples for linear
+// light and changes them.
 struct Reader {
   std::string_view rest;
   std::array<char, 160> error{};
@@ -55,56 +54,51 @@ Reader::Reader(std::string_view bytes) : rest(bytes) {
   if (info == nullptr) throw std::bad_alloc();
 }
 
-// What the header says, and the size of a row in the file.
-struct Header {
-  png_uint_32 width, height;
-  std::size_t file_row_bytes;
-};
-
-bool read_header(Reader& reader, Header& header) {
-  if (setjmp(png_jmpbuf(reader.png))) return false;
-  png_set_read_fn(reader.png, &reader, on_read);
-  png_set_user_limits(reader.png, PNG_UINT_31_MAX,
-                      PNG_UINT_31_MAX);  // check_image_size decides, as for any format
-  png_read_info(reader.png, reader.info);
-  header.width = png_get_image_width(reader.png, reader.info);
-  header.height = png_get_image_height(reader.png, reader.info);
-  header.file_row_bytes = png_get_rowbytes(reader.png, reader.info);
-  png_set_expand(reader.png);
-  png_set_interlace_handling(reader.png);
-  png_read_update_info(reader.png, reader.info);
-  return true;
-}
-
-bool read_pixels(Reader& reader, png_bytepp rows) {
-  if (setjmp(png_jmpbuf(reader.png))) return false;
-  png_read_image(reader.png, rows);
-  png_read_end(reader.png, nullptr);
-  return true;
+// Runs calls of libpng, which reports errors by longjmp to here. A longjmp must not skip a destructor, so
+// `calls` holds nothing that has one.
+template <typename Calls>
+void guarded(const Reader& reader, const Calls& calls) {
+  if (setjmp(png_jmpbuf(reader.png))) reader.fail();
+  calls();
 }
 
 }  // namespace
 
 PngImage decode_png(std::string_view bytes, std::size_t max_pixels) {
   Reader reader(bytes);
-  Header header{};
-  if (!read_header(reader, header)) reader.fail();
-  check_image_size(header.width, header.height, max_pixels);
+  const png_structp png = reader.png;
+  const png_infop info = reader.info;
+  guarded(reader, [&] {
+    png_set_read_fn(png, &reader, on_read);
+    png_set_user_limits(png, PNG_UINT_31_MAX,
+                        PNG_UINT_31_MAX);  // check_image_size decides, as for any format
+    png_read_info(png, info);
+  });
+  const std::size_t height = png_get_image_height(png, info);
+  check_image_size(png_get_image_width(png, info), height, max_pixels);
   // Deflate cannot shrink data more than 1032 times: a small file cannot make us take memory for a large
   // image.
-  if (header.file_row_bytes * header.height / 1032 > bytes.size())
+  if (png_get_rowbytes(png, info) * height / 1032 > bytes.size())
     throw ParseError("the image data end early");
 
+  guarded(reader, [&] {
+    png_set_expand(png);
+    png_set_interlace_handling(png);
+    png_read_update_info(png, info);  // takes memory for a row, hence not before the checks
+  });
   PngImage image;
-  image.width = static_cast<int>(header.width);
-  image.height = static_cast<int>(header.height);
-  image.channels = png_get_channels(reader.png, reader.info);
-  image.bit_depth = png_get_bit_depth(reader.png, reader.info);
-  const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
-  image.samples.resize(row_bytes * header.height);
-  std::vector<png_bytep> rows(header.height);
-  for (std::size_t row = 0; row < rows.size(); ++row) rows[row] = image.samples.data() + row * row_bytes;
-  if (!read_pixels(reader, rows.data())) reader.fail();
+  image.width = static_cast<int>(png_get_image_width(png, info));
+  image.height = static_cast<int>(height);
+  image.channels = png_get_channels(png, info);
+  image.bit_depth = png_get_bit_depth(png, info);
+  const std::size_t row_bytes = png_get_rowbytes(png, info);
+  image.samples.resize(row_bytes * height);
+  std::vector<png_bytep> rows(height);
+  for (std::size_t row = 0; row < height; ++row) rows[row] = image.samples.data() + row * row_bytes;
+  guarded(reader, [&] {
+    png_read_image(png, rows.data());
+    png_read_end(png, nullptr);
+  });
   return image;
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <ostream>
 #include <stdexcept>
 #include <string>
 
@@ -72,6 +73,8 @@ struct Flaw {
   const char* name;
   std::function<void(OccupancyGrid&)> spoil;
   const char* message;  // a part of it
+
+  friend void PrintTo(const Flaw& bad, std::ostream* out) { *out << bad.name; }
 };
 
 class ValidateRefuses : public testing::TestWithParam<Flaw> {};

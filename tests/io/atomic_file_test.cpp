@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/io/atomic_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/file_size_limit.hpp"
+#include "io/support.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace gridmerge {
+namespace {
+
+using test::contains;
+using test::read_file;
+using test::TemporaryDirectory;
+using Names = std::vector<std::string>;
+
+std::string error_of(const std::filesystem::path& path) {
+  return test::message_of<FileError>([&] { write_file_atomically(path, "new"); });
+}
+
+TEST(AtomicFile, WritesAllBytes) {
+  const TemporaryDirectory directory;
+  const std::string binary("a\0b\r\n\xff", 6);
+  write_file_atomically(directory.file("a"), binary);
+  EXPECT_EQ(read_file(directory.file("a")), binary);
+  write_file_atomically(directory.file("empty"), "");
+  EXPECT_EQ(read_file(directory.file("empty")), "");
+  EXPECT_EQ(directory.names(), (Names{"a", "empty"}));
+}
+
+TEST(AtomicFile, ReplacesAFile) {
+  const TemporaryDirectory directory;
+  directory.write("a", "a long old content");
+  write_file_atomically(directory.file("a"), "new");
+  EXPECT_EQ(read_file(directory.file("a")), "new");
+  EXPECT_EQ(directory.names(), Names{"a"});
+}
+
+TEST(AtomicFile, ShowsNothingBeforeCommit) {
+  const TemporaryDirectory directory;
+  directory.write("a", "old");
+  StagedFile staged(directory.file("a"), "new");
+  EXPECT_EQ(read_file(directory.file("a")), "old");
+  staged.commit();
+  EXPECT_EQ(read_file(directory.file("a")), "new");
+}
+
+TEST(AtomicFile, DisappearsWithoutCommit) {
+  const TemporaryDirectory directory;
+  {
+    const StagedFile staged(directory.file("a"), "new");
+    EXPECT_EQ(directory.names().size(), 1u);
+  }
+  EXPECT_EQ(directory.names(), Names{});
+}
+
+TEST(AtomicFile, ManyAreStagedAtOnce) {
+  const TemporaryDirectory directory;
+  {
+    std::vector<StagedFile> staged;
+    for (const char* name : {"a", "b", "c"}) staged.emplace_back(directory.file(name), name);
+    staged[0].commit();
+    staged[1].commit();
+  }
+  EXPECT_EQ(directory.names(), (Names{"a", "b"}));
+  EXPECT_EQ(read_file(directory.file("a")), "a");
+  EXPECT_EQ(read_file(directory.file("b")), "b");
+}
+
+TEST(AtomicFile, HasThePermissionsOfAnyNewFile) {
+  const TemporaryDirectory directory;
+  const mode_t before = umask(027);
+  write_file_atomically(directory.file("a"), "x");
+  umask(before);
+  EXPECT_EQ(std::filesystem::status(directory.file("a")).permissions(),
+            static_cast<std::filesystem::perms>(0640));
+}
+
+TEST(AtomicFile, TakesNamesOfTheGreatestLength) {
+  const TemporaryDirectory directory;
+  const std::string name(255, 'x');
+  write_file_atomically(directory.file(name), "x");
+  EXPECT_EQ(directory.names(), Names{name});
+}
+
+TEST(AtomicFile, WorksWithoutADirectoryInThePath) {
+  const TemporaryDirectory directory;
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(directory.path());
+  write_file_atomically("a", "x");
+  std::filesystem::current_path(before);
+  EXPECT_EQ(directory.names(), Names{"a"});
+}
+
+TEST(AtomicFile, RefusesDirectories) {
+  const TemporaryDirectory directory;
+  EXPECT_TRUE(contains(error_of(directory.path()), "it names a directory"));
+  EXPECT_TRUE(contains(error_of(directory.file("a/")), "it names a directory"));
+  EXPECT_TRUE(contains(error_of(""), "it names a directory"));
+  EXPECT_EQ(directory.names(), Names{});
+}
+
+TEST(AtomicFile, NeedsADirectoryThatItCanWriteTo) {
+  const TemporaryDirectory directory;
+  EXPECT_EQ(error_of(directory.file("missing/a")),
+            directory.file("missing/a") + ": cannot be written: No such file or directory");
+  directory.write("file", "x");
+  EXPECT_EQ(error_of(directory.file("file/a")),
+            directory.file("file/a") + ": cannot be written: Not a directory");
+}
+
+TEST(AtomicFile, LeavesAllAsItWasWhenItCannotTakeItsPlace) {
+  const TemporaryDirectory directory;
+  {
+    StagedFile staged(directory.file("a"), "new");
+    directory.write("a/b", "in the way");
+    EXPECT_TRUE(contains(test::message_of<FileError>([&] { staged.commit(); }), "a: cannot be written: "));
+  }
+  EXPECT_EQ(directory.names(), Names{"a"});
+}
+
+TEST(AtomicFile, LeavesAllAsItWasOnAFullDisk) {
+  const TemporaryDirectory directory;
+  directory.write("a", "old");
+  const std::string message = test::with_file_size_limit(
+      1000, [&] { write_file_atomically(directory.file("a"), std::string(100000, 'x')); });
+  EXPECT_EQ(message, directory.file("a") + ": cannot be written: File too large");
+  EXPECT_EQ(read_file(directory.file("a")), "old");
+  EXPECT_EQ(directory.names(), Names{"a"});
+}
+
+}  // namespace
+}  // namespace gridmerge

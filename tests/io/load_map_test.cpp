@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// Good map files, from the disk to the grid.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <clocale>
+#include <filesystem>
+#include <fstream>
+#include <locale>
+#include <string>
+#include <thread>
+
+#include "gridmerge/io/map_file.hpp"
+#include "io/png_builder.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace gridmerge {
+namespace {
+
+using test::bytes;
+using test::TemporaryDirectory;
+using Cells = std::vector<Cell>;
+
+constexpr Cell kUnknown = Cell::unknown, kFree = Cell::free, kOccupied = Cell::occupied;
+
+std::string yaml_with_image(const std::string& image) {
+  return "image: " + image +
+         "\nresolution: 0.05\norigin: [-1.0, 2.0, 0.5]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: "
+         "0.196\n";
+}
+
+const std::string kPgm = "P5\n# a comment\n2 2\n255\n" + bytes({0, 205, 254, 254});
+const Cells kCells{kFree, kFree, kOccupied, kUnknown};  // of kPgm, bottom row first
+
+TEST(LoadMap, ReadsYamlAndPgm) {
+  const TemporaryDirectory directory;
+  directory.write("a.pgm", kPgm);
+  const LoadedMap map = load_map(directory.write("a.yaml", yaml_with_image("a.pgm")));
+  EXPECT_EQ(map.grid.width, 2);
+  EXPECT_EQ(map.grid.height, 2);
+  EXPECT_EQ(map.grid.resolution, 0.05);
+  EXPECT_EQ(map.grid.origin, (SE2{-1.0, 2.0, 0.5}));
+  EXPECT_EQ(map.grid.cells, kCells);
+  EXPECT_TRUE(map.grid.probability.empty());
+  EXPECT_TRUE(map.warnings.empty());
+}
+
+TEST(LoadMap, ReadsPng) {
+  const TemporaryDirectory directory;
+  directory.write("a.png",
+                  test::PngBuilder{.width = 2, .height = 2, .rows = bytes({0, 205, 254, 254})}.build());
+  EXPECT_EQ(load_map(directory.write("a.yaml", yaml_with_image("a.png"))).grid.cells, kCells);
+}
+
+TEST(LoadMap, TellsImagesByTheirContent) {
+  const TemporaryDirectory directory;
+  directory.write("a.png", kPgm);
+  EXPECT_EQ(load_map(directory.write("a.yaml", yaml_with_image("a.png"))).grid.cells, kCells);
+  directory.write("a", kPgm);
+  EXPECT_EQ(load_map(directory.write("a.txt", yaml_with_image("a"))).grid.cells, kCells);
+}
+
+TEST(LoadMap, KeepsProbabilitiesOfScaleAndRaw) {
+  const TemporaryDirectory directory;
+  directory.write("a.pgm", "P2 2 1 255\n0 100\n");
+  const LoadedMap map = load_map(directory.write("a.yaml", yaml_with_image("a.pgm") + "mode: raw\n"));
+  EXPECT_EQ(map.grid.probability, (std::vector<float>{0.0f, 1.0f}));
+}
+
+TEST(LoadMap, FindsTheImageBesideTheYaml) {
+  const TemporaryDirectory directory;
+  directory.write("maps/images/a.pgm", kPgm);
+  EXPECT_EQ(load_map(directory.write("maps/a.yaml", yaml_with_image("images/a.pgm"))).grid.cells, kCells);
+  EXPECT_EQ(load_map(directory.write("b.yaml", yaml_with_image("maps/../maps/images/a.pgm"))).grid.cells,
+            kCells);
+}
+
+TEST(LoadMap, FindsTheImageBesideAYamlInTheWorkingDirectory) {
+  const TemporaryDirectory directory;
+  directory.write("a.pgm", kPgm);
+  directory.write("a.yaml", yaml_with_image("a.pgm"));
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(directory.path());
+  const Cells cells = load_map("a.yaml").grid.cells;
+  std::filesystem::current_path(before);
+  EXPECT_EQ(cells, kCells);
+}
+
+TEST(LoadMap, TakesAbsoluteImagePathsAndSpaces) {
+  const TemporaryDirectory directory, elsewhere;
+  const std::string image = directory.write("my maps/ground floor #1.pgm", kPgm);
+  EXPECT_EQ(load_map(elsewhere.write("a.yaml", yaml_with_image("'" + image + "'"))).grid.cells, kCells);
+  EXPECT_EQ(
+      load_map(directory.write("a.yaml", yaml_with_image("\"my maps/ground floor #1.pgm\""))).grid.cells,
+      kCells);
+}
+
+TEST(LoadMap, TakesABareImageWithAResolution) {
+  const TemporaryDirectory directory;
+  const LoadedMap map = load_map(directory.write("a.pgm", kPgm), {.resolution = 0.1});
+  EXPECT_EQ(map.grid.cells, kCells);
+  EXPECT_EQ(map.grid.resolution, 0.1);
+  EXPECT_EQ(map.grid.origin, SE2{});
+  EXPECT_TRUE(map.warnings.empty());
+}
+
+TEST(LoadMap, AYamlKnowsItsResolutionBetter) {
+  const TemporaryDirectory directory;
+  directory.write("a.pgm", kPgm);
+  EXPECT_EQ(
+      load_map(directory.write("a.yaml", yaml_with_image("a.pgm")), {.resolution = 0.1}).grid.resolution,
+      0.05);
+}
+
+TEST(LoadMap, TakesASingleCell) {
+  const TemporaryDirectory directory;
+  const LoadedMap map = load_map(directory.write("a.pgm", "P2 1 1 255 0"), {.resolution = 1.0});
+  EXPECT_EQ(map.grid.cells, Cells{kOccupied});
+}
+
+TEST(LoadMap, TakesAsManyCellsAsAllowed) {
+  const TemporaryDirectory directory;
+  directory.write("a.pgm", kPgm);
+  const std::string yaml = directory.write("a.yaml", yaml_with_image("a.pgm"));
+  EXPECT_NO_THROW(load_map(yaml, {.max_cells = 4}));
+  EXPECT_THROW(load_map(yaml, {.max_cells = 3}), FileError);
+  EXPECT_NO_THROW(load_map(yaml, {.max_cells = std::numeric_limits<std::size_t>::max()}));
+}
+
+TEST(LoadMap, ReadsFromAPipe) {
+  const TemporaryDirectory directory;
+  const std::string pipe = directory.file("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(pipe, std::ios::binary) << kPgm; });
+  const LoadedMap map = load_map(pipe, {.resolution = 0.1});
+  writer.join();
+  EXPECT_EQ(map.grid.cells, kCells);
+}
+
+// Numbers with commas for points, as a German locale has them; made here, as none may be installed.
+class CommaPoint : public std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(LoadMap, DoesNotDependOnTheLocale) {
+  const TemporaryDirectory directory;
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new CommaPoint));
+  OccupancyGrid grid = make_grid(1500, 1, 1.0 / 3.0, {-1234.5, 0.1, 0.0}, kFree);
+  save_map(grid, directory.file("a.yaml"));
+  const OccupancyGrid loaded = load_map(directory.file("a.yaml")).grid;
+  std::locale::global(before);
+  EXPECT_EQ(loaded.width, 1500);
+  EXPECT_EQ(loaded.resolution, grid.resolution);
+  EXPECT_EQ(loaded.origin, grid.origin);
+}
+
+}  // namespace
+}  // namespace gridmerge

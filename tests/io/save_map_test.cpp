@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <filesystem>
+#include <numbers>
+#include <string>
+
+#include "grid/generators.hpp"
+#include "gridmerge/io/map_file.hpp"
+#include "io/file_size_limit.hpp"
+#include "io/png_builder.hpp"
+#include "io/support.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace gridmerge {
+namespace {
+
+using test::bytes;
+using test::contains;
+using test::TemporaryDirectory;
+
+OccupancyGrid small_grid() {
+  OccupancyGrid grid = make_grid(3, 2, 0.05, {-1.5, 2.25, 0.0}, Cell::free);
+  grid.at(0, 0) = Cell::occupied;
+  grid.at(2, 1) = Cell::unknown;
+  return grid;
+}
+
+std::string error_of(const OccupancyGrid& grid, const std::filesystem::path& path) {
+  return test::message_of<FileError>([&] { save_map(grid, path); });
+}
+
+TEST(SaveMap, WritesWhatMapServerReads) {
+  const TemporaryDirectory directory;
+  save_map(small_grid(), directory.file("merged.yaml"));
+  EXPECT_EQ(test::read_file(directory.file("merged.yaml")),
+            "image: merged.pgm\n"
+            "mode: trinary\n"
+            "resolution: 0.05\n"
+            "origin: [-1.5, 2.25, 0.0]\n"
+            "negate: 0\n"
+            "occupied_thresh: 0.65\n"
+            "free_thresh: 0.196\n");
+  EXPECT_EQ(test::read_file(directory.file("merged.pgm")),
+            "P5\n3 2\n255\n" + bytes({254, 254, 205, 0, 254, 254}));
+  EXPECT_EQ(directory.names(), (std::vector<std::string>{"merged.pgm", "merged.yaml"}));
+}
+
+RC_GTEST_PROP(SaveMap, LoadsAgainToTheSameBits, (const OccupancyGrid& grid)) {
+  const TemporaryDirectory directory;
+  save_map(grid, directory.file("a.yaml"));
+  const OccupancyGrid loaded = load_map(directory.file("a.yaml")).grid;
+  RC_ASSERT(loaded.width == grid.width);
+  RC_ASSERT(loaded.height == grid.height);
+  RC_ASSERT(loaded.resolution == grid.resolution);
+  RC_ASSERT(loaded.origin == grid.origin);
+  RC_ASSERT(loaded.cells == grid.cells);
+}
+
+TEST(SaveMap, TakesAnyName) {
+  const TemporaryDirectory directory;
+  const std::string long_name = std::string(250, 'x') + ".yml";
+  for (const std::string& name : {std::string("a.b.yaml"), std::string("ground floor #1: 'x'.yaml"),
+                                  std::string("- 1.yml"), std::string("Küche.yaml"), std::string("null.yaml"),
+                                  std::string("new\nline.yaml"), std::string("\r.yaml"), long_name}) {
+    save_map(small_grid(), directory.file(name));
+    EXPECT_EQ(load_map(directory.file(name)).grid.cells, small_grid().cells) << name;
+  }
+}
+
+TEST(SaveMap, ReplacesWhatIsThere) {
+  const TemporaryDirectory directory;
+  save_map(make_grid(2, 2, 0.1), directory.file("a.yaml"));
+  save_map(small_grid(), directory.file("a.yaml"));
+  EXPECT_EQ(load_map(directory.file("a.yaml")).grid.cells, small_grid().cells);
+}
+
+TEST(SaveMap, RefusesOtherNames) {
+  const TemporaryDirectory directory;
+  for (const char* name : {"a.pgm", "a", "a.yaml.bak", ".yaml"}) {
+    EXPECT_TRUE(contains(error_of(small_grid(), directory.file(name)), "must end in .yaml or .yml")) << name;
+  }
+  EXPECT_TRUE(directory.names().empty());
+}
+
+TEST(SaveMap, RefusesWhatCouldNotBeLoaded) {
+  const TemporaryDirectory directory;
+  OccupancyGrid grid = small_grid();
+  grid.resolution = 1e-9;
+  EXPECT_TRUE(contains(error_of(grid, directory.file("a.yaml")), "the resolution 1e-09"));
+  grid = small_grid();
+  EXPECT_TRUE(contains(error_of(grid, directory.file("\x02\x9c.yaml")), "cannot be written in YAML"));
+  grid.cells.pop_back();
+  EXPECT_THROW(save_map(grid, directory.file("a.yaml")), std::invalid_argument);
+  EXPECT_TRUE(directory.names().empty());
+}
+
+TEST(SaveMap, NeedsADirectoryThatItCanWriteTo) {
+  const TemporaryDirectory directory;
+  EXPECT_TRUE(
+      contains(error_of(small_grid(), directory.file("missing/a.yaml")), "No such file or directory"));
+  directory.write("file", "x");
+  EXPECT_TRUE(contains(error_of(small_grid(), directory.file("file/a.yaml")), "Not a directory"));
+  EXPECT_EQ(directory.names(), std::vector<std::string>{"file"});
+}
+
+TEST(SaveMap, LeavesNeitherFileWhenTheYamlCannotBeWritten) {
+  const TemporaryDirectory directory;
+  std::filesystem::create_directory(directory.file("a.yaml"));
+  EXPECT_TRUE(contains(error_of(small_grid(), directory.file("a.yaml")), "it names a directory"));
+  EXPECT_EQ(directory.names(), std::vector<std::string>{"a.yaml"});
+}
+
+// Of a save_map that no disk space is left for.
+void expect_nothing_left(const OccupancyGrid& grid, int limit) {
+  const TemporaryDirectory directory;
+  const std::string message =
+      test::with_file_size_limit(limit, [&] { save_map(grid, directory.file("a.yaml")); });
+  EXPECT_TRUE(contains(message, "File too large"));
+  EXPECT_EQ(directory.names(), std::vector<std::string>{});
+}
+
+TEST(SaveMap, LeavesNothingOnAFullDisk) {
+  expect_nothing_left(make_grid(100, 100, 0.05), 500);  // not even the image fits
+  expect_nothing_left(small_grid(), 50);                // the image does, the YAML does not
+}
+
+TEST(SaveMap, KeepsTheOldMapOnAFullDisk) {
+  const TemporaryDirectory directory;
+  save_map(small_grid(), directory.file("a.yaml"));
+  OccupancyGrid other = small_grid();
+  other.at(1, 1) = Cell::occupied;
+  test::with_file_size_limit(50, [&] { save_map(other, directory.file("a.yaml")); });
+  EXPECT_EQ(load_map(directory.file("a.yaml")).grid.cells, small_grid().cells);
+}
+
+}  // namespace
+}  // namespace gridmerge
