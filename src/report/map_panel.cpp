@@ -29,17 +29,17 @@ std::vector<Sighting> sight(const std::vector<PlacedMap>& maps, const Lattice& l
   std::vector<Sighting> sightings(static_cast<std::size_t>(lattice.width) *
                                   static_cast<std::size_t>(lattice.height));
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    const EvidencePatch patch = draw_evidence(maps[i], lattice);
+    const LogOddsPatch patch = draw_log_odds(maps[i], lattice);
     for (int row = 0; row < patch.height; ++row) {
       for (int column = 0; column < patch.width; ++column) {
-        const std::int16_t evidence = patch.at(column, row);
-        if (evidence == 0) continue;
+        const std::int16_t log_odds = patch.at(column, row);
+        if (log_odds == 0) continue;
         Sighting& cell =
             sightings[static_cast<std::size_t>(patch.row + row) * static_cast<std::size_t>(lattice.width) +
                       static_cast<std::size_t>(patch.column + column)];
-        std::uint8_t& count = evidence > 0 ? cell.occupied : cell.free;
+        std::uint8_t& count = log_odds > 0 ? cell.occupied : cell.free;
         if (count == 0)
-          (evidence > 0 ? cell.first_occupied : cell.first_free) = static_cast<std::uint32_t>(i);
+          (log_odds > 0 ? cell.first_occupied : cell.first_free) = static_cast<std::uint32_t>(i);
         count = static_cast<std::uint8_t>(std::min(count + 1, 2));
       }
     }

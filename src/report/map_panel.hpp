@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "canvas.hpp"
-#include "gridmerge/merge/evidence.hpp"
+#include "gridmerge/merge/log_odds.hpp"
 
 namespace gridmerge {
 

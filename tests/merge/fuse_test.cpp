@@ -90,7 +90,7 @@ TEST(Fuse, TheLimitIsOnTheSumNotOnTheWay) {
   EXPECT_EQ(fuse_cells("......###").cells[0], Cell::occupied);
 }
 
-TEST(Fuse, EvidenceThatCancelsOutIsUnknown) {
+TEST(Fuse, LogOddsThatCancelOutAreUnknown) {
   OccupancyGrid wall = map_from({"#"});
   OccupancyGrid space = map_from({"."});
   wall.probability = {0.75f};

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
-#include "gridmerge/merge/evidence.hpp"
+#include "gridmerge/merge/log_odds.hpp"
 
 namespace gridmerge {
 
@@ -16,10 +16,10 @@ struct FusedMap {
 };
 
 /// Fuses all inputs in one pass on the lattice that covers them (see cover()): the log-odds of every input
-/// that knows a cell (see draw_evidence()) are summed and clamped to 3.5 nats (a probability of 0.03 to
-/// 0.97); a positive sum is occupied, a negative one free, and evidence that cancels out is unknown. The sums
+/// that knows a cell (see draw_log_odds()) are summed and clamped to 3.5 nats (a probability of 0.03 to
+/// 0.97); a positive sum is occupied, a negative one free, and log-odds that cancel out are unknown. The sums
 /// are integers, so the result does not depend on the inputs' order. `resolution` in metres. Throws
-/// std::invalid_argument when there is no input, and as cover() does. Time as draw_evidence() for every
+/// std::invalid_argument when there is no input, and as cover() does. Time as draw_log_odds() for every
 /// input.
 FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution);
 

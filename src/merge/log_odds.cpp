@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/evidence.hpp"
+#include "gridmerge/merge/log_odds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -86,36 +86,35 @@ std::optional<Point2> frame_anchor(const std::vector<PlacedMap>& inputs) {
   return anchor;
 }
 
-std::int16_t to_evidence(double probability) {
-  return static_cast<std::int16_t>(
-      std::lround(std::log(probability / (1.0 - probability)) * kEvidencePerNat));
+std::int16_t to_log_odds(double probability) {
+  return static_cast<std::int16_t>(std::lround(std::log(probability / (1.0 - probability)) * kLogOddsPerNat));
 }
 
 // What a map says of one of its cells: the cell gives the sign and the probability, where there is one, the
 // strength.
-std::int16_t cell_evidence(const OccupancyGrid& map, std::size_t index) {
-  static const std::int16_t kOccupied = to_evidence(0.85);
-  static const std::int16_t kFree = to_evidence(0.35);
+std::int16_t cell_log_odds(const OccupancyGrid& map, std::size_t index) {
+  static const std::int16_t kOccupied = to_log_odds(0.85);
+  static const std::int16_t kFree = to_log_odds(0.35);
   const Cell cell = map.cells[index];
   if (cell == Cell::unknown) return 0;
   if (map.probability.empty() || std::isnan(map.probability[index]))
     return cell == Cell::occupied ? kOccupied : kFree;
-  const std::int16_t stated = to_evidence(std::clamp<double>(map.probability[index], 0.12, 0.88));
+  const std::int16_t stated = to_log_odds(std::clamp<double>(map.probability[index], 0.12, 0.88));
   return cell == Cell::occupied ? std::max<std::int16_t>(stated, 1) : std::min<std::int16_t>(stated, -1);
 }
 
-// A map's evidence, to be looked up at points. A border of one unknown cell lets neighbours be read without a
+// A map's log-odds, to be looked up at points. A border of one unknown cell lets neighbours be read without a
 // check.
-class EvidenceSource {
+class LogOddsSource {
  public:
-  explicit EvidenceSource(const OccupancyGrid& map)
+  explicit LogOddsSource(const OccupancyGrid& map)
       : width_(map.width),
         height_(map.height),
         stride_(static_cast<std::size_t>(map.width) + 2),
-        evidence_(stride_ * (static_cast<std::size_t>(map.height) + 2), 0) {
+        log_odds_(stride_ * (static_cast<std::size_t>(map.height) + 2), 0) {
     for (int row = 0; row < height_; ++row) {
       for (int column = 0; column < width_; ++column) {
-        evidence_[offset(column, row)] = cell_evidence(map, map.index(column, row));
+        log_odds_[offset(column, row)] = cell_log_odds(map, map.index(column, row));
       }
     }
   }
@@ -128,7 +127,7 @@ class EvidenceSource {
     const int column = static_cast<int>(x);
     const int row = static_cast<int>(y);
     const std::size_t here = offset(column, row);
-    const std::int16_t value = evidence_[here];
+    const std::int16_t value = log_odds_[here];
     if (value > 0) return value;
     const std::int16_t band = joined_diagonally(here, x - column, y - row);
     return band > 0 ? band : value;
@@ -139,7 +138,7 @@ class EvidenceSource {
     return (static_cast<std::size_t>(row) + 1) * stride_ + static_cast<std::size_t>(column) + 1;
   }
 
-  // The evidence of the band that joins two occupied neighbours of this cell across one of its corners, if
+  // The log-odds of the band that joins two occupied neighbours of this cell across one of its corners, if
   // they touch only there and the point (u, v) of the cell is in the band. A band one cell wide reaches
   // 1/sqrt(2) along the cell's sides; the cell's centre is outside it, so a map drawn without rotation or
   // shift is copied exactly.
@@ -151,8 +150,8 @@ class EvidenceSource {
         const std::size_t beside = right ? here + 1 : here - 1;
         const std::size_t above = upper ? here + stride_ : here - stride_;
         const std::size_t across = upper ? beside + stride_ : beside - stride_;
-        if (evidence_[beside] <= 0 || evidence_[above] <= 0 || evidence_[across] > 0) continue;
-        strongest = std::max(strongest, std::min(evidence_[beside], evidence_[above]));
+        if (log_odds_[beside] <= 0 || log_odds_[above] <= 0 || log_odds_[across] > 0) continue;
+        strongest = std::max(strongest, std::min(log_odds_[beside], log_odds_[above]));
       }
     }
     return strongest;
@@ -161,12 +160,12 @@ class EvidenceSource {
   int width_;
   int height_;
   std::size_t stride_;
-  std::vector<std::int16_t> evidence_;
+  std::vector<std::int16_t> log_odds_;
 };
 
 // The lattice cells that a box touches, as an empty patch.
-EvidencePatch patch_over(const Box& box, const Lattice& lattice) {
-  EvidencePatch patch;
+LogOddsPatch patch_over(const Box& box, const Lattice& lattice) {
+  LogOddsPatch patch;
   if (box.empty()) return patch;
   const auto cell_range = [&](double low, double high, double corner, int size) {
     const auto clip = [&](double cell) { return static_cast<int>(std::fmin(std::fmax(cell, 0.0), size)); };
@@ -176,7 +175,7 @@ EvidencePatch patch_over(const Box& box, const Lattice& lattice) {
   };
   std::tie(patch.column, patch.width) = cell_range(box.min_x, box.max_x, lattice.corner.x, lattice.width);
   std::tie(patch.row, patch.height) = cell_range(box.min_y, box.max_y, lattice.corner.y, lattice.height);
-  patch.evidence.assign(static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height), 0);
+  patch.log_odds.assign(static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height), 0);
   return patch;
 }
 
@@ -185,8 +184,8 @@ void keep_strongest(std::int16_t& target, std::int16_t value) {
 }
 
 // Looks up the map under `samples` x `samples` points of every cell of the patch.
-void sample_map(const PlacedMap& input, const Lattice& lattice, int samples, EvidencePatch& patch) {
-  const EvidenceSource source(*input.map);
+void sample_map(const PlacedMap& input, const Lattice& lattice, int samples, LogOddsPatch& patch) {
+  const LogOddsSource source(*input.map);
   const SE2 T_grid_output = inverse(input.T_output_map * input.map->origin);
   const double map_resolution = input.map->resolution;
   const double c = std::cos(T_grid_output.theta) / map_resolution;
@@ -200,7 +199,7 @@ void sample_map(const PlacedMap& input, const Lattice& lattice, int samples, Evi
         const double y = lattice.corner.y + (row + (j + 0.5) / samples) * lattice.resolution;
         for (int i = 0; i < samples; ++i) {
           const double x = lattice.corner.x + (column + (i + 0.5) / samples) * lattice.resolution;
-          keep_strongest(patch.evidence[target], source.at(c * x - s * y + shift_x, s * x + c * y + shift_y));
+          keep_strongest(patch.log_odds[target], source.at(c * x - s * y + shift_x, s * x + c * y + shift_y));
         }
       }
     }
@@ -208,7 +207,7 @@ void sample_map(const PlacedMap& input, const Lattice& lattice, int samples, Evi
 }
 
 // Drops every known cell of the map into the patch's cell that its centre lies in.
-void splat_map(const PlacedMap& input, const Lattice& lattice, EvidencePatch& patch) {
+void splat_map(const PlacedMap& input, const Lattice& lattice, LogOddsPatch& patch) {
   const OccupancyGrid& map = *input.map;
   const SE2 T_output_grid = input.T_output_map * map.origin;
   const double scale = map.resolution / lattice.resolution;
@@ -218,12 +217,12 @@ void splat_map(const PlacedMap& input, const Lattice& lattice, EvidencePatch& pa
   const double shift_y = (T_output_grid.y - lattice.corner.y) / lattice.resolution - patch.row + kSlack;
   for (int row = 0; row < map.height; ++row) {
     for (int column = 0; column < map.width; ++column) {
-      const std::int16_t value = cell_evidence(map, map.index(column, row));
+      const std::int16_t value = cell_log_odds(map, map.index(column, row));
       if (value == 0) continue;
       const double x = c * (column + 0.5) - s * (row + 0.5) + shift_x;
       const double y = s * (column + 0.5) + c * (row + 0.5) + shift_y;
       if (!(x >= 0.0 && x < patch.width && y >= 0.0 && y < patch.height)) continue;
-      keep_strongest(patch.evidence[static_cast<std::size_t>(y) * static_cast<std::size_t>(patch.width) +
+      keep_strongest(patch.log_odds[static_cast<std::size_t>(y) * static_cast<std::size_t>(patch.width) +
                                     static_cast<std::size_t>(x)],
                      value);
     }
@@ -254,10 +253,10 @@ Lattice cover(const std::vector<PlacedMap>& inputs, double resolution) {
   return {static_cast<int>(columns), static_cast<int>(rows), resolution, corner};
 }
 
-EvidencePatch draw_evidence(const PlacedMap& input, const Lattice& lattice) {
+LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice) {
   validate_input(input);
-  EvidencePatch patch = patch_over(known_box(input), lattice);
-  if (patch.evidence.empty()) return patch;
+  LogOddsPatch patch = patch_over(known_box(input), lattice);
+  if (patch.log_odds.empty()) return patch;
   // A square of side a holds a point of any square grid of spacing a / sqrt(2), however that is rotated. So
   // from that ratio on, every lattice cell meets the centre of a map cell; below it, two samples a side meet
   // every map cell.

@@ -31,20 +31,20 @@ struct Lattice {
 /// O(cells of the inputs).
 Lattice cover(const std::vector<PlacedMap>& inputs, double resolution);
 
-/// The unit of evidence: log-odds in 1/1024 nat, so that sums are exact and their order does not matter.
-inline constexpr double kEvidencePerNat = 1024.0;
+/// Log-odds are kept in steps of 1/1024 nat, so that sums are exact and their order does not matter.
+inline constexpr double kLogOddsPerNat = 1024.0;
 
 /// What one input says of the lattice cells in a box: the log-odds of `occupied`, positive for an occupied
 /// cell, negative for a free one, 0 for unknown.
-struct EvidencePatch {
+struct LogOddsPatch {
   int column = 0;  ///< of the box's lower-left cell on the lattice
   int row = 0;
   int width = 0;  ///< of the box
   int height = 0;
-  std::vector<std::int16_t> evidence;  ///< row-major, width * height values, in 1 / kEvidencePerNat nat
+  std::vector<std::int16_t> log_odds;  ///< row-major, width * height values, in 1 / kLogOddsPerNat nat
 
   std::int16_t at(int patch_column, int patch_row) const {
-    return evidence[static_cast<std::size_t>(patch_row) * static_cast<std::size_t>(width) +
+    return log_odds[static_cast<std::size_t>(patch_row) * static_cast<std::size_t>(width) +
                     static_cast<std::size_t>(patch_column)];
   }
 };
@@ -63,6 +63,6 @@ struct EvidencePatch {
 ///
 /// O(map cells + lattice cells in the bounding box of the map's known cells). Throws std::invalid_argument
 /// for an invalid grid or a transform that is not finite.
-EvidencePatch draw_evidence(const PlacedMap& input, const Lattice& lattice);
+LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice);
 
 }  // namespace gridmerge
