@@ -77,7 +77,7 @@ std::vector<Hypothesis> rank(const std::vector<ScoredPose>& poses, const Occupan
   std::vector<Hypothesis> hypotheses;
   for (const ScoredPose& pose : poses) {
     const SE2 T_fixed_moving = to_map_frames(pose.T_fixed_moving, fixed_walls, moving_walls);
-    const Agreement common = measure_agreement(fixed, moving, T_fixed_moving, stride);
+    const AgreementCounts common = count_agreement(fixed, moving, T_fixed_moving, stride);
     const double score =
         pose.evidence.score + area_evidence(cells_per_cell * static_cast<double>(common.agreement),
                                             cells_per_cell * static_cast<double>(common.disagreement));
@@ -138,11 +138,11 @@ MatchResult match_in_arena(const OccupancyGrid& fixed, const OccupancyGrid& movi
   MatchResult result;
   result.hypotheses = find_hypotheses(larger, smaller, options);
   if (result.hypotheses.empty()) return result;
-  const Agreement agreement = measure_agreement(larger, smaller, result.hypotheses.front().T_fixed_moving);
-  result.acceptance_index = agreement.acceptance_index();
-  result.agreement = agreement.agreement;
-  result.disagreement = agreement.disagreement;
-  result.overlap = agreement.overlap;
+  const AgreementCounts counts = count_agreement(larger, smaller, result.hypotheses.front().T_fixed_moving);
+  result.acceptance_index = counts.acceptance_index();
+  result.agreement = counts.agreement;
+  result.disagreement = counts.disagreement;
+  result.overlap = measure_overlap(larger, smaller, counts);
   assign_probabilities(result.hypotheses, result.acceptance_index);
 
   if (swapped) {

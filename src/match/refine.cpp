@@ -114,7 +114,7 @@ std::vector<ScoredPose> refine(const WallMap& fixed, const WallMap& moving,
   const double coarse = options.coarse_cell;
   const std::array<Round, 4> rounds{{
       {250, kAll, 0.0, 1.0, 0.35, 0.0},                   // score only
-      {250, 300, 0.5, coarse / 4.0, 0.35, coarse / 4.0},  // into the basin
+      {250, 200, 0.5, coarse / 4.0, 0.35, coarse / 4.0},  // into the basin
       {500, 60, 0.25, 1.0, 0.0, coarse / 2.0},            // the error model settles
       {2000, 2 * options.max_poses, 0.25, 0.25, 0.0, options.distinct},
   }};

@@ -6,14 +6,14 @@
 
 namespace gridmerge {
 
-Agreement measure_agreement(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                            const SE2& T_fixed_moving, int stride) {
+AgreementCounts count_agreement(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                const SE2& T_fixed_moving, int stride) {
   const SE2 T_fixedgrid_movinggrid = inverse(fixed.origin) * T_fixed_moving * moving.origin;
   const double scale = moving.resolution / fixed.resolution;
   const double step_x = std::cos(T_fixedgrid_movinggrid.theta) * scale;
   const double step_y = std::sin(T_fixedgrid_movinggrid.theta) * scale;
 
-  Agreement result;
+  AgreementCounts result;
   for (int row = stride / 2; row < moving.height; row += stride) {
     const double row_x = T_fixedgrid_movinggrid.x / fixed.resolution - step_y * (row + 0.5);
     const double row_y = T_fixedgrid_movinggrid.y / fixed.resolution + step_x * (row + 0.5);
@@ -31,14 +31,17 @@ Agreement measure_agreement(const OccupancyGrid& fixed, const OccupancyGrid& mov
 
   result.agreement *= static_cast<std::int64_t>(stride) * stride;
   result.disagreement *= static_cast<std::int64_t>(stride) * stride;
-
-  const double both_area =
-      static_cast<double>(result.agreement + result.disagreement) * moving.resolution * moving.resolution;
-  const double smaller_area =
-      std::min(static_cast<double>(count_cells(fixed).known()) * fixed.resolution * fixed.resolution,
-               static_cast<double>(count_cells(moving).known()) * moving.resolution * moving.resolution);
-  result.overlap = smaller_area > 0.0 ? std::min(1.0, both_area / smaller_area) : 0.0;
   return result;
+}
+
+double measure_overlap(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                       const AgreementCounts& counts) {
+  const auto known_area = [](const OccupancyGrid& grid) {
+    return static_cast<double>(count_cells(grid).known()) * grid.resolution * grid.resolution;
+  };
+  const double smaller = std::min(known_area(fixed), known_area(moving));
+  const double both = static_cast<double>(counts.both_known()) * moving.resolution * moving.resolution;
+  return smaller > 0.0 ? std::min(1.0, both / smaller) : 0.0;
 }
 
 }  // namespace gridmerge

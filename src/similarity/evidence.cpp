@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
+#include <numeric>
 
 namespace gridmerge {
 
 namespace {
-
-/// How often each encounter happened, and behind them how often the other map had not seen the place.
-using Histogram = std::array<int, kEncounters + 1>;
 
 /// Walls that are one place but seem to face opposite ways: thin walls seen from both rooms, clutter.
 constexpr double kOppositeShare = 0.1;
@@ -41,49 +38,28 @@ std::vector<ModelScores> tabulate(const std::array<double, kDistanceBins>& backg
   return nats;
 }
 
-/// For every difference of two directions, in [0, 2 kDirections): do the walls face one way?
-constexpr std::array<Facing, 2 * kDirections> kCompareDirections = [] {
-  std::array<Facing, 2 * kDirections> compare{};
-  for (int difference = 0; difference < 2 * kDirections; ++difference) {
-    const int turn = difference % kDirections;
-    const bool same = std::min(turn, kDirections - turn) <= kDirections / 4;
-    compare[difference] = same ? Facing::same : Facing::opposite;
-  }
-  return compare;
-}();
+// Facings as they are looked up: a point's, turned, less a place's, is a difference of directions if both
+// have one, and falls outside of that range of numbers if not.
+constexpr int kPlaceNoDirection = 200;
+constexpr int kPointNoDirection = 300;
+constexpr int kZeroDifference = kPlaceNoDirection;  // added, so that no index is negative
 
-/// What the points meet in `map`.
-Histogram count_encounters(const WallMap& map, const std::vector<WallPoint>& points,
-                           const SE2& T_map_points) {
-  Histogram histogram{};
-  const double c = std::cos(T_map_points.theta);
-  const double s = std::sin(T_map_points.theta);
-  const double turns = T_map_points.theta / (2.0 * std::numbers::pi) + 1.0;
-  const int turn = static_cast<int>(std::lround(turns * kDirections)) % kDirections;
-  for (const WallPoint& point : points) {
-    const Point2& p = point.position;
-    const double x = c * p.x - s * p.y + T_map_points.x;
-    const double y = s * p.x + c * p.y + T_map_points.y;
-    // Outside the grid counts as unseen. The comparison is made on doubles: a huge value must not reach the
-    // cast.
-    if (!(x >= 0.0 && y >= 0.0 && x < map.width && y < map.height)) continue;
-    const Place place = map.places[static_cast<std::size_t>(y) * map.width + static_cast<std::size_t>(x)];
-    if (place.distance == kUnseen) {
-      ++histogram[kEncounters];
-      continue;
-    }
-    Facing facing = Facing::unclear;
-    if (place.facing != kNoDirection && point.facing != kNoDirection) {
-      facing = kCompareDirections[(point.facing + turn) % kDirections + kDirections - place.facing];
-    }
-    ++histogram[encounter(place.distance, facing)];
+/// By index point + turn + kZeroDifference - place: what is added to the distance bin to name the encounter.
+constexpr std::array<std::uint8_t, kPointNoDirection + kDirections + kZeroDifference> kEncounterOffset = [] {
+  std::array<std::uint8_t, kPointNoDirection + kDirections + kZeroDifference> offsets{};
+  static_assert(encounter(0, Facing::unclear) == 0);
+  for (int difference = 1 - kDirections; difference <= 2 * kDirections - 2; ++difference) {
+    const int turn = (difference + kDirections) % kDirections;
+    const bool same = std::min(turn, kDirections - turn) <= kDirections / 4;
+    offsets[kZeroDifference + difference] =
+        static_cast<std::uint8_t>(encounter(0, same ? Facing::same : Facing::opposite));
   }
-  return histogram;
-}
+  return offsets;
+}();
 
 /// Adds to every model's score what the points met. Models are the inner loop: their scores are independent
 /// sums, which compilers vectorise without reordering any of them.
-void add_scores(const Histogram& histogram, float weight, const std::vector<ModelScores>& nats,
+void add_scores(std::span<const int> histogram, float weight, const std::vector<ModelScores>& nats,
                 ModelScores& scores) {
   for (int met = 0; met < kEncounters; ++met) {
     if (histogram[met] == 0) continue;
@@ -92,14 +68,8 @@ void add_scores(const Histogram& histogram, float weight, const std::vector<Mode
   }
 }
 
-double seen(const Histogram& histogram) {
-  int sum = 0;
-  for (int met = 0; met < kEncounters; ++met) sum += histogram[met];
-  return sum;
-}
-
-float points_per_drawn(const std::vector<WallPoint>& all, const std::vector<WallPoint>& drawn) {
-  return drawn.empty() ? 0.0F : static_cast<float>(all.size()) / static_cast<float>(drawn.size());
+double seen(std::span<const int> histogram) {
+  return std::accumulate(histogram.begin(), histogram.begin() + kEncounters, 0);
 }
 
 }  // namespace
@@ -142,22 +112,73 @@ std::vector<WallPoint> draw_evenly(const std::vector<WallPoint>& points, std::si
   return drawn;
 }
 
+WallEvidence::LookUp::LookUp(const WallMap& map)
+    : width(map.width),
+      last_x(static_cast<float>(map.width - 1)),
+      last_y(static_cast<float>(map.height - 1)),
+      nats(tabulate(map.background)) {
+  places.reserve(map.places.size());
+  for (const Place& place : map.places) {
+    const int distance = place.distance == kUnseen ? kEncounters : place.distance;
+    const bool faces = place.facing != kNoDirection && place.distance != kUnseen;
+    const int facing = faces ? place.facing : kPlaceNoDirection;
+    places.push_back(static_cast<std::uint16_t>(distance | facing << 8));
+  }
+}
+
+WallEvidence::Points::Points(const std::vector<WallPoint>& walls, std::size_t max_points) {
+  const std::vector<WallPoint> drawn = draw_evenly(walls, max_points);
+  for (const WallPoint& wall : drawn) {
+    x.push_back(static_cast<float>(wall.position.x));
+    y.push_back(static_cast<float>(wall.position.y));
+    facing.push_back(wall.facing == kNoDirection ? kPointNoDirection : wall.facing);
+  }
+  weight = drawn.empty() ? 0.0F : static_cast<float>(walls.size()) / static_cast<float>(drawn.size());
+}
+
 WallEvidence::WallEvidence(const WallMap& fixed, const WallMap& moving, std::size_t max_points)
     : fixed_(fixed),
       moving_(moving),
-      fixed_walls_(draw_evenly(fixed.walls, max_points)),
-      moving_walls_(draw_evenly(moving.walls, max_points)),
-      fixed_weight_(points_per_drawn(fixed.walls, fixed_walls_)),
-      moving_weight_(points_per_drawn(moving.walls, moving_walls_)),
-      nats_in_fixed_(tabulate(fixed.background)),
-      nats_in_moving_(tabulate(moving.background)) {}
+      fixed_walls_(fixed.walls, max_points),
+      moving_walls_(moving.walls, max_points) {}
+
+WallEvidence::Histogram WallEvidence::count_encounters(const LookUp& map, const Points& points,
+                                                       const SE2& T_map_points) {
+  const float c = static_cast<float>(std::cos(T_map_points.theta));
+  const float s = static_cast<float>(std::sin(T_map_points.theta));
+  constexpr double kFarAway = 1e6;  // beyond any map
+  const float tx = static_cast<float>(std::clamp(T_map_points.x, -kFarAway, kFarAway));
+  const float ty = static_cast<float>(std::clamp(T_map_points.y, -kFarAway, kFarAway));
+  const double turns = T_map_points.theta / (2.0 * std::numbers::pi) + 1.0;
+  const int turn = static_cast<int>(std::lround(turns * kDirections)) % kDirections + kZeroDifference;
+
+  Histogram histogram{};
+  constexpr std::size_t kBlock = 128;
+  std::array<int, kBlock> at;
+  for (std::size_t first = 0; first < points.x.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, points.x.size() - first);
+    const float* px = points.x.data() + first;
+    const float* py = points.y.data() + first;
+    for (std::size_t i = 0; i < count; ++i) {  // vectorised
+      // What falls outside is moved to the rim, which is unseen.
+      const float x = std::min(std::max(c * px[i] - s * py[i] + tx, 0.0F), map.last_x);
+      const float y = std::min(std::max(s * px[i] + c * py[i] + ty, 0.0F), map.last_y);
+      at[i] = static_cast<int>(y) * map.width + static_cast<int>(x);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const int place = map.places[at[i]];
+      ++histogram[(place & 0xff) + kEncounterOffset[points.facing[first + i] + turn - (place >> 8)]];
+    }
+  }
+  return histogram;
+}
 
 Evidence WallEvidence::operator()(const SE2& T_fixed_moving_cells, double min_sigma) const {
   const Histogram in_fixed = count_encounters(fixed_, moving_walls_, T_fixed_moving_cells);
   const Histogram in_moving = count_encounters(moving_, fixed_walls_, inverse(T_fixed_moving_cells));
   ModelScores scores{};
-  add_scores(in_fixed, moving_weight_, nats_in_fixed_, scores);
-  add_scores(in_moving, fixed_weight_, nats_in_moving_, scores);
+  add_scores(in_fixed, moving_walls_.weight, fixed_.nats, scores);
+  add_scores(in_moving, fixed_walls_.weight, moving_.nats, scores);
 
   const auto models = error_models();
   std::size_t first = 0;
@@ -166,7 +187,7 @@ Evidence WallEvidence::operator()(const SE2& T_fixed_moving_cells, double min_si
   Evidence best;
   best.score = *best_score;
   best.model = models[best_score - scores.begin()];
-  best.seen_walls = moving_weight_ * seen(in_fixed) + fixed_weight_ * seen(in_moving);
+  best.seen_walls = moving_walls_.weight * seen(in_fixed) + fixed_walls_.weight * seen(in_moving);
   return best;
 }
 

@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <numbers>
 
-#include "gridmerge/grid/resample.hpp"
-
 namespace gridmerge {
 
 namespace {
@@ -16,37 +14,39 @@ constexpr int kMargin = 4;       // cells around the known area, so that distanc
 constexpr int kSeenReach = 2;    // cells beyond a known one that still count as seen
 constexpr int kChamferStep = 3;  // distance units of one cell
 constexpr int kChamferDiagonal = 4;
-constexpr std::uint16_t kFar = 60000;
 
 constexpr int kFacingReach = 3;  // cells around a wall whose free cells decide which way it faces
 constexpr double kFacingBalance =
     0.25;  // the free side must have this share of the window more than the other
 
-/// In place: 0 where the input is 0, elsewhere the chamfer distance to the nearest 0. The border must be
-/// kFar. `labels`, where given, spread from the zeros to the places nearest to them.
-void chamfer_distance(std::vector<std::uint16_t>& distance, int width, int height,
-                      std::vector<std::uint8_t>* labels = nullptr) {
-  const auto relax = [&](std::size_t i, std::ptrdiff_t side, std::ptrdiff_t row) {
-    std::size_t nearest = i;
-    int least = distance[i];
-    const auto offer = [&](std::size_t from, int step) {
-      if (distance[from] + step < least) {
-        least = distance[from] + step;
-        nearest = from;
-      }
-    };
-    offer(i + side, kChamferStep);
-    offer(i + row, kChamferStep);
-    offer(i + row - 1, kChamferDiagonal);
-    offer(i + row + 1, kChamferDiagonal);
-    distance[i] = static_cast<std::uint16_t>(least);
-    if (labels != nullptr) (*labels)[i] = (*labels)[nearest];
-  };
+/// A chamfer distance with a label of the place it was measured to: the label is in the low byte, so that the
+/// smaller of two is the nearer one, and needs no branch.
+using LabelledDistance = std::uint32_t;
+constexpr LabelledDistance kLabels = 256;
+constexpr LabelledDistance kFar = 60000 * kLabels;
+
+/// In place: elsewhere than at the zeros, the chamfer distance to the nearest of them, and its label. The
+/// border must be kFar.
+void chamfer_distance(std::vector<LabelledDistance>& distance, int width, int height) {
+  constexpr LabelledDistance kStraight = kChamferStep * kLabels;
+  constexpr LabelledDistance kDiagonal = kChamferDiagonal * kLabels;
   for (int y = 1; y < height; ++y) {
-    for (int x = 1; x + 1 < width; ++x) relax(static_cast<std::size_t>(y) * width + x, -1, -width);
+    LabelledDistance* row = distance.data() + static_cast<std::size_t>(y) * width;
+    const LabelledDistance* below = row - width;
+    for (int x = 1; x + 1 < width; ++x) {  // independent of each other: vectorised
+      const LabelledDistance diagonal = std::min(below[x - 1], below[x + 1]) + kDiagonal;
+      row[x] = std::min(row[x], std::min(below[x] + kStraight, diagonal));
+    }
+    for (int x = 1; x + 1 < width; ++x) row[x] = std::min(row[x], row[x - 1] + kStraight);
   }
   for (int y = height - 2; y >= 0; --y) {
-    for (int x = width - 2; x > 0; --x) relax(static_cast<std::size_t>(y) * width + x, 1, width);
+    LabelledDistance* row = distance.data() + static_cast<std::size_t>(y) * width;
+    const LabelledDistance* above = row + width;
+    for (int x = 1; x + 1 < width; ++x) {
+      const LabelledDistance diagonal = std::min(above[x - 1], above[x + 1]) + kDiagonal;
+      row[x] = std::min(row[x], std::min(above[x] + kStraight, diagonal));
+    }
+    for (int x = width - 2; x > 0; --x) row[x] = std::min(row[x], row[x + 1] + kStraight);
   }
 }
 
@@ -101,8 +101,7 @@ struct WallSum {
 
 }  // namespace
 
-WallMap make_wall_map(const OccupancyGrid& uncropped, double cell) {
-  const OccupancyGrid grid = crop_to_known(uncropped);
+WallMap make_wall_map(const OccupancyGrid& grid, double cell) {
   const double scale = grid.resolution / cell;
 
   WallMap map;
@@ -114,8 +113,8 @@ WallMap make_wall_map(const OccupancyGrid& uncropped, double cell) {
 
   const std::size_t size = static_cast<std::size_t>(map.width) * map.height;
   std::vector<WallSum> walls(size);
-  std::vector<std::uint16_t> to_wall(size, kFar);
-  std::vector<std::uint16_t> to_known(size, kFar);
+  std::vector<LabelledDistance> to_wall(size, kFar);
+  std::vector<LabelledDistance> to_known(size, kFar);
   std::vector<std::uint8_t> is_free(size, 0);
   std::vector<int> cell_x(grid.width);
   for (int column = 0; column < grid.width; ++column)
@@ -130,7 +129,6 @@ WallMap make_wall_map(const OccupancyGrid& uncropped, double cell) {
       to_known[i] = 0;
       is_free[i] = 1;
       if (value != Cell::occupied) continue;
-      to_wall[i] = 0;
       walls[i].x += static_cast<float>((column + 0.5) * scale + kMargin);
       walls[i].y += static_cast<float>(y);
       ++walls[i].count;
@@ -141,27 +139,28 @@ WallMap make_wall_map(const OccupancyGrid& uncropped, double cell) {
   }
 
   const BoxSums free_cells(is_free, map.width, map.height);
-  std::vector<std::uint8_t> facing(size, kNoDirection);
   for (int y = 0; y < map.height; ++y) {
     for (int x = 0; x < map.width; ++x) {
       const std::size_t i = static_cast<std::size_t>(y) * map.width + x;
       const WallSum& wall = walls[i];
       if (wall.count == 0) continue;
-      facing[i] = find_facing(free_cells, x, y);
+      const std::uint8_t facing = find_facing(free_cells, x, y);
+      to_wall[i] = facing;
       map.walls.push_back(
-          {{static_cast<double>(wall.x) / wall.count, static_cast<double>(wall.y) / wall.count}, facing[i]});
+          {{static_cast<double>(wall.x) / wall.count, static_cast<double>(wall.y) / wall.count}, facing});
     }
   }
 
-  chamfer_distance(to_wall, map.width, map.height, &facing);
+  chamfer_distance(to_wall, map.width, map.height);
   chamfer_distance(to_known, map.width, map.height);
   map.places.resize(size);
   std::array<std::size_t, kDistanceBins> counts{};
   std::size_t seen = 0;
   for (std::size_t i = 0; i < size; ++i) {
-    if (to_known[i] > kSeenReach * kChamferStep) continue;  // stays unseen
-    const int bin = std::min((to_wall[i] + kChamferStep / 2) / kChamferStep, kDistanceBins - 1);
-    map.places[i] = {static_cast<std::uint8_t>(bin), facing[i]};
+    if (to_known[i] / kLabels > kSeenReach * kChamferStep) continue;  // stays unseen
+    const int cells = static_cast<int>(to_wall[i] / kLabels + kChamferStep / 2) / kChamferStep;
+    const int bin = std::min(cells, kDistanceBins - 1);
+    map.places[i] = {static_cast<std::uint8_t>(bin), static_cast<std::uint8_t>(to_wall[i] % kLabels)};
     ++counts[bin];
     ++seen;
   }

@@ -56,7 +56,7 @@ struct Evidence {
 /// serves clean maps and bent ones.
 class WallEvidence {
  public:
-  /// Both maps must have cells of the same size and outlive this object. Uses at most `max_points` wall
+  /// Both maps must have cells of the same size. Uses at most `max_points` wall
   /// points of each map, evenly drawn, each standing for its share of the walls.
   WallEvidence(const WallMap& fixed, const WallMap& moving, std::size_t max_points);
 
@@ -65,14 +65,36 @@ class WallEvidence {
   Evidence operator()(const SE2& T_fixed_moving_cells, double min_sigma = 0.0) const;
 
  private:
-  const WallMap& fixed_;
-  const WallMap& moving_;
-  std::vector<WallPoint> fixed_walls_;
-  std::vector<WallPoint> moving_walls_;
-  float fixed_weight_;                       // walls that a fixed point stands for
-  float moving_weight_;                      // walls that a moving point stands for
-  std::vector<ModelScores> nats_in_fixed_;   // by encounter: a moving wall met in the fixed map
-  std::vector<ModelScores> nats_in_moving_;  // by encounter: a fixed wall met in the moving map
+  /// How often each encounter happened, and behind them how often the other map had not seen the place.
+  using Histogram = std::array<int, kEncounters + 1>;
+
+  /// A map made for looking walls up in: places as numbers that need no case distinctions.
+  struct LookUp {
+    explicit LookUp(const WallMap& map);
+
+    int width;
+    float last_x;                       // of the last column
+    float last_y;                       // of the last row
+    std::vector<std::uint16_t> places;  // distance bin or kEncounters, and in the high byte the facing
+    std::vector<ModelScores> nats;      // by encounter
+  };
+
+  /// Drawn walls, one array a coordinate.
+  struct Points {
+    Points(const std::vector<WallPoint>& walls, std::size_t max_points);
+
+    std::vector<float> x;
+    std::vector<float> y;
+    std::vector<int> facing;
+    float weight;  // walls that each of them stands for
+  };
+
+  static Histogram count_encounters(const LookUp& map, const Points& points, const SE2& T_map_points);
+
+  LookUp fixed_;
+  LookUp moving_;
+  Points fixed_walls_;
+  Points moving_walls_;
 };
 
 /// Log-likelihood ratio [nats] of the area that both maps know, from how much of it agrees. Maps of one place

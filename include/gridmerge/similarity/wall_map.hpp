@@ -14,7 +14,7 @@ namespace gridmerge {
 inline constexpr int kDistanceBins = 24;
 
 /// In Place::distance: the map has not seen this place, so a wall here would tell nothing.
-inline constexpr std::uint8_t kUnseen = kDistanceBins;
+inline constexpr std::uint8_t kUnseen = 255;
 
 /// The side of a wall from which it was seen is a direction, counted in parts of a turn.
 inline constexpr int kDirections = 32;
@@ -41,7 +41,7 @@ struct WallMap {
   int width = 0;                 ///< columns
   int height = 0;                ///< rows
   SE2 T_map_grid;                ///< grid frame to map frame, both in metres
-  std::vector<Place> places;     ///< width * height
+  std::vector<Place> places;     ///< width * height; those on the rim are always unseen
   std::vector<WallPoint> walls;  ///< one a cell that holds a wall
   std::array<double, kDistanceBins>
       background;  ///< share of the seen area in each distance bin; sums to 1, none is 0
