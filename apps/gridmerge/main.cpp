@@ -1,1 +1,89 @@
-int main() { return 0; }
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "commands.hpp"
+#include "console.hpp"
+
+namespace {
+
+using namespace gridmerge::cli;
+
+// A standard stream that the caller closed would lend its number to the first file that we open, and our text
+// would end up in it. A read-only one in its place keeps the number taken and writing an error.
+void occupy_standard_streams() {
+  for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+    if (::fcntl(descriptor, F_GETFD) != -1) continue;
+    const int flags = descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY;
+    if (::open("/dev/null", flags) != descriptor) std::_Exit(kError);
+  }
+}
+
+// These signals would end the program in the middle of a write; without them the write fails and is dealt
+// with.
+void let_writes_fail() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+// Of an error the asked-for subcommand's help is the one to point to.
+std::string help_command(const CLI::App& app) {
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? "gridmerge --help" : "gridmerge " + commands.front()->get_name() + " --help";
+}
+
+// CLI11 tells of a misspelt command only that there is none.
+std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+  const auto words = app.remaining();
+  const bool misspelt = app.get_subcommands().empty() && !words.empty() && words.front().front() != '-';
+  return misspelt ? "there is no command '" + words.front() + "'" : error.what();
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Merges occupancy grid maps made by robots that do not know where the others are.",
+               "gridmerge");
+  app.footer(
+      "Exit codes: 0 done, 1 error, 2 wrong usage, 3 done but refused.\n"
+      "'gridmerge COMMAND --help' tells more, with an example.");
+  app.set_version_flag("--version", "gridmerge " GRIDMERGE_VERSION);
+  app.require_subcommand(1);
+  Action action;
+  add_info(app, action);
+  add_match(app, action);
+  add_merge(app, action);
+  add_evaluate(app, action);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    print(app.help());
+    return kDone;
+  } catch (const CLI::CallForVersion&) {
+    print(app.version() + "\n");
+    return kDone;
+  } catch (const CLI::ParseError& error) {
+    print_error(explain(app, error) + " (see " + help_command(app) + ")");
+    return kUsage;
+  }
+  return action();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  occupy_standard_streams();
+  let_writes_fail();
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    print_error("out of memory");
+  } catch (const std::exception& error) {
+    print_error(error.what());
+  }
+  return kError;
+}

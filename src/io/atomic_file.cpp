@@ -53,8 +53,18 @@ int write_and_flush(int descriptor, std::string_view bytes) {
 
 StagedFile::StagedFile(std::filesystem::path path, std::string_view bytes) : path_(std::move(path)) {
   std::error_code ignored;
-  if (!path_.has_filename() || std::filesystem::is_directory(path_, ignored)) {
+  const std::filesystem::file_status status = std::filesystem::status(path_, ignored);
+  if (!path_.has_filename() || std::filesystem::is_directory(status)) {
     throw FileError(path_, "cannot be written: it names a directory");
+  }
+  // A rename would put a file in the place of a device such as /dev/null, for everybody.
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw FileError(path_, "cannot be written: it is not a regular file");
+  }
+  // Nor may it take the place of a link such as /dev/stdout, which can lead to a regular file.
+  if (std::filesystem::exists(status) &&
+      std::filesystem::is_symlink(std::filesystem::symlink_status(path_, ignored))) {
+    path_ = std::filesystem::canonical(path_);
   }
   Created created = create_beside(path_);
   int error = write_and_flush(created.descriptor, bytes);

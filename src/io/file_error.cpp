@@ -7,8 +7,6 @@
 
 namespace gridmerge {
 
-namespace {
-
 // A name with a line break or a terminal's escape sequence must not be able to fake or hide a message.
 std::string escape_controls(std::string_view text) {
   std::string line;
@@ -33,8 +31,6 @@ std::string escape_controls(std::string_view text) {
   }
   return line;
 }
-
-}  // namespace
 
 FileError::FileError(std::string_view message) : std::runtime_error(escape_controls(message)) {}
 

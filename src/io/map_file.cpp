@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "file_reader.hpp"
-#include "gridmerge/io/atomic_file.hpp"
 #include "image.hpp"
 #include "interpret.hpp"
 #include "map_yaml.hpp"
@@ -99,6 +98,10 @@ LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options
 }
 
 void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path) {
+  for (StagedFile& file : stage_map(grid, yaml_path)) file.commit();
+}
+
+std::vector<StagedFile> stage_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path) {
   validate(grid);
   if (yaml_path.extension() != ".yaml" && yaml_path.extension() != ".yml") {
     throw FileError(yaml_path, "cannot be written: a map's name must end in .yaml or .yml");
@@ -111,10 +114,10 @@ void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path)
     yaml.origin = grid.origin;
     return format_map_yaml(yaml);
   });
-  StagedFile image(image_path, encode_pgm(grid.width, grid.height, to_pixels(grid)));
-  StagedFile yaml(yaml_path, yaml_text);
-  image.commit();
-  yaml.commit();
+  std::vector<StagedFile> files;
+  files.emplace_back(image_path, encode_pgm(grid.width, grid.height, to_pixels(grid)));
+  files.emplace_back(yaml_path, yaml_text);
+  return files;
 }
 
 }  // namespace gridmerge

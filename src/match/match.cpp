@@ -25,6 +25,10 @@ constexpr double kMaxCellsAlongSide = 800.0;
 /// hypothesis.
 constexpr double kDistinctShare = 0.03;
 constexpr double kMinDistinct = 10.0;  // cells
+/// About so many cells decide how much of the common area agrees.
+constexpr double kRankedCells = 60000.0;
+/// Distinct poses that are ranked. More than most callers ask for: the true one may come up from behind.
+constexpr std::size_t kRankedPoses = 12;
 
 double longer_side(const OccupancyGrid& grid) {
   return std::max(grid.width, grid.height) * grid.resolution;
@@ -61,6 +65,28 @@ void report(const MatchOptions& options, double share) {
   if (options.progress) options.progress(share);
 }
 
+/// Adds to each pose the evidence of the area that both maps know, and puts the best first. Poses that on the
+/// whole speak against themselves are dropped.
+std::vector<Hypothesis> rank(const std::vector<ScoredPose>& poses, const OccupancyGrid& fixed,
+                             const OccupancyGrid& moving, const WallMap& fixed_walls,
+                             const WallMap& moving_walls) {
+  const double known = static_cast<double>(moving.cells.size());
+  const int stride = std::max(1, static_cast<int>(std::sqrt(known / kRankedCells)));
+  const double cells_per_cell = std::pow(moving.resolution / moving_walls.cell, 2);
+  std::vector<Hypothesis> hypotheses;
+  for (const ScoredPose& pose : poses) {
+    const SE2 T_fixed_moving = to_map_frames(pose.T_fixed_moving, fixed_walls, moving_walls);
+    const Agreement common = measure_agreement(fixed, moving, T_fixed_moving, stride);
+    const double score =
+        pose.evidence.score + area_evidence(cells_per_cell * static_cast<double>(common.agreement),
+                                            cells_per_cell * static_cast<double>(common.disagreement));
+    if (score > 0.0) hypotheses.push_back({T_fixed_moving, score, 0.0});
+  }
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
+  return hypotheses;
+}
+
 /// `moving` is the map that is_smaller() picked.
 std::vector<Hypothesis> find_hypotheses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                         const MatchOptions& options) {
@@ -77,30 +103,25 @@ std::vector<Hypothesis> find_hypotheses(const OccupancyGrid& fixed, const Occupa
   refinement.coarse_cell = search.coarse_factor;
   refinement.distinct =
       std::max(kMinDistinct, kDistinctShare * std::max(longer_side(fixed), longer_side(moving)) / cell);
-  refinement.max_poses = std::max<std::size_t>(2, options.max_hypotheses);  // the verdict needs the runner-up
+  refinement.max_poses = std::max(kRankedPoses, options.max_hypotheses);
   const std::vector<ScoredPose> poses = refine(fixed_walls, moving_walls, candidates, refinement,
                                                [&](double share) { report(options, 0.5 + 0.45 * share); });
-  std::vector<Hypothesis> hypotheses;
-  for (const ScoredPose& pose : poses) {
-    if (pose.evidence.score <= 0.0) break;  // speaks against its own pose
-    hypotheses.push_back(
-        {to_map_frames(pose.T_fixed_moving, fixed_walls, moving_walls), pose.evidence.score, 0.0});
-  }
-  return hypotheses;
+  return rank(poses, fixed, moving, fixed_walls, moving_walls);
 }
 
 /// The best hypothesis has the verdict's probability; the others share the rest in proportion to their
 /// scores.
-void assign_probabilities(std::vector<Hypothesis>& hypotheses) {
-  if (hypotheses.empty()) return;
+void assign_probabilities(std::vector<Hypothesis>& hypotheses, double acceptance_index) {
   std::vector<double> scores;
-  for (const Hypothesis& hypothesis : hypotheses) scores.push_back(hypothesis.score);
-  const double best = probability_of(make_verdict_features(scores));
   double others = 0.0;
-  for (std::size_t i = 1; i < hypotheses.size(); ++i) others += hypotheses[i].score;
+  for (const Hypothesis& hypothesis : hypotheses) {
+    scores.push_back(hypothesis.score);
+    others += hypothesis.score;
+  }
+  others -= scores.front();
+  const double best = probability_of(make_verdict_features(scores, acceptance_index));
   hypotheses[0].probability = best;
-  // A runner-up is never called likelier than the best.
-  for (std::size_t i = 1; i < hypotheses.size(); ++i) {
+  for (std::size_t i = 1; i < hypotheses.size(); ++i) {  // a runner-up is never called likelier than the best
     hypotheses[i].probability = std::min(best, (1.0 - best) * hypotheses[i].score / others);
   }
 }
@@ -116,13 +137,12 @@ MatchResult match_in_arena(const OccupancyGrid& fixed, const OccupancyGrid& movi
   MatchResult result;
   result.hypotheses = find_hypotheses(larger, smaller, options);
   if (result.hypotheses.empty()) return result;
-  assign_probabilities(result.hypotheses);
-
   const Agreement agreement = measure_agreement(larger, smaller, result.hypotheses.front().T_fixed_moving);
   result.acceptance_index = agreement.acceptance_index();
   result.agreement = agreement.agreement;
   result.disagreement = agreement.disagreement;
   result.overlap = agreement.overlap;
+  assign_probabilities(result.hypotheses, result.acceptance_index);
 
   if (swapped) {
     for (Hypothesis& hypothesis : result.hypotheses)

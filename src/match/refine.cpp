@@ -90,17 +90,17 @@ SE2 PoseMetric::moved(const SE2& pose, double dx, double dy, double turn) const 
 PoseMetric make_pose_metric(const WallMap& moving) {
   PoseMetric metric;
   if (moving.walls.empty()) return metric;
-  for (const Point2& wall : moving.walls) {
-    metric.pivot.x += wall.x;
-    metric.pivot.y += wall.y;
+  for (const WallPoint& wall : moving.walls) {
+    metric.pivot.x += wall.position.x;
+    metric.pivot.y += wall.position.y;
   }
   const double count = static_cast<double>(moving.walls.size());
   metric.pivot.x /= count;
   metric.pivot.y /= count;
   double sum = 0.0;
-  for (const Point2& wall : moving.walls) {
-    const double dx = wall.x - metric.pivot.x;
-    const double dy = wall.y - metric.pivot.y;
+  for (const WallPoint& wall : moving.walls) {
+    const double dx = wall.position.x - metric.pivot.x;
+    const double dy = wall.position.y - metric.pivot.y;
     sum += dx * dx + dy * dy;
   }
   metric.radius = std::max(1.0, std::sqrt(sum / count));

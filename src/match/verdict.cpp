@@ -6,17 +6,28 @@
 
 namespace gridmerge {
 
-VerdictFeatures make_verdict_features(const std::vector<double>& scores) {
+namespace {
+
+// A logistic model. See docs/decisions.md for the pairs that it was fitted to.
+constexpr double kLeadWeight = 0.25;
+constexpr double kAcceptanceWeight = 95.0;
+constexpr double kBias = -93.0;
+
+}  // namespace
+
+VerdictFeatures make_verdict_features(const std::vector<double>& scores, double acceptance_index) {
   VerdictFeatures features;
-  if (scores.empty() || scores.front() <= 0.0) return features;
-  features.best_score = scores.front();
-  features.margin = scores.size() < 2 ? 1.0 : std::clamp(1.0 - scores[1] / scores[0], 0.0, 1.0);
+  features.acceptance_index = acceptance_index;
+  if (scores.empty() || scores[0] <= 0.0) return features;
+  const double second = scores.size() > 1 ? std::max(0.0, scores[1]) : 0.0;
+  features.lead = (scores[0] - second) / std::sqrt(scores[0]);
   return features;
 }
 
 double probability_of(const VerdictFeatures& features) {
-  if (features.best_score <= 0.0) return 0.0;
-  return features.margin;
+  if (features.lead <= 0.0) return 0.0;
+  const double logit = kBias + kLeadWeight * features.lead + kAcceptanceWeight * features.acceptance_index;
+  return 1.0 / (1.0 + std::exp(-logit));
 }
 
 }  // namespace gridmerge

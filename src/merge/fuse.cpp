@@ -1,8 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/merge/fuse.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
 namespace gridmerge {
 
-FusedMap fuse(const std::vector<PlacedMap>&, double) { return {}; }
+namespace {
+
+constexpr std::int32_t kLimit = static_cast<std::int32_t>(3.5 * kLogOddsPerNat);
+
+// What is remembered of the inputs that know a cell, beside the sum of their log-odds.
+enum Witness : std::uint8_t { kSawFree = 1, kSawOccupied = 2, kSawTwice = 4 };
+
+struct Totals {
+  std::vector<std::int32_t> sum;
+  std::vector<std::uint8_t> witnesses;
+};
+
+void add(const LogOddsPatch& patch, const Lattice& lattice, Totals& total) {
+  for (int row = 0; row < patch.height; ++row) {
+    std::size_t target = static_cast<std::size_t>(patch.row + row) * static_cast<std::size_t>(lattice.width) +
+                         static_cast<std::size_t>(patch.column);
+    for (int column = 0; column < patch.width; ++column, ++target) {
+      const std::int16_t log_odds = patch.at(column, row);
+      if (log_odds == 0) continue;
+      total.sum[target] += log_odds;
+      std::uint8_t& seen = total.witnesses[target];
+      seen = static_cast<std::uint8_t>(seen | (seen != 0 ? kSawTwice : 0) |
+                                       (log_odds > 0 ? kSawOccupied : kSawFree));
+    }
+  }
+}
+
+}  // namespace
+
+FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution) {
+  if (inputs.empty()) throw std::invalid_argument("there is no map to fuse");
+  const Lattice lattice = cover(inputs, resolution);
+  FusedMap fused;
+  fused.grid =
+      make_grid(lattice.width, lattice.height, lattice.resolution, {lattice.corner.x, lattice.corner.y, 0.0});
+  fused.grid.probability.assign(fused.grid.cells.size(), std::numeric_limits<float>::quiet_NaN());
+
+  Totals total{std::vector<std::int32_t>(fused.grid.cells.size(), 0),
+               std::vector<std::uint8_t>(fused.grid.cells.size(), 0)};
+  for (const PlacedMap& input : inputs) add(draw_log_odds(input, lattice), lattice, total);
+
+  for (std::size_t i = 0; i < fused.grid.cells.size(); ++i) {
+    const bool conflict = (total.witnesses[i] & kSawFree) != 0 && (total.witnesses[i] & kSawOccupied) != 0;
+    if (conflict) ++fused.conflicting;
+    if (!conflict && (total.witnesses[i] & kSawTwice) != 0) ++fused.agreeing;
+    if (total.sum[i] == 0) continue;
+    const double log_odds = std::clamp(total.sum[i], -kLimit, kLimit) / kLogOddsPerNat;
+    fused.grid.cells[i] = log_odds > 0.0 ? Cell::occupied : Cell::free;
+    fused.grid.probability[i] = static_cast<float>(1.0 / (1.0 + std::exp(-log_odds)));
+  }
+  return fused;
+}
 
 }  // namespace gridmerge

@@ -76,8 +76,9 @@ ScoreImage make_score_image(const WallMap& fixed, const SearchFrame& frame,
   for (int y = 0; y < fixed.height; ++y) {
     const std::size_t line = static_cast<std::size_t>(y / options.coarse_factor) * frame.fixed_width;
     for (int x = 0; x < fixed.width; ++x) {
-      sums[line + x / options.coarse_factor] +=
-          table[fixed.distance[static_cast<std::size_t>(y) * fixed.width + x]];
+      const int distance = fixed.places[static_cast<std::size_t>(y) * fixed.width + x].distance;
+      if (distance == kUnseen) continue;
+      sums[line + x / options.coarse_factor] += table[encounter(distance, Facing::unclear)];
     }
   }
 
@@ -105,7 +106,7 @@ struct TurnedWalls {
   int shifts_y = 0;
 };
 
-TurnedWalls turn_walls(const std::vector<Point2>& walls, const SearchFrame& frame, int rotation,
+TurnedWalls turn_walls(const std::vector<WallPoint>& walls, const SearchFrame& frame, int rotation,
                        int image_width) {
   const double angle = frame.angle(rotation);
   const double c = std::cos(angle);
@@ -113,9 +114,9 @@ TurnedWalls turn_walls(const std::vector<Point2>& walls, const SearchFrame& fram
   TurnedWalls turned;
   turned.offsets.reserve(walls.size());
   int left = frame.box, right = 0, bottom = frame.box, top = 0;
-  for (const Point2& wall : walls) {
-    const double x = wall.x - frame.centre.x;
-    const double y = wall.y - frame.centre.y;
+  for (const WallPoint& wall : walls) {
+    const double x = wall.position.x - frame.centre.x;
+    const double y = wall.position.y - frame.centre.y;
     const int column = static_cast<int>(std::floor((c * x - s * y) / frame.factor + 0.5 * frame.box));
     const int row = static_cast<int>(std::floor((s * x + c * y) / frame.factor + 0.5 * frame.box));
     turned.offsets.push_back(row * image_width + column);
@@ -210,7 +211,7 @@ std::vector<PoseCandidate> search_all_poses(const WallMap& fixed, const WallMap&
   check(fixed, moving, options);
   const SearchFrame frame = make_frame(fixed, moving, options);
   const ScoreImage evidence = make_score_image(fixed, frame, options);
-  const std::vector<Point2> walls = draw_evenly(moving.walls, options.samples);
+  const std::vector<WallPoint> walls = draw_evenly(moving.walls, options.samples);
 
   if (walls.empty()) return {};
 

@@ -7,17 +7,17 @@
 namespace gridmerge {
 
 Agreement measure_agreement(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                            const SE2& T_fixed_moving) {
+                            const SE2& T_fixed_moving, int stride) {
   const SE2 T_fixedgrid_movinggrid = inverse(fixed.origin) * T_fixed_moving * moving.origin;
   const double scale = moving.resolution / fixed.resolution;
   const double step_x = std::cos(T_fixedgrid_movinggrid.theta) * scale;
   const double step_y = std::sin(T_fixedgrid_movinggrid.theta) * scale;
 
   Agreement result;
-  for (int row = 0; row < moving.height; ++row) {
+  for (int row = stride / 2; row < moving.height; row += stride) {
     const double row_x = T_fixedgrid_movinggrid.x / fixed.resolution - step_y * (row + 0.5);
     const double row_y = T_fixedgrid_movinggrid.y / fixed.resolution + step_x * (row + 0.5);
-    for (int column = 0; column < moving.width; ++column) {
+    for (int column = stride / 2; column < moving.width; column += stride) {
       const Cell ours = moving.at(column, row);
       if (ours == Cell::unknown) continue;
       const double x = row_x + step_x * (column + 0.5);
@@ -28,6 +28,9 @@ Agreement measure_agreement(const OccupancyGrid& fixed, const OccupancyGrid& mov
       ++(ours == theirs ? result.agreement : result.disagreement);
     }
   }
+
+  result.agreement *= static_cast<std::int64_t>(stride) * stride;
+  result.disagreement *= static_cast<std::int64_t>(stride) * stride;
 
   const double both_area =
       static_cast<double>(result.agreement + result.disagreement) * moving.resolution * moving.resolution;

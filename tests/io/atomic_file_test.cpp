@@ -106,6 +106,24 @@ TEST(AtomicFile, RefusesDirectories) {
   EXPECT_EQ(directory.names(), Names{});
 }
 
+TEST(AtomicFile, ReplacesWhatALinkLeadsTo) {
+  const TemporaryDirectory directory;
+  directory.write("elsewhere/a", "old");
+  std::filesystem::create_symlink("elsewhere/a", directory.file("link"));
+  write_file_atomically(directory.file("link"), "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(directory.file("link")));
+  EXPECT_EQ(read_file(directory.file("elsewhere/a")), "new");
+}
+
+TEST(AtomicFile, RefusesWhatIsNoRegularFile) {
+  const TemporaryDirectory directory;
+  ASSERT_EQ(mkfifo(directory.file("pipe").c_str(), 0600), 0);
+  std::filesystem::create_symlink("/dev/null", directory.file("link"));
+  EXPECT_TRUE(contains(error_of(directory.file("pipe")), "it is not a regular file"));
+  EXPECT_TRUE(contains(error_of(directory.file("link")), "it is not a regular file"));
+  EXPECT_TRUE(std::filesystem::is_fifo(directory.file("pipe")));
+}
+
 TEST(AtomicFile, NeedsADirectoryThatItCanWriteTo) {
   const TemporaryDirectory directory;
   EXPECT_EQ(error_of(directory.file("missing/a")),

@@ -3,9 +3,14 @@
 
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 namespace gridmerge {
+
+/// The text with control characters shown as escapes, so that it is one line of a terminal whatever it holds. What is
+/// escaped already stays as it is.
+std::string escape_controls(std::string_view text);
 
 /// A file that cannot be read or written. The message names the file and the cause, "a.yaml: missing key
 /// 'origin'", on one line: control characters (file names and file contents are not ours to choose) are shown

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/io/atomic_file.hpp"
 #include "gridmerge/io/file_error.hpp"
 
 namespace gridmerge {
@@ -53,5 +54,9 @@ LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options
 /// nothing is left behind (but a new image if only the YAML cannot take its place), or std::invalid_argument
 /// for a grid that `validate` refuses.
 void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
+
+/// The files that save_map() writes, staged: the image, then the YAML. For a map that belongs to other
+/// outputs.
+std::vector<StagedFile> stage_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
 
 }  // namespace gridmerge

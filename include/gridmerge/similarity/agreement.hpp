@@ -21,8 +21,10 @@ struct Agreement {
 };
 
 /// Looks every known cell of `moving` up in `fixed` (nearest cell) under `T_fixed_moving` [m, rad, map
-/// frames]. O(cells of moving).
+/// frames]. With a `stride` above 1, only every stride-th cell of every stride-th row is looked up, and
+/// stands for stride^2 cells. O(cells of moving / stride^2, and once the cells of both to count the known
+/// ones).
 Agreement measure_agreement(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                            const SE2& T_fixed_moving);
+                            const SE2& T_fixed_moving, int stride = 1);
 
 }  // namespace gridmerge

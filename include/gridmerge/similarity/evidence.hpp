@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -25,11 +26,23 @@ std::span<const ErrorModel, kErrorModels> error_models();
 /// A score [nats] for each of error_models().
 using ModelScores = std::array<float, kErrorModels>;
 
-/// Log-likelihood ratio [nats] of meeting a wall at each distance, "same place" against "unrelated":
-///   log((1 - outliers) * P(distance | sigma) / P(distance | background) + outliers),
-/// and 0 for kUnseen.
-std::array<float, kDistanceBins + 1> evidence_table(const ErrorModel& model,
-                                                    const std::array<double, kDistanceBins>& background);
+/// How the free sides of two walls that meet lie to each other.
+enum class Facing : std::uint8_t { unclear = 0, same = 1, opposite = 2 };
+inline constexpr int kFacings = 3;
+
+/// What a wall point can meet: a distance bin and a facing, or nothing that was seen.
+inline constexpr int kEncounters = kFacings * kDistanceBins;
+inline constexpr int encounter(int distance_bin, Facing facing) {
+  return static_cast<int>(facing) * kDistanceBins + distance_bin;
+}
+
+/// Log-likelihood ratio [nats] of every encounter, "same place" against "unrelated":
+///   log((1 - outliers) * P(distance | sigma) / P(distance | background) * F + outliers),
+/// where F is the ratio for the facing: two walls that are one were seen from the same side nearly always,
+/// unrelated ones every second time, and an unclear facing tells nothing. A wall that meets an unseen place
+/// counts 0.
+std::array<float, kEncounters> evidence_table(const ErrorModel& model,
+                                              const std::array<double, kDistanceBins>& background);
 
 /// The score of a pose, and the error model under which it is best.
 struct Evidence {
@@ -54,15 +67,21 @@ class WallEvidence {
  private:
   const WallMap& fixed_;
   const WallMap& moving_;
-  std::vector<Point2> fixed_walls_;
-  std::vector<Point2> moving_walls_;
+  std::vector<WallPoint> fixed_walls_;
+  std::vector<WallPoint> moving_walls_;
   float fixed_weight_;                       // walls that a fixed point stands for
   float moving_weight_;                      // walls that a moving point stands for
-  std::vector<ModelScores> nats_in_fixed_;   // by distance bin: a moving wall met in the fixed map
-  std::vector<ModelScores> nats_in_moving_;  // by distance bin: a fixed wall met in the moving map
+  std::vector<ModelScores> nats_in_fixed_;   // by encounter: a moving wall met in the fixed map
+  std::vector<ModelScores> nats_in_moving_;  // by encounter: a fixed wall met in the moving map
 };
 
+/// Log-likelihood ratio [nats] of the area that both maps know, from how much of it agrees. Maps of one place
+/// disagree in few of these cells, maps laid over each other by chance in more, even where walls happen to
+/// meet. Neighbouring cells tell nearly the same, so an area counts for less than the sum of its cells. Areas
+/// in cells of the wall maps.
+double area_evidence(double agreement, double disagreement);
+
 /// At most `count` of the points, evenly spaced along the list.
-std::vector<Point2> draw_evenly(const std::vector<Point2>& points, std::size_t count);
+std::vector<WallPoint> draw_evenly(const std::vector<WallPoint>& points, std::size_t count);
 
 }  // namespace gridmerge

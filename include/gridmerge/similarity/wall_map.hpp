@@ -13,18 +13,36 @@ namespace gridmerge {
 /// for all that is farther.
 inline constexpr int kDistanceBins = 24;
 
-/// In WallMap::distance: the map has not seen this place, so a wall here would tell nothing.
+/// In Place::distance: the map has not seen this place, so a wall here would tell nothing.
 inline constexpr std::uint8_t kUnseen = kDistanceBins;
 
-/// A map as the engine compares it: where its walls are, and for every place how far the nearest one is.
-/// The grid frame has its origin in the lower-left corner and is measured in cells.
+/// The side of a wall from which it was seen is a direction, counted in parts of a turn.
+inline constexpr int kDirections = 32;
+
+/// In place of a direction: the wall is free on both sides, or its side is not known.
+inline constexpr std::uint8_t kNoDirection = 255;
+
+/// What a map says of walls at one place.
+struct Place {
+  std::uint8_t distance = kUnseen;     ///< to the nearest wall: a distance bin, or kUnseen
+  std::uint8_t facing = kNoDirection;  ///< where that wall's free side is, as seen from the wall
+};
+
+/// A wall where a map has one.
+struct WallPoint {
+  Point2 position;                     ///< [cells, grid frame]
+  std::uint8_t facing = kNoDirection;  ///< where its free side is
+};
+
+/// A map as the engine compares it: where its walls are and which way they face, and for every place how far
+/// the nearest one is. The grid frame has its origin in the lower-left corner and is measured in cells.
 struct WallMap {
-  double cell = 1.0;                   ///< side of a cell [m]
-  int width = 0;                       ///< columns
-  int height = 0;                      ///< rows
-  SE2 T_map_grid;                      ///< grid frame to map frame, both in metres
-  std::vector<std::uint8_t> distance;  ///< width * height: distance bin, or kUnseen
-  std::vector<Point2> walls;           ///< one point a cell that holds a wall [cells, grid frame]
+  double cell = 1.0;             ///< side of a cell [m]
+  int width = 0;                 ///< columns
+  int height = 0;                ///< rows
+  SE2 T_map_grid;                ///< grid frame to map frame, both in metres
+  std::vector<Place> places;     ///< width * height
+  std::vector<WallPoint> walls;  ///< one a cell that holds a wall
   std::array<double, kDistanceBins>
       background;  ///< share of the seen area in each distance bin; sums to 1, none is 0
 };

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "gridmerge/io/map_file.hpp"
+#include "options.hpp"
+
+namespace gridmerge::cli {
+
+/// Prints the result. A reader that has gone away (`| head`) is not an error; anything else that keeps the
+/// text from being written is: throws std::runtime_error.
+void print(const std::string& text);
+
+/// Prints "gridmerge: message" to stderr as one line, whatever the message holds.
+void print_error(const std::string& message);
+
+/// A transform or a pose as people read it, on one line.
+std::string describe_pose(const SE2& T);
+
+/// stderr while a command runs: warnings, remarks, and a progress bar when it is a terminal.
+class Console {
+ public:
+  explicit Console(const CommonOptions& options);
+  ~Console();
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+
+  /// What the user should know. Not printed when quiet.
+  void warn(const std::string& message);
+
+  /// What is going on. Printed when verbose.
+  void remark(const std::string& message);
+
+  /// Shows how much of the work is done, in [0, 1]; gone with clear().
+  void progress(double share);
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool quiet_;
+  bool verbose_;
+  bool bar_wanted_;
+  bool bar_shown_ = false;
+  Clock::time_point next_draw_;
+};
+
+/// load_map() that passes its warnings on to `console`.
+OccupancyGrid load(const std::string& path, double resolution, Console& console);
+
+}  // namespace gridmerge::cli

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/evaluate/evaluate.hpp"
+
+#include <memory>
+#include <string>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "gridmerge/evaluate/tables.hpp"
+#include "gridmerge/io/atomic_file.hpp"
+
+namespace gridmerge::cli {
+
+namespace {
+
+struct EvaluateCommandOptions {
+  CommonOptions common;
+  std::string pairs;
+  std::string negatives;
+  std::string sets;
+  std::string json;
+  double accept_probability = MatchOptions{}.accept_probability;
+};
+
+Truth read_truth(const EvaluateCommandOptions& options) {
+  Truth truth;
+  if (!options.pairs.empty()) truth.pairs = read_pairs(options.pairs);
+  if (!options.negatives.empty()) truth.negatives = read_negatives(options.negatives);
+  if (!options.sets.empty()) truth.sets = read_sets(options.sets);
+  return truth;
+}
+
+Evaluation evaluate_files(const EvaluateCommandOptions& options) {
+  Console console(options.common);
+  EvaluateOptions engine;
+  engine.match = match_options(options.common, options.accept_probability);
+  engine.progress = [&](std::size_t done, std::size_t total) {
+    console.progress(static_cast<double>(done) / static_cast<double>(total));
+  };
+  engine.warn = [&](const std::string& warning) { console.warn(warning); };
+  return evaluate(read_truth(options), engine);
+}
+
+int run_evaluate(const EvaluateCommandOptions& options) {
+  const Evaluation evaluation = evaluate_files(options);
+  if (options.json == "-") {
+    print(evaluation_json(evaluation));
+    return kDone;
+  }
+  // Before the file, so that a file that cannot be written does not cost the result.
+  if (options.common.verbose) print(case_table(evaluation) + "\n");
+  print(summary_table(evaluation, options.accept_probability));
+  if (!options.json.empty()) write_file_atomically(options.json, evaluation_json(evaluation));
+  return kDone;
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("evaluate", "Compare results with ground truth");
+  const auto options = std::make_shared<EvaluateCommandOptions>();
+  command->add_option("PAIRS", options->pairs, "Table of pairs with true transforms (TSV)")
+      ->type_name("FILE");
+  command->add_option("--negatives", options->negatives, "Table of pairs with no common place")
+      ->type_name("FILE");
+  command->add_option("--sets", options->sets, "Table of sets of maps to merge, with true poses")
+      ->type_name("FILE");
+  command->add_option("--json", options->json, "Write JSON to this file; - prints it instead of the summary")
+      ->type_name("FILE");
+  add_accept_option(*command, options->accept_probability);
+  add_common_options(*command, options->common);
+  command->footer(
+      "At least one of the three tables is needed; maps are named relative to the table.\n\n"
+      "Example:\n  gridmerge evaluate pairs.tsv --negatives negatives.tsv --json result.json");
+  command->callback([options, &action] {
+    if (options->pairs.empty() && options->negatives.empty() && options->sets.empty()) {
+      throw CLI::ValidationError("evaluate", "give PAIRS, --negatives or --sets");
+    }
+    action = [options] { return run_evaluate(*options); };
+  });
+}
+
+}  // namespace gridmerge::cli

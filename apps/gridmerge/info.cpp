@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "gridmerge/grid/resample.hpp"
+#include "gridmerge/io/map_file.hpp"
+
+namespace gridmerge::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoOptions {
+  CommonOptions common;
+  std::vector<std::string> maps;
+  double resolution = 0.0;
+  bool json = false;
+};
+
+struct Size {
+  double width = 0.0;   // [m]
+  double height = 0.0;  // [m]
+};
+
+// Of the smallest rectangle along the grid's axes that holds every known cell.
+Size known_size(const OccupancyGrid& grid) {
+  if (count_cells(grid).known() == 0) return {};
+  const OccupancyGrid known = crop_to_known(grid);
+  return {known.width * known.resolution, known.height * known.resolution};
+}
+
+std::string describe(const std::string& path, const LoadedMap& map) {
+  const OccupancyGrid& grid = map.grid;
+  const CellCounts counts = count_cells(grid);
+  const Size known = known_size(grid);
+  const auto share = [&](std::size_t count) {
+    return fmt::format("{} ({:.1f} %)", count,
+                       100.0 * static_cast<double>(count) / static_cast<double>(grid.cells.size()));
+  };
+  std::string text = escape_controls(path) + "\n";
+  const auto line = [&](const char* name, const std::string& value) {
+    fmt::format_to(std::back_inserter(text), "  {:<12}{}\n", name, value);
+  };
+  line("size", fmt::format("{} x {} cells, {:.2f} m x {:.2f} m", grid.width, grid.height,
+                           grid.width * grid.resolution, grid.height * grid.resolution));
+  line("resolution", fmt::format("{} m", grid.resolution));
+  line("origin", fmt::format("x {:.3f} m, y {:.3f} m, yaw {:.4f} rad ({:.2f} deg)", grid.origin.x,
+                             grid.origin.y, grid.origin.theta, grid.origin.theta * 180.0 / std::numbers::pi));
+  line("occupied", share(counts.occupied));
+  line("free", share(counts.free));
+  line("unknown", share(counts.unknown));
+  line("known area", fmt::format("{:.2f} m x {:.2f} m", known.width, known.height));
+  for (const std::string& warning : map.warnings) line("warning", escape_controls(warning));
+  return text;
+}
+
+Json describe_json(const std::string& path, const LoadedMap& map) {
+  const OccupancyGrid& grid = map.grid;
+  const CellCounts counts = count_cells(grid);
+  const Size known = known_size(grid);
+  return {{"source", path},
+          {"width", grid.width},
+          {"height", grid.height},
+          {"resolution", grid.resolution},
+          {"origin", {{"x", grid.origin.x}, {"y", grid.origin.y}, {"theta", grid.origin.theta}}},
+          {"occupied", counts.occupied},
+          {"free", counts.free},
+          {"unknown", counts.unknown},
+          {"known_size", {{"width", known.width}, {"height", known.height}}},
+          {"warnings", map.warnings}};
+}
+
+int info(const InfoOptions& options) {
+  LoadOptions load_options;
+  load_options.resolution = options.resolution;
+  Json maps = Json::array();
+  for (const std::string& path : options.maps) {
+    const LoadedMap map = load_map(path, load_options);
+    if (options.json) {
+      maps.push_back(describe_json(path, map));
+    } else {
+      print(describe(path, map));
+    }
+  }
+  if (options.json) print(Json{{"maps", maps}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  return kDone;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("info", "Show size, resolution, origin, cell counts and warnings of maps");
+  const auto options = std::make_shared<InfoOptions>();
+  command->add_option("MAP", options->maps, "map_server YAML, or an image with --resolution")
+      ->type_name("FILE")
+      ->required();
+  command->add_flag("--json", options->json, "Print JSON");
+  add_resolution_option(*command, options->resolution);
+  add_common_options(*command, options->common);
+  command->footer("Example:\n  gridmerge info robot1.yaml robot2.yaml");
+  command->callback([options, &action] { action = [options] { return info(*options); }; });
+}
+
+}  // namespace gridmerge::cli

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/match/match.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "gridmerge/report/json.hpp"
+
+namespace gridmerge::cli {
+
+namespace {
+
+struct MatchCommandOptions {
+  CommonOptions common;
+  std::string fixed;
+  std::string moving;
+  double resolution = 0.0;
+  double accept_probability = MatchOptions{}.accept_probability;
+  bool json = false;
+};
+
+std::string describe_verdict(const MatchResult& result) {
+  if (result.verdict == Verdict::accepted) {
+    return fmt::format("accepted: the maps show one place, with probability {:.4f}", result.probability);
+  }
+  if (result.hypotheses.empty()) return "refused: there is too little in the maps to compare";
+  return fmt::format("refused: the best way to lay the maps is right with probability {:.4f} only",
+                     result.probability);
+}
+
+std::string describe(const MatchResult& result, bool verbose) {
+  std::string text = describe_verdict(result) + "\n";
+  const auto line = [&](const std::string& name, const std::string& value) {
+    fmt::format_to(std::back_inserter(text), "  {:<14}{}\n", name, value);
+  };
+  line("T_fixed_moving", " " + describe_pose(result.T_fixed_moving));
+  line("agreement", fmt::format(" {} cells agree, {} do not (acceptance index {:.3f})", result.agreement,
+                                result.disagreement, result.acceptance_index));
+  line("overlap", fmt::format(" {:.1f} % of the smaller map", 100.0 * result.overlap));
+  line("time", fmt::format(" {:.3f} s", result.seconds));
+  if (!verbose) return text;
+  for (std::size_t i = 0; i < result.hypotheses.size(); ++i) {
+    const Hypothesis& hypothesis = result.hypotheses[i];
+    line(fmt::format("hypothesis {}", i + 1),
+         fmt::format(" {}, score {:.1f}, probability {:.4f}", describe_pose(hypothesis.T_fixed_moving),
+                     hypothesis.score, hypothesis.probability));
+  }
+  return text;
+}
+
+MatchResult match_files(const MatchCommandOptions& options) {
+  Console console(options.common);
+  const OccupancyGrid fixed = load(options.fixed, options.resolution, console);
+  const OccupancyGrid moving = load(options.moving, options.resolution, console);
+  MatchOptions engine = match_options(options.common, options.accept_probability);
+  engine.progress = [&](double share) { console.progress(share); };
+  try {
+    return match(fixed, moving, engine);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(options.fixed + " and " + options.moving + ": " + error.what());
+  }
+}
+
+int run_match(const MatchCommandOptions& options) {
+  const MatchResult result = match_files(options);
+  print(options.json ? match_json(options.fixed, options.moving, result)
+                     : describe(result, options.common.verbose));
+  return result.verdict == Verdict::accepted ? kDone : kRefused;
+}
+
+}  // namespace
+
+void add_match(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("match", "Find how one map lies on another, and whether to believe it");
+  const auto options = std::make_shared<MatchCommandOptions>();
+  command->add_option("FIXED", options->fixed, "map_server YAML, or an image with --resolution")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("MOVING", options->moving, "The map to lay on it")->type_name("FILE")->required();
+  command->add_flag("--json", options->json, "Print JSON");
+  add_accept_option(*command, options->accept_probability);
+  add_resolution_option(*command, options->resolution);
+  add_common_options(*command, options->common);
+  command->footer(
+      "The transform takes points of MOVING to FIXED, in metres and radians of the map frames.\n"
+      "It is given for a refused pair too; the exit code is 3 then.\n\n"
+      "Example:\n  gridmerge match robot1.yaml robot2.yaml");
+  command->callback([options, &action] { action = [options] { return run_match(*options); }; });
+}
+
+}  // namespace gridmerge::cli

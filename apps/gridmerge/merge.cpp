@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/merge/merge.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "gridmerge/report/json.hpp"
+#include "gridmerge/report/merge_output.hpp"
+
+namespace gridmerge::cli {
+
+namespace {
+
+struct MergeCommandOptions {
+  CommonOptions common;
+  std::vector<std::string> maps;
+  std::string output;
+  double resolution = 0.0;
+  double output_resolution = 0.0;
+  double accept_probability = MatchOptions{}.accept_probability;
+};
+
+MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeCommandOptions& options,
+                       Console& console) {
+  MergeOptions engine;
+  engine.match = match_options(options.common, options.accept_probability);
+  engine.resolution = options.output_resolution;
+  engine.progress = [&](std::size_t done, std::size_t total) {
+    console.progress(static_cast<double>(done) / static_cast<double>(total));
+  };
+  return merge(maps, engine);
+}
+
+std::string describe_joins(const std::vector<std::string>& names, const MergeResult& result) {
+  std::string text;
+  for (const Join& join : result.joins) {
+    fmt::format_to(std::back_inserter(text), "{:<8} probability {:.4f}, {:.3f} s: {} and {}\n",
+                   join.match.verdict == Verdict::accepted ? "accepted" : "refused", join.match.probability,
+                   join.match.seconds, escape_controls(names[join.fixed]),
+                   escape_controls(names[join.moving]));
+  }
+  return text;
+}
+
+std::string describe(const std::vector<std::string>& names, const MergeResult& result) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  for (std::size_t i = 0; i < result.components.size(); ++i) {
+    const Component& component = result.components[i];
+    fmt::format_to(out, "{}: {} of {} maps\n", component_file(i), component.members.size(), names.size());
+    for (const Member& member : component.members) {
+      fmt::format_to(out, "  {}: {}\n", escape_controls(names[member.map]),
+                     describe_pose(member.T_component_map));
+    }
+  }
+  for (const std::size_t map : result.left_out) {
+    fmt::format_to(out, "left out: {}\n", escape_controls(names[map]));
+  }
+  return text;
+}
+
+int run_merge(const MergeCommandOptions& options) {
+  Console console(options.common);
+  std::vector<OccupancyGrid> maps;
+  for (const std::string& path : options.maps) maps.push_back(load(path, options.resolution, console));
+  prepare_merge_output(options.output, options.maps);
+  const MergeResult result = merge_maps(maps, options, console);
+  console.clear();
+  write_merge_output(options.output, options.maps, maps, result);
+  if (options.common.verbose) print(describe_joins(options.maps, result));
+  if (!options.common.quiet) print(describe(options.maps, result));
+  console.remark("wrote " + options.output);
+  return result.components.size() == 1 && result.left_out.empty() ? kDone : kRefused;
+}
+
+}  // namespace
+
+void add_merge(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("merge", "Merge maps into one, as far as they fit together");
+  const auto options = std::make_shared<MergeCommandOptions>();
+  command->add_option("MAP", options->maps, "map_server YAMLs, or images with --resolution")
+      ->type_name("FILE")
+      ->required()
+      ->expected(2, -1);
+  command->add_option("-o,--output", options->output, "Directory for the results; made if need be")
+      ->type_name("DIR")
+      ->required();
+  command
+      ->add_option("--output-resolution", options->output_resolution,
+                   "Metres a cell of the merged map; without it the finest of the maps'")
+      ->type_name("METRES")
+      ->check(kMetres);
+  add_accept_option(*command, options->accept_probability);
+  add_resolution_option(*command, options->resolution);
+  add_common_options(*command, options->common);
+  command->footer(
+      "Writes merged.yaml and merged.pgm for map_server, transforms.json, preview.png and report.html. Maps\n"
+      "that do not fit are left out and the exit code is 3.\n\n"
+      "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged");
+  command->callback([options, &action] { action = [options] { return run_merge(*options); }; });
+}
+
+}  // namespace gridmerge::cli

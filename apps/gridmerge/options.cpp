@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "options.hpp"
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+namespace gridmerge::cli {
+
+namespace {
+
+std::optional<double> parse_finite(const std::string& text) {
+  double value = 0.0;
+  if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+const CLI::Validator kProbability(
+    [](std::string& text) {
+      const auto value = parse_finite(text);
+      return value && *value >= 0.0 && *value <= 1.0 ? std::string()
+                                                     : "'" + text + "' is not between 0 and 1";
+    },
+    "");
+
+}  // namespace
+
+const CLI::Validator kMetres(
+    [](std::string& text) {
+      const auto value = parse_finite(text);
+      return value && *value > 0.0 ? std::string() : "'" + text + "' is not a positive number of metres";
+    },
+    "");
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+  CLI::Option* quiet = command.add_flag("-q,--quiet", options.quiet, "Print results and errors only");
+  command.add_flag("-v,--verbose", options.verbose, "Print more")->excludes(quiet);
+  command
+      .add_option("--threads", options.threads, "Worker threads; 0 = one a core. Results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024).description(""))
+      ->capture_default_str();
+}
+
+void add_resolution_option(CLI::App& command, double& resolution) {
+  command.add_option("--resolution", resolution, "Metres a cell of maps that are images without a YAML")
+      ->type_name("METRES")
+      ->check(kMetres);
+}
+
+void add_accept_option(CLI::App& command, double& probability) {
+  command.add_option("--accept", probability, "Accept from this probability on")
+      ->type_name("P")
+      ->check(kProbability)
+      ->capture_default_str();
+}
+
+MatchOptions match_options(const CommonOptions& common, double accept_probability) {
+  MatchOptions options;
+  options.threads = common.threads;
+  options.accept_probability = accept_probability;
+  return options;
+}
+
+}  // namespace gridmerge::cli

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gridmerge/evaluate/truth.hpp"
+#include "gridmerge/match/match.hpp"
+
+namespace gridmerge {
+
+/// What the engine is to be compared with.
+struct Truth {
+  std::vector<TruePair> pairs;
+  std::vector<NegativePair> negatives;
+  std::vector<TrueSet> sets;
+};
+
+struct EvaluateOptions {
+  MatchOptions match;  ///< how each pair is matched; its progress callback is not used
+  /// How much of the maps of pairs and negatives is kept in memory, those used last first [bytes].
+  std::size_t cache_bytes = std::size_t{96} << 20;
+  /// Called with the number of finished and of all pairs, negatives and sets.
+  std::function<void(std::size_t, std::size_t)> progress;
+  /// Called with "file: what its author may not have meant", once for each such warning of a map.
+  std::function<void(const std::string&)> warn;
+};
+
+/// How one pair went: a true pair, or a negative.
+struct MatchOutcome {
+  std::string fixed;   ///< as the truth file writes it
+  std::string moving;  ///< as the truth file writes it
+  std::string tier;    ///< empty for a negative
+  Verdict verdict = Verdict::refused;
+  double probability = 0.0;
+  /// rms_displacement() of the best hypothesis [m]; none for a negative, and none when there is no
+  /// hypothesis.
+  std::optional<double> error;
+  std::optional<double> tolerance;  ///< [m]; none for a negative
+  double seconds = 0.0;             ///< from grids in memory to the verdict
+
+  bool negative() const { return !tolerance; }
+  bool accepted() const { return verdict == Verdict::accepted; }
+  /// The best hypothesis is the true pose, accepted or not.
+  bool correct() const { return error && tolerance && *error <= *tolerance; }
+};
+
+/// How one set of maps went. A map alone in its component is left out; every other is correct or wrong.
+struct SetOutcome {
+  std::string name;
+  std::size_t maps = 0;
+  std::size_t correct = 0;
+  std::size_t wrong = 0;
+  std::size_t left_out = 0;
+
+  bool complete() const { return correct == maps; }
+};
+
+struct Evaluation {
+  std::vector<MatchOutcome> matches;  ///< the pairs, then the negatives, each in file order
+  std::vector<SetOutcome> sets;       ///< in file order
+};
+
+/// Matches every pair and negative and merges every set, one after the other, reading maps as it goes.
+/// Throws FileError when a map cannot be read, and std::runtime_error naming the maps when they cannot be
+/// compared.
+Evaluation evaluate(const Truth& truth, const EvaluateOptions& options = {});
+
+}  // namespace gridmerge

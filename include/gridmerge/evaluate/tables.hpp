@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "gridmerge/evaluate/evaluate.hpp"
+
+namespace gridmerge {
+
+/// For people: counts (by tier where there are tiers), times, and what other acceptance thresholds would do;
+/// the row of `accept_probability` is marked. Several lines, each ending in a newline.
+std::string summary_table(const Evaluation& evaluation, double accept_probability);
+
+/// For people: a line for each match. Ends in a newline unless there is none.
+std::string case_table(const Evaluation& evaluation);
+
+/// For programs: a JSON object with the keys `pairs`, `negatives`, `sets`, `seconds` and `cases`, always all
+/// of them. `cases` lists the pairs, then the negatives, in file order; a negative has no truth, so its
+/// `error`, `tolerance` and `correct` are null. Ends in a newline.
+std::string evaluation_json(const Evaluation& evaluation);
+
+}  // namespace gridmerge

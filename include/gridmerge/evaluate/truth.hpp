@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gridmerge/grid/se2.hpp"
+
+namespace gridmerge {
+
+/// A map that a truth file names.
+struct TruthMap {
+  std::string name;            ///< as the file writes it
+  std::filesystem::path path;  ///< a relative name is taken relative to the truth file's directory
+};
+
+/// Two maps of one place.
+struct TruePair {
+  TruthMap fixed;
+  TruthMap moving;
+  SE2 T_fixed_moving;      ///< between the map frames [m, rad]
+  double tolerance = 0.0;  ///< largest rms_displacement() of a correct estimate [m]
+  std::string
+      tier;  ///< how hard the pair is, in the file's own words; empty where the file has no such column
+};
+
+/// Two maps with no common place: the only right answer is to refuse.
+struct NegativePair {
+  TruthMap fixed;
+  TruthMap moving;
+};
+
+struct TrueMember {
+  TruthMap map;
+  SE2 T_set_map;           ///< takes the map's frame to the set's [m, rad]
+  double tolerance = 0.0;  ///< as in TruePair [m]
+};
+
+/// Maps of one place by several robots: at least two.
+struct TrueSet {
+  std::string name;
+  std::vector<TrueMember> members;
+};
+
+/// Readers of ground-truth files: tab-separated text whose first line names the columns, in any order. Every
+/// column is required unless said otherwise, an unknown one is an error, and blank lines are skipped. Numbers
+/// are read the same way under every locale and must be finite; tolerances must be positive. They throw
+/// FileError with "file:line: cause".
+
+/// Columns: fixed, moving, x, y, theta, tolerance; optional: tier, overlap (checked to be in [0, 1], not
+/// used).
+std::vector<TruePair> read_pairs(const std::filesystem::path& path);
+
+/// Columns: fixed, moving.
+std::vector<NegativePair> read_negatives(const std::filesystem::path& path);
+
+/// Columns: set, map, x, y, theta, tolerance. Sets come in the order of their first line.
+std::vector<TrueSet> read_sets(const std::filesystem::path& path);
+
+}  // namespace gridmerge

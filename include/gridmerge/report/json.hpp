@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "gridmerge/match/match.hpp"
+#include "gridmerge/merge/merge.hpp"
+
+namespace gridmerge {
+
+// Texts for programs to read. Keys come in the order in which the documentation lists them, numbers in the
+// shortest form that reads back to the same bits. Names are given by the caller and may hold any bytes: what
+// is not UTF-8 appears as U+FFFD. A number that is not finite (no result of the library holds one) throws
+// std::invalid_argument, since JSON cannot say it.
+
+/// What `gridmerge match --json` prints: one line, with its end.
+std::string match_json(const std::string& fixed, const std::string& moving, const MatchResult& result);
+
+/// `transforms.json` of a merge, indented. `names[i]` is what to call map i.
+/// Throws std::out_of_range when there are fewer names than maps.
+std::string transforms_json(const std::vector<std::string>& names, const MergeResult& result);
+
+/// The file of a component's map beside transforms.json, by its place in the result: merged.yaml,
+/// merged_2.yaml, ...
+std::string component_file(std::size_t component);
+
+}  // namespace gridmerge

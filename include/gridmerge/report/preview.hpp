@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gridmerge/merge/merge.hpp"
+
+namespace gridmerge {
+
+struct Colour {
+  std::uint8_t red = 0;
+  std::uint8_t green = 0;
+  std::uint8_t blue = 0;
+
+  friend bool operator==(const Colour&, const Colour&) = default;
+};
+
+/// The colours of a preview. Free space that one map saw has a light tint of the map's colour.
+struct PreviewColours {
+  static constexpr Colour unknown{221, 221, 217};
+  static constexpr Colour shared_free{255, 255, 255};  ///< free in two maps or more
+  static constexpr Colour shared_wall{32, 32, 36};     ///< occupied in two maps or more
+  static constexpr Colour disagreement{213, 94,
+                                       0};  ///< free in one map, occupied in another; nothing else has it
+};
+
+/// The colour of input map i, of its walls. The first six are distinct to colour-blind eyes too; further maps
+/// get darker and lighter shades of them.
+Colour map_colour(std::size_t map);
+
+/// A PNG that shows a merge: each component with its maps in their own colours, what they share and where
+/// they disagree, a scale bar in metres, and the colours' meaning; below, the maps that were left out, each
+/// by itself in its own frame. Small maps are magnified, large ones drawn at a coarser resolution; a
+/// component is at most 2400 pixels wide and high. `names[i]` is what to call map i; `maps` and `result` as
+/// given to and returned by merge(). Throws std::out_of_range when there are fewer names than maps.
+std::string preview_png(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
+                        const MergeResult& result);
+
+}  // namespace gridmerge

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/evaluate/evaluate.hpp"
+
+#include <stdexcept>
+
+#include "gridmerge/evaluate/count.hpp"
+#include "gridmerge/merge/merge.hpp"
+#include "map_cache.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+class Evaluator {
+ public:
+  Evaluator(const Truth& truth, const EvaluateOptions& options)
+      : options_(options),
+        maps_(options.cache_bytes, options.warn),
+        total_(truth.pairs.size() + truth.negatives.size() + truth.sets.size()) {
+    options_.match.progress = nullptr;
+  }
+
+  MatchOutcome evaluate_pair(const TruePair& pair) {
+    const auto fixed = maps_.get(pair.fixed.path);
+    const auto moving = maps_.get(pair.moving.path);
+    const MatchResult result = match_named(pair.fixed, *fixed, pair.moving, *moving);
+    MatchOutcome outcome = describe(pair.fixed, pair.moving, result);
+    outcome.tier = pair.tier;
+    outcome.tolerance = pair.tolerance;
+    if (!result.hypotheses.empty()) {
+      outcome.error = rms_displacement(moving->moments, result.T_fixed_moving, pair.T_fixed_moving);
+    }
+    return outcome;
+  }
+
+  MatchOutcome evaluate_negative(const NegativePair& pair) {
+    const auto fixed = maps_.get(pair.fixed.path);
+    const auto moving = maps_.get(pair.moving.path);
+    return describe(pair.fixed, pair.moving, match_named(pair.fixed, *fixed, pair.moving, *moving));
+  }
+
+  SetOutcome evaluate_set(const TrueSet& set) {
+    std::vector<OccupancyGrid> grids;
+    std::vector<KnownMoments> moments;
+    for (const TrueMember& member : set.members) {
+      EvaluatedMap map = maps_.read(member.map.path);
+      grids.push_back(std::move(map.grid));
+      moments.push_back(map.moments);
+    }
+    MergeOptions merge_options;
+    merge_options.match = options_.match;
+    try {
+      return judge_set(set, moments, merge(grids, merge_options));
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error("set " + set.name + ": " + error.what());
+    }
+  }
+
+  void report_one_done() {
+    ++done_;
+    if (options_.progress) options_.progress(done_, total_);
+  }
+
+ private:
+  MatchResult match_named(const TruthMap& fixed, const EvaluatedMap& fixed_map, const TruthMap& moving,
+                          const EvaluatedMap& moving_map) const {
+    try {
+      return match(fixed_map.grid, moving_map.grid, options_.match);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(fixed.path.string() + " and " + moving.path.string() + ": " + error.what());
+    }
+  }
+
+  static MatchOutcome describe(const TruthMap& fixed, const TruthMap& moving, const MatchResult& result) {
+    MatchOutcome outcome;
+    outcome.fixed = fixed.name;
+    outcome.moving = moving.name;
+    outcome.verdict = result.verdict;
+    outcome.probability = result.probability;
+    outcome.seconds = result.seconds;
+    return outcome;
+  }
+
+  EvaluateOptions options_;
+  MapCache maps_;
+  std::size_t total_;
+  std::size_t done_ = 0;
+};
+
+}  // namespace
+
+Evaluation evaluate(const Truth& truth, const EvaluateOptions& options) {
+  Evaluator evaluator(truth, options);
+  Evaluation evaluation;
+  for (const TruePair& pair : truth.pairs) {
+    evaluation.matches.push_back(evaluator.evaluate_pair(pair));
+    evaluator.report_one_done();
+  }
+  for (const NegativePair& pair : truth.negatives) {
+    evaluation.matches.push_back(evaluator.evaluate_negative(pair));
+    evaluator.report_one_done();
+  }
+  for (const TrueSet& set : truth.sets) {
+    evaluation.sets.push_back(evaluator.evaluate_set(set));
+    evaluator.report_one_done();
+  }
+  return evaluation;
+}
+
+}  // namespace gridmerge

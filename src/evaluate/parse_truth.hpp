@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "gridmerge/evaluate/truth.hpp"
+
+namespace gridmerge {
+
+/// The readers of truth.hpp, given the text of the file at `path`. They throw FileError.
+std::vector<TruePair> parse_pairs(const std::filesystem::path& path, std::string_view text);
+std::vector<NegativePair> parse_negatives(const std::filesystem::path& path, std::string_view text);
+std::vector<TrueSet> parse_sets(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace gridmerge

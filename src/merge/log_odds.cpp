@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/merge/log_odds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+
+namespace gridmerge {
+
+namespace {
+
+constexpr double kMaxCells = 268435456.0;  // 2^28
+
+// Positions are compared with cell boundaries with this slack [cells]: far above rounding noise, far below
+// what shows. A centre that lies on a boundary but for noise then always falls to the same side, so no row of
+// cells is lost.
+constexpr double kSlack = 1e-6;
+
+struct Box {
+  double min_x = std::numeric_limits<double>::infinity();
+  double min_y = std::numeric_limits<double>::infinity();
+  double max_x = -std::numeric_limits<double>::infinity();
+  double max_y = -std::numeric_limits<double>::infinity();
+
+  bool empty() const { return min_x > max_x; }
+  void add(const Point2& p) {
+    min_x = std::min(min_x, p.x);
+    min_y = std::min(min_y, p.y);
+    max_x = std::max(max_x, p.x);
+    max_y = std::max(max_y, p.y);
+  }
+  void add(const Box& other) {
+    min_x = std::min(min_x, other.min_x);
+    min_y = std::min(min_y, other.min_y);
+    max_x = std::max(max_x, other.max_x);
+    max_y = std::max(max_y, other.max_y);
+  }
+};
+
+// The box of the input's known cells in the output frame. The extreme points of a set of cells, in any
+// direction, are corners of the first and last cells of its rows.
+Box known_box(const PlacedMap& input) {
+  const OccupancyGrid& map = *input.map;
+  const SE2 T_output_grid = input.T_output_map * map.origin;
+  const auto is_known = [](Cell cell) { return cell != Cell::unknown; };
+  Box box;
+  for (int row = 0; row < map.height; ++row) {
+    const auto begin = map.cells.begin() + static_cast<std::ptrdiff_t>(map.index(0, row));
+    const auto end = begin + map.width;
+    const auto first = std::find_if(begin, end, is_known);
+    if (first == end) continue;
+    const auto last =
+        std::find_if(std::make_reverse_iterator(end), std::make_reverse_iterator(first), is_known).base();
+    for (const auto column : {first - begin, last - begin}) {
+      for (const int corner_row : {row, row + 1}) {
+        box.add(T_output_grid *
+                Point2{static_cast<double>(column) * map.resolution, corner_row * map.resolution});
+      }
+    }
+  }
+  return box;
+}
+
+void validate_input(const PlacedMap& input) {
+  if (input.map == nullptr) throw std::invalid_argument("a placed map must have a map");
+  validate(*input.map);
+  const SE2& T = input.T_output_map;
+  if (!std::isfinite(T.x) || !std::isfinite(T.y) || !std::isfinite(T.theta)) {
+    throw std::invalid_argument("the transform of a placed map must be finite");
+  }
+}
+
+// Lower-left corner of the input whose map frame is the output frame (the lowest one, should there be
+// several).
+std::optional<Point2> frame_anchor(const std::vector<PlacedMap>& inputs) {
+  std::optional<Point2> anchor;
+  for (const PlacedMap& input : inputs) {
+    if (input.T_output_map != SE2{}) continue;
+    const Point2 corner{input.map->origin.x, input.map->origin.y};
+    if (!anchor || std::tie(corner.x, corner.y) < std::tie(anchor->x, anchor->y)) anchor = corner;
+  }
+  return anchor;
+}
+
+std::int16_t to_log_odds(double probability) {
+  return static_cast<std::int16_t>(std::lround(std::log(probability / (1.0 - probability)) * kLogOddsPerNat));
+}
+
+// What a map says of one of its cells: the cell gives the sign and the probability, where there is one, the
+// strength.
+std::int16_t cell_log_odds(const OccupancyGrid& map, std::size_t index) {
+  static const std::int16_t kOccupied = to_log_odds(0.85);
+  static const std::int16_t kFree = to_log_odds(0.35);
+  const Cell cell = map.cells[index];
+  if (cell == Cell::unknown) return 0;
+  if (map.probability.empty() || std::isnan(map.probability[index]))
+    return cell == Cell::occupied ? kOccupied : kFree;
+  const std::int16_t stated = to_log_odds(std::clamp<double>(map.probability[index], 0.12, 0.88));
+  return cell == Cell::occupied ? std::max<std::int16_t>(stated, 1) : std::min<std::int16_t>(stated, -1);
+}
+
+// A map's log-odds, to be looked up at points. A border of one unknown cell lets neighbours be read without a
+// check.
+class LogOddsSource {
+ public:
+  explicit LogOddsSource(const OccupancyGrid& map)
+      : width_(map.width),
+        height_(map.height),
+        stride_(static_cast<std::size_t>(map.width) + 2),
+        log_odds_(stride_ * (static_cast<std::size_t>(map.height) + 2), 0) {
+    for (int row = 0; row < height_; ++row) {
+      for (int column = 0; column < width_; ++column) {
+        log_odds_[offset(column, row)] = cell_log_odds(map, map.index(column, row));
+      }
+    }
+  }
+
+  // What the map says at a point, in its own cells from its lower-left corner.
+  std::int16_t at(double x, double y) const {
+    x += kSlack;
+    y += kSlack;
+    if (!(x >= 0.0 && x < width_ && y >= 0.0 && y < height_)) return 0;
+    const int column = static_cast<int>(x);
+    const int row = static_cast<int>(y);
+    const std::size_t here = offset(column, row);
+    const std::int16_t value = log_odds_[here];
+    if (value > 0) return value;
+    const std::int16_t band = joined_diagonally(here, x - column, y - row);
+    return band > 0 ? band : value;
+  }
+
+ private:
+  std::size_t offset(int column, int row) const {
+    return (static_cast<std::size_t>(row) + 1) * stride_ + static_cast<std::size_t>(column) + 1;
+  }
+
+  // The log-odds of the band that joins two occupied neighbours of this cell across one of its corners, if
+  // they touch only there and the point (u, v) of the cell is in the band. A band one cell wide reaches
+  // 1/sqrt(2) along the cell's sides; the cell's centre is outside it, so a map drawn without rotation or
+  // shift is copied exactly.
+  std::int16_t joined_diagonally(std::size_t here, double u, double v) const {
+    std::int16_t strongest = 0;
+    for (const bool right : {false, true}) {
+      for (const bool upper : {false, true}) {
+        if ((right ? 1.0 - u : u) + (upper ? 1.0 - v : v) > std::numbers::sqrt2 / 2.0) continue;
+        const std::size_t beside = right ? here + 1 : here - 1;
+        const std::size_t above = upper ? here + stride_ : here - stride_;
+        const std::size_t across = upper ? beside + stride_ : beside - stride_;
+        if (log_odds_[beside] <= 0 || log_odds_[above] <= 0 || log_odds_[across] > 0) continue;
+        strongest = std::max(strongest, std::min(log_odds_[beside], log_odds_[above]));
+      }
+    }
+    return strongest;
+  }
+
+  int width_;
+  int height_;
+  std::size_t stride_;
+  std::vector<std::int16_t> log_odds_;
+};
+
+// The lattice cells that a box touches, as an empty patch.
+LogOddsPatch patch_over(const Box& box, const Lattice& lattice) {
+  LogOddsPatch patch;
+  if (box.empty()) return patch;
+  const auto cell_range = [&](double low, double high, double corner, int size) {
+    const auto clip = [&](double cell) { return static_cast<int>(std::fmin(std::fmax(cell, 0.0), size)); };
+    const int first = clip(std::floor((low - corner) / lattice.resolution - kSlack));
+    const int end = clip(std::ceil((high - corner) / lattice.resolution + kSlack));
+    return std::pair(first, std::max(0, end - first));
+  };
+  std::tie(patch.column, patch.width) = cell_range(box.min_x, box.max_x, lattice.corner.x, lattice.width);
+  std::tie(patch.row, patch.height) = cell_range(box.min_y, box.max_y, lattice.corner.y, lattice.height);
+  patch.log_odds.assign(static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height), 0);
+  return patch;
+}
+
+void keep_strongest(std::int16_t& target, std::int16_t value) {
+  if (value != 0 && (target == 0 || value > target)) target = value;
+}
+
+// Looks up the map under `samples` x `samples` points of every cell of the patch.
+void sample_map(const PlacedMap& input, const Lattice& lattice, int samples, LogOddsPatch& patch) {
+  const LogOddsSource source(*input.map);
+  const SE2 T_grid_output = inverse(input.T_output_map * input.map->origin);
+  const double map_resolution = input.map->resolution;
+  const double c = std::cos(T_grid_output.theta) / map_resolution;
+  const double s = std::sin(T_grid_output.theta) / map_resolution;
+  const double shift_x = T_grid_output.x / map_resolution;
+  const double shift_y = T_grid_output.y / map_resolution;
+  std::size_t target = 0;
+  for (int row = patch.row; row < patch.row + patch.height; ++row) {
+    for (int column = patch.column; column < patch.column + patch.width; ++column, ++target) {
+      for (int j = 0; j < samples; ++j) {
+        const double y = lattice.corner.y + (row + (j + 0.5) / samples) * lattice.resolution;
+        for (int i = 0; i < samples; ++i) {
+          const double x = lattice.corner.x + (column + (i + 0.5) / samples) * lattice.resolution;
+          keep_strongest(patch.log_odds[target], source.at(c * x - s * y + shift_x, s * x + c * y + shift_y));
+        }
+      }
+    }
+  }
+}
+
+// Drops every known cell of the map into the patch's cell that its centre lies in.
+void splat_map(const PlacedMap& input, const Lattice& lattice, LogOddsPatch& patch) {
+  const OccupancyGrid& map = *input.map;
+  const SE2 T_output_grid = input.T_output_map * map.origin;
+  const double scale = map.resolution / lattice.resolution;
+  const double c = std::cos(T_output_grid.theta) * scale;
+  const double s = std::sin(T_output_grid.theta) * scale;
+  const double shift_x = (T_output_grid.x - lattice.corner.x) / lattice.resolution - patch.column + kSlack;
+  const double shift_y = (T_output_grid.y - lattice.corner.y) / lattice.resolution - patch.row + kSlack;
+  for (int row = 0; row < map.height; ++row) {
+    for (int column = 0; column < map.width; ++column) {
+      const std::int16_t value = cell_log_odds(map, map.index(column, row));
+      if (value == 0) continue;
+      const double x = c * (column + 0.5) - s * (row + 0.5) + shift_x;
+      const double y = s * (column + 0.5) + c * (row + 0.5) + shift_y;
+      if (!(x >= 0.0 && x < patch.width && y >= 0.0 && y < patch.height)) continue;
+      keep_strongest(patch.log_odds[static_cast<std::size_t>(y) * static_cast<std::size_t>(patch.width) +
+                                    static_cast<std::size_t>(x)],
+                     value);
+    }
+  }
+}
+
+}  // namespace
+
+Lattice cover(const std::vector<PlacedMap>& inputs, double resolution) {
+  if (!std::isfinite(resolution) || resolution <= 0.0) {
+    throw std::invalid_argument("the output's resolution must be a positive number of metres");
+  }
+  Box box;
+  for (const PlacedMap& input : inputs) {
+    validate_input(input);
+    box.add(known_box(input));
+  }
+  if (box.empty()) return {1, 1, resolution, {}};
+
+  const Point2 anchor = frame_anchor(inputs).value_or(Point2{box.min_x, box.min_y});
+  const auto snap = [&](double low, double to) {
+    return to + std::floor((low - to) / resolution + kSlack) * resolution;
+  };
+  const Point2 corner{snap(box.min_x, anchor.x), snap(box.min_y, anchor.y)};
+  const double columns = std::max(1.0, std::ceil((box.max_x - corner.x) / resolution - kSlack));
+  const double rows = std::max(1.0, std::ceil((box.max_y - corner.y) / resolution - kSlack));
+  if (!(columns * rows <= kMaxCells)) throw std::invalid_argument("the merged map would exceed 2^28 cells");
+  return {static_cast<int>(columns), static_cast<int>(rows), resolution, corner};
+}
+
+LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice) {
+  validate_input(input);
+  LogOddsPatch patch = patch_over(known_box(input), lattice);
+  if (patch.log_odds.empty()) return patch;
+  // A square of side a holds a point of any square grid of spacing a / sqrt(2), however that is rotated. So
+  // from that ratio on, every lattice cell meets the centre of a map cell; below it, two samples a side meet
+  // every map cell.
+  const double ratio = lattice.resolution / input.map->resolution;
+  if (ratio >= std::numbers::sqrt2) {
+    splat_map(input, lattice, patch);
+  } else {
+    sample_map(input, lattice, ratio <= 1.0 + kSlack ? 1 : 2, patch);
+  }
+  return patch;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "map_panel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "style.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+constexpr int kMaxZoom = 32;
+constexpr int kMargin = 12;  // of unknown space around the maps [pixels]
+
+// What the maps say of a cell: how many call it free or occupied (two stands for more), and the first that
+// does.
+struct Sighting {
+  std::uint8_t free = 0;
+  std::uint8_t occupied = 0;
+  std::uint32_t first_free = 0;
+  std::uint32_t first_occupied = 0;
+};
+
+std::vector<Sighting> sight(const std::vector<PlacedMap>& maps, const Lattice& lattice) {
+  std::vector<Sighting> sightings(static_cast<std::size_t>(lattice.width) *
+                                  static_cast<std::size_t>(lattice.height));
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const LogOddsPatch patch = draw_log_odds(maps[i], lattice);
+    for (int row = 0; row < patch.height; ++row) {
+      for (int column = 0; column < patch.width; ++column) {
+        const std::int16_t log_odds = patch.at(column, row);
+        if (log_odds == 0) continue;
+        Sighting& cell =
+            sightings[static_cast<std::size_t>(patch.row + row) * static_cast<std::size_t>(lattice.width) +
+                      static_cast<std::size_t>(patch.column + column)];
+        std::uint8_t& count = log_odds > 0 ? cell.occupied : cell.free;
+        if (count == 0)
+          (log_odds > 0 ? cell.first_occupied : cell.first_free) = static_cast<std::uint32_t>(i);
+        count = static_cast<std::uint8_t>(std::min(count + 1, 2));
+      }
+    }
+  }
+  return sightings;
+}
+
+Colour colour_of(const Sighting& cell, const std::vector<Colour>& colours) {
+  if (cell.free > 0 && cell.occupied > 0) return PreviewColours::disagreement;
+  if (cell.occupied > 1) return PreviewColours::shared_wall;
+  if (cell.occupied > 0) return colours[cell.first_occupied];
+  if (cell.free > 1) return PreviewColours::shared_free;
+  if (cell.free > 0) return free_tint(colours[cell.first_free]);
+  return PreviewColours::unknown;
+}
+
+Canvas draw_maps(const MapPanel& panel, const Lattice& lattice, int zoom) {
+  const std::vector<Sighting> sightings = sight(panel.maps, lattice);
+  Canvas canvas(lattice.width * zoom + 2 * kMargin, lattice.height * zoom + 2 * kMargin,
+                PreviewColours::unknown);
+  for (int row = 0; row < lattice.height; ++row) {
+    for (int column = 0; column < lattice.width; ++column) {
+      const Sighting& cell =
+          sightings[static_cast<std::size_t>(row) * static_cast<std::size_t>(lattice.width) +
+                    static_cast<std::size_t>(column)];
+      canvas.fill(kMargin + column * zoom, kMargin + (lattice.height - 1 - row) * zoom, zoom, zoom,
+                  colour_of(cell, panel.colours));
+    }
+  }
+  return canvas;
+}
+
+// The longest of 1, 2, 5, 10, ... (or tenths) metres that is at most `limit`.
+double round_length(double limit) {
+  const double power = std::pow(10.0, std::floor(std::log10(limit)));
+  for (const double digit : {5.0, 2.0}) {
+    if (digit * power <= limit) return digit * power;
+  }
+  return power;
+}
+
+Canvas draw_scale_bar(double metres_per_pixel, int available, int text_scale) {
+  const double length = round_length(metres_per_pixel * std::max(available / 4, 1));
+  const int bar = std::max(1, static_cast<int>(std::lround(length / metres_per_pixel)));
+  const std::string label = fmt::format("{:.6g} m", length);
+  const int gap = 4 * text_scale;
+  const int height = text_height(text_scale);
+  Canvas canvas(bar + gap + text_width(label, text_scale), height, Style::page);
+  const int line = text_scale, middle = 3 * text_scale;
+  canvas.fill(0, middle, bar, line, Style::ink);
+  canvas.fill(0, 0, line, 7 * text_scale, Style::ink);
+  canvas.fill(bar - line, 0, line, 7 * text_scale, Style::ink);
+  canvas.write(bar + gap, 0, text_scale, label, Style::ink);
+  return canvas;
+}
+
+}  // namespace
+
+Colour free_tint(Colour map) {
+  const auto lighten = [](std::uint8_t channel) {
+    return static_cast<std::uint8_t>(255 - (255 - channel) * 24 / 100);
+  };
+  return {lighten(map.red), lighten(map.green), lighten(map.blue)};
+}
+
+Canvas draw_panel(const MapPanel& panel, int text_scale) {
+  const double coarsening = std::max(1.0, std::ceil(panel.longest_side / panel.max_side));
+  const Lattice lattice = cover(panel.maps, panel.resolution * coarsening);
+  const int zoom = std::clamp(panel.min_side / std::max(lattice.width, lattice.height), 1, kMaxZoom);
+  const Canvas drawing = draw_maps(panel, lattice, zoom);
+  const Canvas scale_bar =
+      draw_scale_bar(lattice.resolution / zoom, std::max(drawing.width(), panel.min_width), text_scale);
+  const int width = std::max({drawing.width(), scale_bar.width(), panel.min_width});
+  const std::string title = fit_width(panel.title, text_scale, width);
+
+  const int gap = 3 * text_scale;
+  const int drawing_y = text_height(text_scale) + gap;
+  const int bar_y = drawing_y + drawing.height() + 2 * gap;
+  Canvas canvas(width, bar_y + scale_bar.height(), Style::page);
+  canvas.write(0, 0, text_scale, title, Style::ink);
+  canvas.draw(0, drawing_y, drawing);
+  canvas.draw(0, bar_y, scale_bar);
+  return canvas;
+}
+
+}  // namespace gridmerge

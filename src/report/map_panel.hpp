@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "canvas.hpp"
+#include "gridmerge/merge/log_odds.hpp"
+
+namespace gridmerge {
+
+/// Maps that are drawn over each other in their colours, and how large.
+struct MapPanel {
+  std::string title;
+  std::vector<PlacedMap> maps;
+  std::vector<Colour> colours;  ///< one a map
+  double resolution = 0.0;      ///< of the finest drawing that makes sense [m/cell]
+  double longest_side = 0.0;    ///< of the maps together, in such cells; may be too large
+  int min_width = 0;            ///< pixels of the whole panel, for its title
+  int min_side = 0;             ///< pixels: drawings below are magnified
+  int max_side = 0;             ///< pixels: drawings above are made coarser
+};
+
+/// The panel with its title above and a scale bar below.
+Canvas draw_panel(const MapPanel& panel, int text_scale);
+
+/// The tint of free space that one map saw.
+Colour free_tint(Colour map);
+
+}  // namespace gridmerge

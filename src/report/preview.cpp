@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/report/preview.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "canvas.hpp"
+#include "gridmerge/grid/resample.hpp"
+#include "gridmerge/report/json.hpp"
+#include "map_panel.hpp"
+#include "style.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+constexpr int kComponentMinSide = 1400, kComponentMaxSide = 2400;
+constexpr int kLeftOutMinSide = 280, kLeftOutMaxSide = 560;
+constexpr int kPageMinWidth = 1000;
+constexpr int kSmallText = 2, kLargeText = 3;
+constexpr std::size_t kMostLeftOutPanels = 12;
+
+MapPanel component_panel(const std::vector<OccupancyGrid>& maps, const MergeResult& result,
+                         std::size_t index) {
+  const Component& component = result.components[index];
+  MapPanel panel;
+  panel.title = fmt::format("{}: {} maps", component_file(index), component.members.size());
+  for (const Member& member : component.members) {
+    panel.maps.push_back({&maps.at(member.map), member.T_component_map});
+    panel.colours.push_back(map_colour(member.map));
+  }
+  const OccupancyGrid& fused = component.fused.grid;
+  panel.resolution = fused.resolution;
+  panel.longest_side = std::max(fused.width, fused.height);
+  panel.min_side = kComponentMinSide;
+  panel.min_width = kPageMinWidth;
+  panel.max_side = kComponentMaxSide;
+  return panel;
+}
+
+MapPanel left_out_panel(const std::string& name, const OccupancyGrid& map, std::size_t index) {
+  MapPanel panel;
+  panel.title = to_ascii(name);
+  panel.maps = {{&map, {}}};
+  panel.colours = {map_colour(index)};
+  const OccupancyGrid known = crop_to_known(map);
+  panel.resolution = map.resolution;
+  panel.longest_side = std::hypot(known.width, known.height);  // whatever the yaw of the origin
+  panel.min_side = kLeftOutMinSide;
+  panel.min_width = kLeftOutMinSide;
+  panel.max_side = kLeftOutMaxSide;
+  return panel;
+}
+
+// Puts the parts beside each other, in as many rows as the width asks for.
+Canvas flow(const std::vector<Canvas>& parts, int width, int gap) {
+  struct Spot {
+    int x, y;
+  };
+  std::vector<Spot> spots;
+  int x = 0, y = 0, row_height = 0, used_width = 1;
+  for (const Canvas& part : parts) {
+    if (x > 0 && x + part.width() > width) {
+      x = 0;
+      y += row_height + gap;
+      row_height = 0;
+    }
+    spots.push_back({x, y});
+    used_width = std::max(used_width, x + part.width());
+    row_height = std::max(row_height, part.height());
+    x += part.width() + gap;
+  }
+  Canvas canvas(used_width, std::max(1, y + row_height), Style::page);
+  for (std::size_t i = 0; i < parts.size(); ++i) canvas.draw(spots[i].x, spots[i].y, parts[i]);
+  return canvas;
+}
+
+// A label after a sample of what it explains: a wall in free space.
+Canvas legend_entry(Colour wall, Colour free, const std::string& label, int scale, int width) {
+  const int side = 7 * scale;
+  const int text_x = 2 * side + 3 * scale;
+  const std::string text = fit_width(label, scale, width - text_x);
+  Canvas canvas(text_x + text_width(text, scale), text_height(scale), Style::page);
+  canvas.fill(0, 0, 2 * side, side, Style::line);
+  canvas.fill(1, 1, side - 1, side - 2, wall);
+  canvas.fill(side, 1, side - 1, side - 2, free);
+  canvas.write(text_x, 0, scale, text, Style::ink);
+  return canvas;
+}
+
+std::vector<Canvas> legend(const std::vector<std::string>& names, const MergeResult& result, int scale,
+                           int width) {
+  std::vector<Canvas> entries;
+  for (const Component& component : result.components) {
+    for (const Member& member : component.members) {
+      const Colour colour = map_colour(member.map);
+      entries.push_back(
+          legend_entry(colour, free_tint(colour), to_ascii(names.at(member.map)), scale, width));
+    }
+  }
+  if (entries.empty()) return entries;
+  using Colours = PreviewColours;
+  entries.push_back(
+      legend_entry(Colours::shared_wall, Colours::shared_free, "in two maps or more", scale, width));
+  entries.push_back(
+      legend_entry(Colours::disagreement, Colours::disagreement, "maps disagree", scale, width));
+  return entries;
+}
+
+Canvas heading(const std::string& text, int scale) {
+  Canvas canvas(text_width(text, scale), text_height(scale), Style::page);
+  canvas.write(0, 0, scale, text, Style::ink);
+  return canvas;
+}
+
+Canvas stack(const std::vector<Canvas>& blocks, int gap) {
+  int width = 0, height = gap;
+  for (const Canvas& block : blocks) {
+    width = std::max(width, block.width());
+    height += block.height() + gap;
+  }
+  Canvas canvas(width + 2 * gap, height, Style::page);
+  int y = gap;
+  for (const Canvas& block : blocks) {
+    canvas.draw(gap, y, block);
+    y += block.height() + gap;
+  }
+  return canvas;
+}
+
+}  // namespace
+
+Colour map_colour(std::size_t map) {
+  // Okabe and Ito's palette without black and without vermilion, which is the colour of disagreement, and
+  // with a yellow that is dark enough for walls on white.
+  constexpr std::array<Colour, 6> kPalette{
+      {{0, 114, 178}, {230, 159, 0}, {0, 158, 115}, {204, 121, 167}, {86, 180, 233}, {184, 170, 20}}};
+  const Colour colour = kPalette[map % kPalette.size()];
+  const auto shade = [&](std::uint8_t channel) {
+    switch (map / kPalette.size() % 3) {
+      case 1:
+        return static_cast<std::uint8_t>(channel * 6 / 10);
+      case 2:
+        return static_cast<std::uint8_t>(channel + (255 - channel) * 4 / 10);
+      default:
+        return channel;
+    }
+  };
+  return {shade(colour.red), shade(colour.green), shade(colour.blue)};
+}
+
+std::string preview_png(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
+                        const MergeResult& result) {
+  constexpr int kGap = 24;
+  const int text_scale = result.components.empty() ? kSmallText : kLargeText;
+  std::vector<Canvas> blocks;
+  int width = kPageMinWidth;
+  for (std::size_t i = 0; i < result.components.size(); ++i) {
+    blocks.push_back(draw_panel(component_panel(maps, result, i), text_scale));
+    width = std::max(width, blocks.back().width());
+  }
+  const std::vector<Canvas> entries = legend(names, result, text_scale, width);
+  if (!entries.empty()) blocks.push_back(flow(entries, width, kGap));
+
+  std::vector<Canvas> left_out;
+  for (const std::size_t map : result.left_out) {
+    if (left_out.size() == kMostLeftOutPanels) break;
+    left_out.push_back(draw_panel(left_out_panel(names.at(map), maps.at(map), map), kSmallText));
+  }
+  if (!left_out.empty()) {
+    const std::size_t more = result.left_out.size() - left_out.size();
+    blocks.push_back(
+        heading(more == 0 ? "Left out" : fmt::format("Left out (and {} more)", more), text_scale));
+    blocks.push_back(flow(left_out, width, kGap));
+  }
+  return encode_png(stack(blocks, kGap).image());
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "fixture.hpp"
+
+namespace gridmerge::test {
+namespace {
+
+constexpr double kHalfACell = 0.05;
+constexpr double kFifthOfADegree = 0.0035;
+
+class Match : public CliTest {
+ protected:
+  static void expect_contract(const Json& json) {
+    expect_keys(json, {"fixed", "moving", "verdict", "transform", "probability", "acceptance_index",
+                       "agreement", "disagreement", "overlap", "seconds", "hypotheses"});
+    EXPECT_TRUE(json.at("agreement").is_number_integer());
+    EXPECT_TRUE(json.at("disagreement").is_number_integer());
+    for (const char* key : {"probability", "acceptance_index", "overlap"}) {
+      EXPECT_GE(json.at(key), 0.0) << key;
+      EXPECT_LE(json.at(key), 1.0) << key;
+    }
+    EXPECT_GT(json.at("seconds"), 0.0);
+    for (const Json& hypothesis : json.at("hypotheses")) {
+      expect_keys(hypothesis, {"transform", "score", "probability"});
+      expect_keys(hypothesis.at("transform"), {"x", "y", "theta"});
+    }
+  }
+};
+
+TEST_F(Match, JsonOfAnAcceptedPairIsAllThereIsOnStdout) {
+  const Outcome outcome = run({"match", left, right, "--json"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "");
+  const Json json = Json::parse(outcome.out);
+  expect_contract(json);
+  EXPECT_EQ(json.at("fixed"), left);
+  EXPECT_EQ(json.at("moving"), right);
+  EXPECT_EQ(json.at("verdict"), "accepted");
+  expect_near(json.at("transform"), T_left_right, 2 * kHalfACell, 2 * kFifthOfADegree);
+  ASSERT_FALSE(json.at("hypotheses").empty());
+  EXPECT_EQ(json.at("hypotheses").at(0).at("transform"), json.at("transform"));
+  EXPECT_EQ(json.at("hypotheses").at(0).at("probability"), json.at("probability"));
+}
+
+TEST_F(Match, JsonOfARefusedPairHasTheSameForm) {
+  const Outcome outcome = run({"match", left, other, "--json"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_EQ(outcome.err, "");
+  const Json json = Json::parse(outcome.out);
+  expect_contract(json);
+  EXPECT_EQ(json.at("verdict"), "refused");
+}
+
+TEST_F(Match, TellsPeopleTheVerdictFirst) {
+  const Outcome accepted = run({"match", left, right});
+  EXPECT_EQ(accepted.exit_code, 0);
+  EXPECT_EQ(accepted.err, "");
+  EXPECT_EQ(accepted.out.find("accepted: "), 0u) << accepted.out;
+  for (const char* word : {"T_fixed_moving", "agreement", "overlap", "time"}) {
+    EXPECT_NE(accepted.out.find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(accepted.out.find("hypothesis 1"), std::string::npos);
+  EXPECT_EQ(run({"match", left, other}).out.find("refused: "), 0u);
+}
+
+TEST_F(Match, VerboseListsTheHypotheses) {
+  const Outcome outcome = run({"match", left, right, "--verbose"});
+  EXPECT_NE(outcome.out.find("hypothesis 1"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("read " + left), std::string::npos) << outcome.err;
+}
+
+TEST_F(Match, TheNumberOfThreadsChangesNothingButTheTime) {
+  Json one = Json::parse(run({"match", left, right, "--json", "--threads", "1"}).out);
+  Json two = Json::parse(run({"match", left, right, "--json", "--threads", "2"}).out);
+  one.erase("seconds");
+  two.erase("seconds");
+  EXPECT_EQ(one, two);
+}
+
+TEST_F(Match, TheSameFileTwiceAndACopyOfItAreAcceptedAtTheIdentity) {
+  std::filesystem::create_directory(directory.path() / "copy");
+  for (const char* name : {"left.yaml", "left.pgm"}) {
+    std::filesystem::copy_file(directory.path() / name, directory.path() / "copy" / name);
+  }
+  for (const std::string& moving : {left, directory.file("copy/left.yaml")}) {
+    const Outcome outcome = run({"match", left, moving, "--json"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    const Json json = Json::parse(outcome.out);
+    expect_near(json.at("transform"), {}, kHalfACell, kFifthOfADegree);
+    EXPECT_GT(json.at("acceptance_index"), 0.99);
+  }
+}
+
+TEST_F(Match, AcceptDecidesTheVerdict) {
+  EXPECT_EQ(run({"match", left, other, "--accept", "0"}).exit_code, 0);
+  const double probability = Json::parse(run({"match", left, right, "--json"}).out).at("probability");
+  if (probability < 1.0) {
+    EXPECT_EQ(run({"match", left, right, "--accept", "1"}).exit_code, 3);
+  }
+}
+
+TEST_F(Match, BareImagesTakeTheirResolutionFromTheOption) {
+  const Outcome outcome = run(
+      {"match", directory.file("left.pgm"), directory.file("right.pgm"), "--resolution", "0.1", "--json"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  // Without a YAML the origin is zero; the turn is what it was.
+  EXPECT_NEAR(normalize_angle(Json::parse(outcome.out).at("transform").at("theta").get<double>() -
+                              T_left_right.theta),
+              0.0, 2 * kFifthOfADegree);
+}
+
+TEST_F(Match, MapsWithNothingToGoByAreRefused) {
+  const std::string blank = write_map(directory, "blank", make_grid(40, 30, 0.1));
+  const std::string dot = write_map(directory, "dot", make_grid(1, 1, 0.1, {}, Cell::occupied));
+  const std::string bare = write_map(directory, "bare", make_grid(40, 30, 0.1, {}, Cell::free));
+  for (const std::string& map : {blank, dot, bare}) {
+    for (const Outcome& outcome : {run({"match", left, map, "--json"}), run({"match", map, left, "--json"}),
+                                   run({"match", map, map, "--json"})}) {
+      EXPECT_EQ(outcome.exit_code, 3) << map << outcome.err;
+      EXPECT_EQ(Json::parse(outcome.out).at("verdict"), "refused");
+    }
+  }
+  EXPECT_EQ(run({"match", left, blank, "--quiet"}).err, "");
+  const Outcome warned = run({"match", left, blank});
+  EXPECT_EQ(warned.err, "gridmerge: warning: " + blank + ": the map has no known cell\n");
+}
+
+TEST_F(Match, ResolutionsTooFarApartAreAnErrorThatNamesBothMaps) {
+  OccupancyGrid coarse = make_grid(3000, 3000, 5000.0, {}, Cell::free);
+  for (int i = 0; i < 3000; ++i) coarse.at(i, 7) = Cell::occupied;
+  const std::string huge = write_map(directory, "huge", coarse);
+  const Outcome outcome = run({"match", left, huge, "--json"});
+  if (outcome.exit_code == 1) {
+    expect_error(outcome, left, huge);
+  } else {
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace gridmerge::test

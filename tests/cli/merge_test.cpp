@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <set>
+
+#include "fixture.hpp"
+
+namespace gridmerge::test {
+namespace {
+
+class Merge : public CliTest {
+ protected:
+  std::set<std::string> files_in(const std::string& folder) const {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      names.insert(entry.path().filename());
+    return names;
+  }
+
+  const std::string output = directory.file("out");
+  const std::set<std::string> all_files = {"merged.yaml", "merged.pgm", "transforms.json", "preview.png",
+                                           "report.html"};
+};
+
+TEST_F(Merge, WritesTheFilesOfTheContract) {
+  const Outcome outcome = run({"merge", left, right, "-o", output});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(outcome.out.find("merged.yaml: 2 of 2 maps"), std::string::npos) << outcome.out;
+  EXPECT_EQ(files_in(output), all_files);
+
+  const Json json = Json::parse(read_file(output + "/transforms.json"));
+  expect_keys(json, {"components", "joins", "left_out"});
+  EXPECT_EQ(json.at("left_out"), Json::array());
+  ASSERT_EQ(json.at("components").size(), 1u);
+  expect_keys(json.at("components").at(0), {"map", "members"});
+  EXPECT_EQ(json.at("components").at(0).at("map"), "merged.yaml");
+  ASSERT_EQ(json.at("components").at(0).at("members").size(), 2u);
+  const Json& members = json.at("components").at(0).at("members");
+  for (const Json& member : members) expect_keys(member, {"source", "transform"});
+  EXPECT_EQ(members.at(0).at("source"), left);
+  expect_near(members.at(0).at("transform"), {}, 1e-12, 1e-12);
+  EXPECT_EQ(members.at(1).at("source"), right);
+  expect_near(members.at(1).at("transform"), T_left_right, 0.1, 0.007);
+  ASSERT_EQ(json.at("joins").size(), 1u);
+  expect_keys(json.at("joins").at(0), {"fixed", "moving", "transform", "verdict", "probability"});
+  EXPECT_EQ(json.at("joins").at(0).at("fixed"), left);
+  EXPECT_EQ(json.at("joins").at(0).at("moving"), right);
+  EXPECT_EQ(json.at("joins").at(0).at("verdict"), "accepted");
+}
+
+TEST_F(Merge, ItsMapIsAMapThatKnowsMoreThanEach) {
+  ASSERT_EQ(run({"merge", left, right, "-o", output}).exit_code, 0);
+  const Json info = Json::parse(run({"info", "--json", left, right, output + "/merged.yaml"}).out);
+  const auto known = [&](int i) {
+    return info.at("maps").at(i).at("free").get<int>() + info.at("maps").at(i).at("occupied").get<int>();
+  };
+  EXPECT_GT(known(2), known(0));
+  EXPECT_GT(known(2), known(1));
+  EXPECT_LT(known(2), known(0) + known(1));
+  EXPECT_EQ(info.at("maps").at(2).at("resolution"), 0.1);
+}
+
+TEST_F(Merge, LeavesOutWhatDoesNotFit) {
+  const Outcome outcome = run({"merge", left, other, right, "-o", output});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(outcome.out.find("left out: " + other + "\n"), std::string::npos) << outcome.out;
+  EXPECT_EQ(files_in(output), all_files);
+  const Json json = Json::parse(read_file(output + "/transforms.json"));
+  EXPECT_EQ(json.at("left_out"), Json::array({other}));
+  EXPECT_EQ(json.at("components").at(0).at("members").size(), 2u);
+}
+
+TEST_F(Merge, OfMapsThatAllDifferSaysSo) {
+  const Outcome outcome = run({"merge", left, other, "-o", output});
+  EXPECT_EQ(outcome.exit_code, 3);
+  const Json json = Json::parse(read_file(output + "/transforms.json"));
+  EXPECT_EQ(json.at("components"), Json::array());
+  EXPECT_EQ(json.at("left_out"), Json::array({left, other}));
+  EXPECT_EQ(files_in(output).count("merged.yaml"), 0u);
+}
+
+TEST_F(Merge, OfOneMapTwiceIsThatMap) {
+  const Outcome outcome = run({"merge", left, left, "-o", output});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Json json = Json::parse(read_file(output + "/transforms.json"));
+  expect_near(json.at("components").at(0).at("members").at(1).at("transform"), {}, 0.05, 0.0035);
+}
+
+TEST_F(Merge, LeavesOutMapsWithNothingToGoBy) {
+  const std::string blank = write_map(directory, "blank", make_grid(40, 30, 0.1));
+  const std::string dot = write_map(directory, "dot", make_grid(1, 1, 0.1, {}, Cell::occupied));
+  const Outcome outcome = run({"merge", blank, left, dot, right, "-o", output, "--quiet"});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  EXPECT_EQ(outcome.out + outcome.err, "");
+  EXPECT_EQ(Json::parse(read_file(output + "/transforms.json")).at("left_out"), Json::array({blank, dot}));
+}
+
+TEST_F(Merge, TheNumberOfThreadsChangesNoByte) {
+  const std::string one = directory.file("one"), two = directory.file("two");
+  ASSERT_EQ(run({"merge", left, other, right, "-o", one, "--threads", "1"}).exit_code, 3);
+  ASSERT_EQ(run({"merge", left, other, right, "-o", two, "--threads", "2"}).exit_code, 3);
+  for (const char* name : {"/transforms.json", "/merged.pgm", "/merged.yaml"}) {
+    EXPECT_EQ(read_file(one + name), read_file(two + name)) << name;
+  }
+}
+
+TEST_F(Merge, OutputResolutionIsThatOfTheMergedMap) {
+  ASSERT_EQ(run({"merge", left, right, "-o", output, "--output-resolution", "0.2"}).exit_code, 0);
+  const Json info = Json::parse(run({"info", "--json", output + "/merged.yaml"}).out);
+  EXPECT_EQ(info.at("maps").at(0).at("resolution"), 0.2);
+
+  const std::string too_fine = directory.file("fine");
+  expect_error(run({"merge", left, right, "-o", too_fine, "--output-resolution", "1e-6"}), "", "cells");
+  EXPECT_EQ(files_in(too_fine), std::set<std::string>{});
+}
+
+TEST_F(Merge, ReplacesAnEarlierResult) {
+  ASSERT_EQ(run({"merge", left, other, right, "-o", output}).exit_code, 3);
+  ASSERT_EQ(run({"merge", left, right, "-o", output}).exit_code, 0);
+  EXPECT_EQ(files_in(output), all_files);
+  EXPECT_EQ(Json::parse(read_file(output + "/transforms.json")).at("left_out"), Json::array());
+}
+
+TEST_F(Merge, AnOutputDirectoryThatCannotBeWrittenIsAnError) {
+  const std::string file = directory.write("file", "not a directory");
+  expect_error(run({"merge", left, right, "-o", file}), file, "");
+  expect_error(run({"merge", left, right, "-o", file + "/out"}), file, "Not a directory");
+  expect_error(run({"merge", left, right, "-o", "/proc/gridmerge"}), "/proc/gridmerge", "");
+  EXPECT_EQ(read_file(file), "not a directory");
+}
+
+TEST_F(Merge, AFullDiskLeavesNothingHalfWritten) {
+  for (const std::size_t limit : {100u, 3000u, 9000u}) {
+    RunOptions options;
+    options.file_size_limit = limit;
+    expect_error(run({"merge", left, right, "-o", output}, options), output, "File too large");
+    if (std::filesystem::exists(output)) {
+      EXPECT_EQ(files_in(output), std::set<std::string>{}) << limit;
+    }
+  }
+  // What an earlier run wrote stays whole.
+  ASSERT_EQ(run({"merge", left, right, "-o", output}).exit_code, 0);
+  const std::string before = read_file(output + "/merged.pgm");
+  RunOptions options;
+  options.file_size_limit = 9000;
+  EXPECT_EQ(run({"merge", left, right, "-o", output}, options).exit_code, 1);
+  EXPECT_EQ(files_in(output), all_files);
+  EXPECT_EQ(read_file(output + "/merged.pgm"), before);
+}
+
+}  // namespace
+}  // namespace gridmerge::test

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "program.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <pty.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <stdexcept>
+
+extern char** environ;
+
+namespace gridmerge::test {
+
+namespace {
+
+// Two ends of a pipe or a pseudo-terminal; the child gets the writing one.
+struct Channel {
+  int read_end = -1;
+  int write_end = -1;
+
+  void close_read_end() { close_if_open(read_end); }
+  void close_write_end() { close_if_open(write_end); }
+
+  static void close_if_open(int& descriptor) {
+    if (descriptor >= 0) ::close(descriptor);
+    descriptor = -1;
+  }
+};
+
+Channel open_channel(bool terminal) {
+  Channel channel;
+  if (terminal) {
+    if (::openpty(&channel.read_end, &channel.write_end, nullptr, nullptr, nullptr) != 0) {
+      throw std::runtime_error("no pseudo-terminal");
+    }
+    return channel;
+  }
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+  return {ends[0], ends[1]};
+}
+
+// Lowers the limit for the children that are started while it lives.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(std::size_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    if (bytes == 0) return;
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+pid_t start(const std::vector<std::string>& arguments, const RunOptions& options, const Channel& out,
+            const Channel& err) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  if (options.close_stdout) {
+    posix_spawn_file_actions_addclose(&actions, STDOUT_FILENO);
+  } else if (!options.stdout_to.empty()) {
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, options.stdout_to.c_str(), O_WRONLY, 0);
+  } else {
+    posix_spawn_file_actions_adddup2(&actions, out.write_end, STDOUT_FILENO);
+  }
+  posix_spawn_file_actions_adddup2(&actions, err.write_end, STDERR_FILENO);
+
+  std::vector<std::string> words = {GRIDMERGE_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+
+  pid_t child = 0;
+  const FileSizeLimit limit(options.file_size_limit);
+  const int error = ::posix_spawn(&child, argv[0], &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw std::runtime_error("cannot start " + words[0]);
+  return child;
+}
+
+// Reads both at once: a child that fills one pipe while we wait on the other would wait forever.
+void drain(Channel& out, std::string& out_text, Channel& err, std::string& err_text) {
+  std::array<char, 4096> block{};
+  while (out.read_end >= 0 || err.read_end >= 0) {
+    std::array<pollfd, 2> ready = {pollfd{out.read_end, POLLIN, 0}, pollfd{err.read_end, POLLIN, 0}};
+    if (::poll(ready.data(), ready.size(), -1) < 0 && errno != EINTR) throw std::runtime_error("poll failed");
+    const auto read_some = [&](const pollfd& state, Channel& channel, std::string& text) {
+      if (channel.read_end < 0 || state.revents == 0) return;
+      const ssize_t count = ::read(channel.read_end, block.data(), block.size());
+      if (count > 0) {
+        text.append(block.data(), static_cast<std::size_t>(count));
+      } else {
+        channel.close_read_end();  // the end, or EIO from a terminal that nobody holds any more
+      }
+    };
+    read_some(ready[0], out, out_text);
+    read_some(ready[1], err, err_text);
+  }
+}
+
+}  // namespace
+
+Outcome run(const std::vector<std::string>& arguments, const RunOptions& options) {
+  Channel out = open_channel(false);
+  Channel err = open_channel(options.stderr_is_terminal);
+  if (options.break_stdout) out.close_read_end();
+  const pid_t child = start(arguments, options, out, err);
+  out.close_write_end();
+  err.close_write_end();
+
+  Outcome outcome;
+  drain(out, outcome.out, err, outcome.err);
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
+
+std::size_t count_lines(const std::string& text) {
+  const auto newlines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  return newlines + (!text.empty() && text.back() != '\n');
+}
+
+}  // namespace gridmerge::test

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace gridmerge::test {
+namespace {
+
+const std::vector<std::string> kCommands = {"info", "match", "merge", "evaluate"};
+
+class WrongUsage : public testing::TestWithParam<std::vector<std::string>> {};
+
+TEST_P(WrongUsage, IsOneLineAndExitCodeTwo) {
+  const Outcome outcome = run(GetParam());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  EXPECT_NE(outcome.err.find("--help"), std::string::npos) << outcome.err;
+}
+
+using Words = std::vector<std::string>;
+INSTANTIATE_TEST_SUITE_P(
+    Cli, WrongUsage,
+    testing::Values(
+        Words{}, Words{"frobnicate"}, Words{"--frobnicate"}, Words{"info"},
+        Words{"info", "a.yaml", "--frobnicate"}, Words{"match"}, Words{"match", "a.yaml"},
+        Words{"match", "a.yaml", "b.yaml", "c.yaml"}, Words{"match", "a.yaml", "b.yaml", "--threads", "-1"},
+        Words{"match", "a.yaml", "b.yaml", "--threads", "two"},
+        Words{"match", "a.yaml", "b.yaml", "--threads", "1.5"},
+        Words{"match", "a.yaml", "b.yaml", "--threads", "99999999999999999999"},
+        Words{"match", "a.yaml", "b.yaml", "--resolution", "0"},
+        Words{"match", "a.yaml", "b.yaml", "--resolution", "-1"},
+        Words{"match", "a.yaml", "b.yaml", "--resolution", "nan"},
+        Words{"match", "a.yaml", "b.yaml", "--resolution", "inf"},
+        Words{"match", "a.yaml", "b.yaml", "--resolution", "5cm"},
+        Words{"match", "a.yaml", "b.yaml", "--accept", "1.1"},
+        Words{"match", "a.yaml", "b.yaml", "--accept", "nan"},
+        Words{"match", "a.yaml", "b.yaml", "--quiet", "--verbose"}, Words{"merge", "a.yaml", "b.yaml"},
+        Words{"merge", "a.yaml", "-o", "out"}, Words{"merge", "-o", "out"},
+        Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "0"}, Words{"evaluate"},
+        Words{"evaluate", "--json", "result.json"}, Words{"evaluate", "a.tsv", "b.tsv"}));
+
+TEST(Usage, AMisspeltCommandIsNamed) {
+  EXPECT_NE(run({"mtach", "a.yaml", "b.yaml"}).err.find("'mtach'"), std::string::npos);
+}
+
+TEST(Usage, HelpOfTheProgramNamesEveryCommand) {
+  const Outcome outcome = run({"--help"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "");
+  for (const std::string& command : kCommands)
+    EXPECT_NE(outcome.out.find("\n  " + command), std::string::npos);
+}
+
+TEST(Usage, HelpOfACommandHasItsOptionsAndAnExample) {
+  for (const std::string& command : kCommands) {
+    const Outcome outcome = run({command, "--help"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(outcome.err, "");
+    for (const std::string text : {"--quiet", "--verbose", "--threads", "Example:\n  gridmerge "}) {
+      EXPECT_NE(outcome.out.find(text + (text.back() == ' ' ? command : "")), std::string::npos)
+          << command << text;
+    }
+  }
+}
+
+TEST(Usage, VersionIsPrinted) {
+  const Outcome outcome = run({"--version"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.out, "gridmerge " GRIDMERGE_VERSION "\n");
+}
+
+}  // namespace
+}  // namespace gridmerge::test

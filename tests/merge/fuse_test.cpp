@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/merge/fuse.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+
+#include "merge/drawing.hpp"
+
+namespace gridmerge {
+namespace {
+
+using test::count_wall_pieces;
+using test::draw_line;
+using test::map_from;
+using test::text_of;
+using Rows = std::vector<std::string>;
+
+constexpr double kPi = std::numbers::pi;
+
+std::vector<PlacedMap> at_identity(const std::vector<OccupancyGrid>& maps) {
+  std::vector<PlacedMap> inputs;
+  for (const OccupancyGrid& map : maps) inputs.push_back({&map, {}});
+  return inputs;
+}
+
+// What `count` maps of one cell each make of that cell.
+OccupancyGrid fuse_cells(const std::string& cells) {
+  std::vector<OccupancyGrid> maps;
+  for (const char cell : cells) maps.push_back(map_from({std::string(1, cell)}));
+  return fuse(at_identity(maps), 1.0).grid;
+}
+
+TEST(Fuse, AMapAloneStaysWhatItIs) {
+  const OccupancyGrid map = map_from({"#.. ", "#.# ", "##.."}, 0.05, {-51.224998, 3.3, 0.0});
+  const FusedMap fused = fuse({{&map, {}}}, 0.05);
+  EXPECT_EQ(text_of(fused.grid), text_of(map));
+  EXPECT_NEAR(fused.grid.origin.x, map.origin.x, 1e-12);
+  EXPECT_NEAR(fused.grid.origin.y, map.origin.y, 1e-12);
+  EXPECT_EQ(fused.grid.origin.theta, 0.0);
+  EXPECT_EQ(fused.grid.resolution, 0.05);
+  EXPECT_EQ(fused.agreeing, 0u);
+  EXPECT_EQ(fused.conflicting, 0u);
+  EXPECT_NO_THROW(validate(fused.grid));
+}
+
+TEST(Fuse, CoversAllInputsAndCountsWhatTheyShare) {
+  const OccupancyGrid a = map_from({"#..#"});
+  const OccupancyGrid b = map_from({"#.# #"});
+  const FusedMap fused = fuse({{&a, {}}, {&b, {1.0, 0.0, 0.0}}}, 1.0);
+  EXPECT_EQ(text_of(fused.grid), Rows{"##.# #"});
+  EXPECT_EQ(fused.agreeing, 2u) << "a free cell and a wall";
+  EXPECT_EQ(fused.conflicting, 1u) << "a wall in free space";
+}
+
+TEST(Fuse, AddsLogOdds) {
+  const auto log_odds = [](double p) { return std::log(p / (1.0 - p)); };
+  const auto fused_log_odds = [&](const std::string& cells) {
+    return log_odds(fuse_cells(cells).probability[0]);
+  };
+  EXPECT_NEAR(fused_log_odds("#"), log_odds(0.85), 1e-3);
+  EXPECT_NEAR(fused_log_odds("."), log_odds(0.35), 1e-3);
+  EXPECT_NEAR(fused_log_odds("#."), log_odds(0.85) + log_odds(0.35), 2e-3);
+  EXPECT_NEAR(fused_log_odds("...."), 4 * log_odds(0.35), 4e-3);
+}
+
+TEST(Fuse, AWallOutlivesTwoMapsThatDidNotSeeIt) {
+  EXPECT_EQ(fuse_cells("#..").cells[0], Cell::occupied);
+  EXPECT_EQ(fuse_cells("#...").cells[0], Cell::free);
+  EXPECT_EQ(fuse_cells("# ").cells[0], Cell::occupied);
+  EXPECT_EQ(fuse_cells("  ").cells[0], Cell::unknown);
+  EXPECT_TRUE(std::isnan(fuse_cells("  ").probability[0]));
+}
+
+TEST(Fuse, CertaintyIsLimited) {
+  const float most = fuse_cells("###").probability[0];
+  EXPECT_NEAR(most, 1.0 / (1.0 + std::exp(-3.5)), 1e-6);
+  EXPECT_EQ(fuse_cells(std::string(500, '#')).probability[0], most);
+  EXPECT_NEAR(fuse_cells(std::string(500, '.')).probability[0], 1.0 - most, 1e-6);
+}
+
+TEST(Fuse, TheLimitIsOnTheSumNotOnTheWay) {
+  EXPECT_EQ(fuse_cells("###......").cells[0], Cell::occupied);
+  EXPECT_EQ(fuse_cells("......###").cells[0], Cell::occupied);
+}
+
+TEST(Fuse, LogOddsThatCancelOutAreUnknown) {
+  OccupancyGrid wall = map_from({"#"});
+  OccupancyGrid space = map_from({"."});
+  wall.probability = {0.75f};
+  space.probability = {0.25f};
+  const FusedMap fused = fuse(at_identity({wall, space}), 1.0);
+  EXPECT_EQ(fused.grid.cells[0], Cell::unknown);
+  EXPECT_TRUE(std::isnan(fused.grid.probability[0]));
+  EXPECT_EQ(fused.conflicting, 1u);
+}
+
+TEST(Fuse, ThinWallsSurviveARotation) {
+  OccupancyGrid map = make_grid(200, 100, 0.05, {1.0, 2.0, 0.3}, Cell::free);
+  draw_line(map, 10, 10, 190, 10);
+  draw_line(map, 190, 10, 190, 90);
+  draw_line(map, 10, 10, 190, 90);
+  for (int degrees = 0; degrees < 360; degrees += 30) {
+    const OccupancyGrid fused = fuse({{&map, {3.3, -1.7, degrees * kPi / 180.0}}}, 0.05).grid;
+    EXPECT_EQ(count_wall_pieces(fused), 1) << degrees;
+    const auto walls = static_cast<double>(count_cells(fused).occupied);
+    EXPECT_NEAR(walls / static_cast<double>(count_cells(map).occupied), 1.0, 0.25) << degrees << ": thin";
+  }
+}
+
+TEST(Fuse, MixesResolutions) {
+  const OccupancyGrid coarse = map_from({"#.", ".."}, 0.2);
+  OccupancyGrid fine = make_grid(8, 8, 0.05, {}, Cell::free);
+  draw_line(fine, 4, 0, 4, 7);
+  for (const double resolution : {0.05, 0.2}) {
+    const FusedMap fused = fuse(at_identity({coarse, fine}), resolution);
+    const int scale = static_cast<int>(std::lround(0.2 / resolution));
+    EXPECT_EQ(fused.grid.width, 2 * scale);
+    EXPECT_EQ(fused.grid.at(0, 2 * scale - 1), Cell::occupied) << "the coarse map's wall";
+    EXPECT_EQ(fused.grid.at(scale, 0), Cell::occupied) << "the fine map's wall";
+    EXPECT_EQ(fused.grid.at(0, 0), Cell::free);
+    EXPECT_EQ(fused.agreeing + fused.conflicting, fused.grid.cells.size());
+  }
+}
+
+TEST(Fuse, RefusesWhatItCannotFuse) {
+  EXPECT_THROW(fuse({}, 1.0), std::invalid_argument);
+  const OccupancyGrid map = map_from({"#"});
+  EXPECT_THROW(fuse({{&map, {}}}, 0.0), std::invalid_argument);
+  EXPECT_THROW(fuse({{&map, {}}}, 1e-5), std::invalid_argument) << "10^10 cells";
+  OccupancyGrid broken = map;
+  broken.cells.clear();
+  EXPECT_THROW(fuse({{&broken, {}}}, 1.0), std::invalid_argument);
+}
+
+OccupancyGrid any_map(std::mt19937& random) {
+  const auto real = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  const double resolution = real(0.0, 1.0) < 0.5 ? 0.1 : real(0.05, 0.3);
+  OccupancyGrid map =
+      make_grid(std::uniform_int_distribution(1, 30)(random), std::uniform_int_distribution(1, 30)(random),
+                resolution, {real(-2.0, 2.0), real(-2.0, 2.0), real(-kPi, kPi)});
+  for (Cell& cell : map.cells) cell = static_cast<Cell>(std::uniform_int_distribution(0, 2)(random));
+  if (real(0.0, 1.0) < 0.3) {
+    for (std::size_t i = 0; i < map.cells.size(); ++i)
+      map.probability.push_back(static_cast<float>(real(0.0, 1.0)));
+  }
+  return map;
+}
+
+SE2 any_pose(std::mt19937& random) {
+  const auto real = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  if (real(0.0, 1.0) < 0.2) return {};
+  return {real(-2.0, 2.0), real(-2.0, 2.0), real(-kPi, kPi)};
+}
+
+RC_GTEST_PROP(Fuse, TheOrderOfTheInputsDoesNotMatter, ()) {
+  std::mt19937 random(*rc::gen::arbitrary<unsigned>());
+  std::vector<OccupancyGrid> maps;
+  for (int i = *rc::gen::inRange(1, 7); i > 0; --i) maps.push_back(any_map(random));
+  std::vector<PlacedMap> inputs;
+  for (const OccupancyGrid& map : maps) inputs.push_back({&map, any_pose(random)});
+  const FusedMap fused = fuse(inputs, 0.1);
+  std::shuffle(inputs.begin(), inputs.end(), random);
+  const FusedMap other = fuse(inputs, 0.1);
+  RC_ASSERT(fused.grid.origin == other.grid.origin);
+  RC_ASSERT(fused.grid.width == other.grid.width);
+  RC_ASSERT(fused.grid.cells == other.grid.cells);
+  RC_ASSERT(fused.agreeing == other.agreeing);
+  RC_ASSERT(fused.conflicting == other.conflicting);
+  const std::size_t bytes = fused.grid.probability.size() * sizeof(float);
+  RC_ASSERT(std::memcmp(fused.grid.probability.data(), other.grid.probability.data(), bytes) == 0);
+}
+
+// Cell by cell and input by input, as one would say it: log-odds of the cell under the centre, in floating
+// point. Maps without walls, so that the bands that join diagonal walls have no part in it.
+RC_GTEST_PROP(Fuse, EqualsTheNaiveSum, ()) {
+  std::mt19937 random(*rc::gen::arbitrary<unsigned>());
+  std::vector<OccupancyGrid> maps{any_map(random), any_map(random), any_map(random)};
+  std::vector<PlacedMap> inputs;
+  for (OccupancyGrid& map : maps) {
+    map.resolution = std::max(map.resolution, 0.1);
+    map.probability.clear();
+    for (int row = 0; row < map.height; ++row) {
+      for (int column = 0; column < map.width; ++column) {
+        Cell& cell = map.at(column, row);
+        // Walls two cells thick, four apart: nothing touches at a corner only.
+        if (cell == Cell::occupied) cell = Cell::free;
+        if (column % 6 < 2) cell = Cell::occupied;
+      }
+    }
+    inputs.push_back({&map, any_pose(random)});
+  }
+  const FusedMap fused = fuse(inputs, 0.1);
+  std::size_t known = 0;
+  for (int row = 0; row < fused.grid.height; ++row) {
+    for (int column = 0; column < fused.grid.width; ++column) {
+      double sum = 0.0;
+      for (const PlacedMap& input : inputs) {
+        const Point2 p =
+            inverse(input.T_output_map * input.map->origin) * fused.grid.cell_center(column, row);
+        const int x = static_cast<int>(std::floor(p.x / input.map->resolution + 1e-6));
+        const int y = static_cast<int>(std::floor(p.y / input.map->resolution + 1e-6));
+        if (!input.map->contains(x, y) || input.map->at(x, y) == Cell::unknown) continue;
+        sum += input.map->at(x, y) == Cell::occupied ? std::log(0.85 / 0.15) : std::log(0.35 / 0.65);
+      }
+      const Cell expected = sum > 0 ? Cell::occupied : sum < 0 ? Cell::free : Cell::unknown;
+      RC_ASSERT(fused.grid.at(column, row) == expected);
+      if (expected == Cell::unknown) continue;
+      ++known;
+      RC_ASSERT(std::abs(fused.grid.probability[fused.grid.index(column, row)] -
+                         1.0 / (1.0 + std::exp(-sum))) < 0.04);
+    }
+  }
+  RC_ASSERT(known == count_cells(fused.grid).known());
+}
+
+}  // namespace
+}  // namespace gridmerge

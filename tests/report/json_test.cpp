@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/report/json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "report/results.hpp"
+
+namespace gridmerge {
+namespace {
+
+MatchResult any_match() {
+  MatchResult match;
+  match.verdict = Verdict::accepted;
+  match.T_fixed_moving = {1.25, -3.0, 0.52};
+  match.probability = 0.998;
+  match.acceptance_index = 0.964;
+  match.agreement = 11372;
+  match.disagreement = 422;
+  match.overlap = 0.57;
+  match.seconds = 0.021;
+  match.hypotheses = {{{1.25, -3.0, 0.52}, 512.3, 0.998}, {{0.1, 1.0 / 3.0, -1e-7}, -4.0, 0.0}};
+  return match;
+}
+
+TEST(MatchJson, IsTheDocumentedText) {
+  EXPECT_EQ(
+      match_json("a.yaml", "b.yaml", any_match()),
+      R"({"fixed":"a.yaml","moving":"b.yaml","verdict":"accepted",)"
+      R"("transform":{"x":1.25,"y":-3.0,"theta":0.52},)"
+      R"("probability":0.998,"acceptance_index":0.964,"agreement":11372,"disagreement":422,)"
+      R"("overlap":0.57,"seconds":0.021,)"
+      R"("hypotheses":[{"transform":{"x":1.25,"y":-3.0,"theta":0.52},"score":512.3,"probability":0.998},)"
+      R"({"transform":{"x":0.1,"y":0.3333333333333333,"theta":-1e-07},"score":-4.0,"probability":0.0}]})"
+      "\n");
+}
+
+TEST(MatchJson, OfARefusedPairWithNothingToGoBy) {
+  EXPECT_EQ(
+      match_json("a", "b", {}),
+      R"({"fixed":"a","moving":"b","verdict":"refused","transform":{"x":0.0,"y":0.0,"theta":0.0},)"
+      R"("probability":0.0,"acceptance_index":0.0,"agreement":0,"disagreement":0,"overlap":0.0,"seconds":0.0,)"
+      R"("hypotheses":[]})"
+      "\n");
+}
+
+TEST(MatchJson, HasNoNegativeZero) {
+  MatchResult match;
+  match.T_fixed_moving = {-0.0, -0.0, -0.0};
+  EXPECT_EQ(match_json("a", "b", match).find("-0"), std::string::npos);
+}
+
+TEST(MatchJson, RefusesWhatIsNotFinite) {
+  for (const double value :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    MatchResult match = any_match();
+    match.probability = value;
+    EXPECT_THROW(match_json("a", "b", match), std::invalid_argument);
+    match = any_match();
+    match.hypotheses[1].T_fixed_moving.theta = value;
+    EXPECT_THROW(match_json("a", "b", match), std::invalid_argument);
+  }
+}
+
+TEST(MatchJson, TakesAnyName) {
+  for (const std::string& name : test::kHostileNames) {
+    const std::string text = match_json(name, "b", any_match());
+    EXPECT_EQ(text.find('\n'), text.size() - 1) << "one line";
+    const auto json = nlohmann::json::parse(text);  // throws for what is no UTF-8
+    if (name.find('\xff') == std::string::npos) {
+      EXPECT_EQ(json["fixed"], name);
+    }
+  }
+  EXPECT_EQ(nlohmann::json::parse(match_json("\xff.yaml", "b", {}))["fixed"], "\xef\xbf\xbd.yaml");
+}
+
+TEST(TransformsJson, IsTheDocumentedText) {
+  const std::vector<OccupancyGrid> maps(4, make_grid(1, 1, 1.0, {}, Cell::free));
+  MergeResult result = test::merged(maps, {{{0, {}}, {2, {1.25, -3.0, 0.52}}}});
+  Join refused{0, 1, {}};
+  refused.match.T_fixed_moving = {0.5, 0.25, 3.0};
+  refused.match.probability = 0.125;
+  result.joins.insert(result.joins.begin(), refused);
+  EXPECT_EQ(transforms_json({"a.yaml", "b.yaml", "c.yaml", "d.yaml"}, result), R"({
+  "components": [
+    {
+      "map": "merged.yaml",
+      "members": [
+        {
+          "source": "a.yaml",
+          "transform": {
+            "x": 0.0,
+            "y": 0.0,
+            "theta": 0.0
+          }
+        },
+        {
+          "source": "c.yaml",
+          "transform": {
+            "x": 1.25,
+            "y": -3.0,
+            "theta": 0.52
+          }
+        }
+      ]
+    }
+  ],
+  "joins": [
+    {
+      "fixed": "a.yaml",
+      "moving": "b.yaml",
+      "transform": {
+        "x": 0.5,
+        "y": 0.25,
+        "theta": 3.0
+      },
+      "verdict": "refused",
+      "probability": 0.125
+    },
+    {
+      "fixed": "a.yaml",
+      "moving": "c.yaml",
+      "transform": {
+        "x": 1.25,
+        "y": -3.0,
+        "theta": 0.52
+      },
+      "verdict": "accepted",
+      "probability": 0.75
+    }
+  ],
+  "left_out": [
+    "b.yaml",
+    "d.yaml"
+  ]
+}
+)");
+}
+
+TEST(TransformsJson, NamesTheMapOfEveryComponent) {
+  const std::vector<OccupancyGrid> maps(4, make_grid(1, 1, 1.0, {}, Cell::free));
+  const MergeResult result = test::merged(maps, {{{0, {}}, {2, {}}}, {{1, {}}, {3, {}}}});
+  const auto json = nlohmann::json::parse(transforms_json({"a", "b", "c", "d"}, result));
+  EXPECT_EQ(json["components"][0]["map"], "merged.yaml");
+  EXPECT_EQ(json["components"][1]["map"], "merged_2.yaml");
+  EXPECT_EQ(json["components"][1]["members"][0]["source"], "b");
+}
+
+TEST(TransformsJson, OfNothing) {
+  EXPECT_EQ(transforms_json({}, {}), "{\n  \"components\": [],\n  \"joins\": [],\n  \"left_out\": []\n}\n");
+}
+
+TEST(TransformsJson, EveryMapNeedsAName) {
+  MergeResult result;
+  result.left_out = {0, 1};
+  EXPECT_THROW(transforms_json({"a"}, result), std::out_of_range);
+}
+
+}  // namespace
+}  // namespace gridmerge

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/report/merge_output.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "gridmerge/io/map_file.hpp"
+#include "gridmerge/io/png.hpp"
+#include "io/file_size_limit.hpp"
+#include "io/support.hpp"
+#include "merge/drawing.hpp"
+#include "report/results.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace gridmerge {
+namespace {
+
+using test::contains;
+using test::map_from;
+using test::message_of;
+using test::read_file;
+using test::TemporaryDirectory;
+using Names = std::vector<std::string>;
+
+const std::vector<OccupancyGrid> kMaps(4, map_from({"#..", ".##"}, 0.05));
+const Names kSources{"a.yaml", "b.yaml", "c.yaml", "d.yaml"};
+
+MergeResult one_component() {
+  return test::merged(kMaps, {{{0, {}}, {1, {0.05, 0.1, 0.0}}}});
+}
+MergeResult two_components() {
+  return test::merged(kMaps, {{{0, {}}, {1, {}}}, {{2, {}}, {3, {0.1, 0.0, 0.0}}}});
+}
+
+TEST(MergeOutput, WritesOneComponent) {
+  const TemporaryDirectory directory;
+  const MergeResult result = one_component();
+  write_merge_output(directory.path(), kSources, kMaps, result);
+  EXPECT_EQ(directory.names(),
+            (Names{"merged.pgm", "merged.yaml", "preview.png", "report.html", "transforms.json"}));
+  const OccupancyGrid merged = load_map(directory.file("merged.yaml")).grid;
+  EXPECT_EQ(merged.cells, result.components[0].fused.grid.cells);
+  EXPECT_EQ(merged.origin, result.components[0].fused.grid.origin);
+  EXPECT_GT(decode_png(read_file(directory.file("preview.png"))).width, 100);
+  EXPECT_TRUE(contains(read_file(directory.file("report.html")), "c.yaml"));
+  const auto json = nlohmann::json::parse(read_file(directory.file("transforms.json")));
+  EXPECT_EQ(json["components"][0]["members"][1]["source"], "b.yaml");
+}
+
+TEST(MergeOutput, WritesEveryComponent) {
+  const TemporaryDirectory directory;
+  const MergeResult result = two_components();
+  write_merge_output(directory.path(), kSources, kMaps, result);
+  EXPECT_EQ(load_map(directory.file("merged_2.yaml")).grid.cells, result.components[1].fused.grid.cells);
+}
+
+TEST(MergeOutput, WithoutAComponentThereIsNoMergedMap) {
+  const TemporaryDirectory directory;
+  write_merge_output(directory.path(), kSources, kMaps, test::merged(kMaps, {}));
+  EXPECT_EQ(directory.names(), (Names{"preview.png", "report.html", "transforms.json"}));
+  const auto json = nlohmann::json::parse(read_file(directory.file("transforms.json")));
+  EXPECT_TRUE(json["components"].empty());
+  EXPECT_EQ(json["left_out"].size(), 4u);
+}
+
+TEST(MergeOutput, MakesTheDirectory) {
+  const TemporaryDirectory directory;
+  write_merge_output(directory.path() / "new" / "newer", kSources, kMaps, one_component());
+  EXPECT_TRUE(std::filesystem::exists(directory.path() / "new" / "newer" / "transforms.json"));
+}
+
+TEST(MergeOutput, RemovesTheMapsOfAnEarlierRunAndNothingElse) {
+  const TemporaryDirectory directory;
+  const Names others{"merged_x.yaml", "merged.yaml.old", "merged_.pgm",
+                     "merged.txt",    "my_merged.yaml",  "notes"};
+  for (const std::string& name : others) directory.write(name, "mine");
+  directory.write("merged_17.yaml", "of an earlier run");
+  write_merge_output(directory.path(), kSources, kMaps, two_components());
+  write_merge_output(directory.path(), kSources, kMaps, one_component());
+  EXPECT_FALSE(std::filesystem::exists(directory.file("merged_2.yaml")));
+  EXPECT_FALSE(std::filesystem::exists(directory.file("merged_2.pgm")));
+  EXPECT_FALSE(std::filesystem::exists(directory.file("merged_17.yaml")));
+  EXPECT_TRUE(std::filesystem::exists(directory.file("merged.yaml")));
+  write_merge_output(directory.path(), kSources, kMaps, test::merged(kMaps, {}));
+  EXPECT_FALSE(std::filesystem::exists(directory.file("merged.yaml")));
+  EXPECT_FALSE(std::filesystem::exists(directory.file("merged.pgm")));
+  for (const std::string& name : others) EXPECT_EQ(read_file(directory.file(name)), "mine") << name;
+}
+
+TEST(MergeOutput, NeverReplacesAnInput) {
+  const TemporaryDirectory directory;
+  for (const std::string name : {"merged.yaml", "merged_3.yaml", "merged.pgm", "preview.png"}) {
+    const std::string input = directory.write(name, "mine");
+    const auto write = [&] {
+      write_merge_output(directory.path(), {input, "b", "c", "d"}, kMaps, one_component());
+    };
+    EXPECT_TRUE(contains(message_of<FileError>(write), name + ": is an input"));
+    EXPECT_EQ(directory.names(), Names{name});
+    EXPECT_EQ(read_file(input), "mine");
+    std::filesystem::remove(input);
+  }
+}
+
+TEST(MergeOutput, NeverReplacesAnInputByAnotherName) {
+  const TemporaryDirectory directory;
+  directory.write("merged.yaml", "mine");
+  std::filesystem::create_symlink("merged.yaml", directory.file("link.yaml"));
+  const std::string indirect = (directory.path() / "." / "link.yaml").string();
+  EXPECT_THROW(prepare_merge_output(directory.path(), {"elsewhere.yaml", indirect}), FileError);
+  directory.write("other/merged.yaml", "mine");
+  EXPECT_NO_THROW(prepare_merge_output(directory.path(), {directory.file("other/merged.yaml")}));
+}
+
+TEST(MergeOutput, SaysWhatIsNoDirectory) {
+  const TemporaryDirectory directory;
+  const std::string file = directory.write("file", "mine");
+  EXPECT_TRUE(contains(message_of<FileError>([&] { prepare_merge_output(file, {}); }), file));
+  EXPECT_TRUE(contains(message_of<FileError>([&] { prepare_merge_output(file + "/under", {}); }), file));
+  EXPECT_EQ(read_file(file), "mine");
+}
+
+TEST(MergeOutput, SaysWhereItMayNotWrite) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+  const TemporaryDirectory directory;
+  std::filesystem::permissions(directory.path(),
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  EXPECT_TRUE(contains(message_of<FileError>([&] { prepare_merge_output(directory.path(), {}); }),
+                       "cannot be written to"));
+}
+
+TEST(MergeOutput, AFullDiskLeavesTheDirectoryAsItWas) {
+  const TemporaryDirectory directory;
+  write_merge_output(directory.path(), kSources, kMaps, two_components());
+  const Names names = directory.names();
+  Names before;
+  for (const std::string& name : names) before.push_back(read_file(directory.file(name)));
+  // Enough for the map's files, not for the picture.
+  const std::string message = test::with_file_size_limit(
+      400, [&] { write_merge_output(directory.path(), kSources, kMaps, one_component()); });
+  EXPECT_TRUE(contains(message, "preview.png: cannot be written"));
+  EXPECT_EQ(directory.names(), names);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    EXPECT_EQ(read_file(directory.file(names[i])), before[i]) << names[i];
+}
+
+}  // namespace
+}  // namespace gridmerge

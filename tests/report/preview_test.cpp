@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/report/preview.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+#include <tuple>
+
+#include "gridmerge/io/png.hpp"
+#include "merge/drawing.hpp"
+#include "report/results.hpp"
+
+namespace gridmerge {
+namespace {
+
+using test::map_from;
+using Rgb = std::tuple<int, int, int>;
+using Colours = PreviewColours;
+
+Rgb rgb(Colour colour) {
+  return {colour.red, colour.green, colour.blue};
+}
+
+struct Picture {
+  PngImage image;
+
+  Rgb at(int x, int y) const {
+    const auto i =
+        (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)) *
+        3;
+    return {image.samples[i], image.samples[i + 1], image.samples[i + 2]};
+  }
+
+  // The pixels of a colour, rows first.
+  std::vector<std::pair<int, int>> pixels(Colour colour) const {
+    std::vector<std::pair<int, int>> found;
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        if (at(x, y) == rgb(colour)) found.emplace_back(x, y);
+      }
+    }
+    return found;
+  }
+
+  // How many map cells have the colour, drawn `zoom` pixels wide. The legend's samples are smaller than a
+  // cell here.
+  std::size_t cells(Colour colour, std::size_t zoom = 32) const {
+    return pixels(colour).size() / (zoom * zoom);
+  }
+};
+
+Picture preview(const std::vector<OccupancyGrid>& maps, const std::vector<std::vector<Member>>& components) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < maps.size(); ++i) names.push_back("map" + std::to_string(i) + ".yaml");
+  return {decode_png(preview_png(names, maps, test::merged(maps, components)))};
+}
+
+TEST(Preview, ShowsWhoSawWhat) {
+  // Beside each other: only a, both, only b. In the lowest row the maps contradict each other.
+  const std::vector<OccupancyGrid> maps{map_from({"##..", "....", "...."}),
+                                        map_from({"#...", "....", "###."})};
+  const Picture picture = preview(maps, {{{0, {}}, {1, {1.0, 0.0, 0.0}}}});
+  EXPECT_EQ(picture.cells(map_colour(0)), 1u) << "wall of a";
+  EXPECT_EQ(picture.cells(Colours::shared_wall), 1u);
+  EXPECT_EQ(picture.cells(Colours::disagreement), 3u);
+  EXPECT_EQ(picture.cells(Colours::shared_free), 5u);
+}
+
+TEST(Preview, WallsOfTheSecondMapHaveItsColour) {
+  const std::vector<OccupancyGrid> maps{map_from({"#.."}), map_from({"...##"})};
+  const Picture picture = preview(maps, {{{0, {}}, {1, {1.0, 0.0, 0.0}}}});
+  EXPECT_EQ(picture.cells(map_colour(0)), 1u);
+  EXPECT_EQ(picture.cells(map_colour(1)), 2u);
+  EXPECT_EQ(picture.cells(Colours::shared_free), 2u);
+  EXPECT_EQ(picture.cells(Colours::disagreement), 0u);
+}
+
+TEST(Preview, NothingElseHasTheColourOfDisagreement) {
+  const std::vector<OccupancyGrid> maps{map_from({"#.."}), map_from({"...##"})};
+  const auto legend_only = preview(maps, {{{0, {}}, {1, {1.0, 0.0, 0.0}}}}).pixels(Colours::disagreement);
+  EXPECT_FALSE(legend_only.empty());
+  const auto [first, last] = std::minmax_element(legend_only.begin(), legend_only.end());
+  EXPECT_LT(last->first - first->first, 64) << "the legend's sample only";
+  EXPECT_LT(last->second - first->second, 32);
+}
+
+TEST(Preview, EighteenMapsHaveEighteenColours) {
+  std::set<Rgb> colours{rgb(Colours::unknown), rgb(Colours::shared_free), rgb(Colours::shared_wall),
+                        rgb(Colours::disagreement)};
+  for (std::size_t i = 0; i < 18; ++i) EXPECT_TRUE(colours.insert(rgb(map_colour(i))).second) << i;
+  for (std::size_t i = 18; i < 100; ++i) EXPECT_NE(map_colour(i), Colours::disagreement) << i;
+}
+
+TEST(Preview, NorthIsUpAndEastIsRight) {
+  const std::vector<OccupancyGrid> maps{map_from({"..#", "...", "..."}), map_from({"#"})};
+  const Picture picture = preview(maps, {{{0, {}}, {1, {}}}});
+  const auto shared_free = picture.pixels(Colours::disagreement);  // lower left: free in a, wall in b
+  const auto wall = picture.pixels(map_colour(0));
+  EXPECT_EQ(shared_free.front().second - wall.front().second, 2 * 32);
+  EXPECT_EQ(wall.front().first - shared_free.front().first, 2 * 32);
+}
+
+TEST(Preview, PlacesMapsByTheirTransforms) {
+  const std::vector<OccupancyGrid> maps{map_from({"."}),
+                                        map_from({"##"}, 1.0, {0.0, 0.0, std::numbers::pi / 2})};
+  const Picture picture = preview(maps, {{{0, {}}, {1, {3.0, 0.0, 0.0}}}});
+  auto wall = picture.pixels(map_colour(1));
+  std::erase_if(
+      wall, [top = wall.front().second](const auto& pixel) { return pixel.second >= top + 64; });  // legend
+  EXPECT_EQ(wall.size(), 2u * 32 * 32) << "upright";
+  const auto [left, right] = std::minmax_element(wall.begin(), wall.end());
+  EXPECT_EQ(right->first - left->first, 31) << "one cell wide";
+  const auto free = picture.pixels(Colours::unknown);
+  EXPECT_EQ(left->first - free.front().first, 12 + 2 * 32)
+      << "to the left of x = 3, beyond the panel's margin";
+}
+
+TEST(Preview, LargeMapsAreDrawnCoarserAndKeepTheirWalls) {
+  OccupancyGrid map = make_grid(9000, 400, 0.01, {}, Cell::free);
+  test::draw_line(map, 0, 100, 8999, 300);
+  const std::vector<OccupancyGrid> maps{map, map_from({"."})};
+  const Picture picture = preview(maps, {{{0, {}}, {1, {}}}});
+  EXPECT_LE(picture.image.width, 2500);
+  EXPECT_GE(picture.image.width, 2000);
+  std::set<int> columns;
+  for (const auto& [x, y] : picture.pixels(map_colour(0))) columns.insert(x);
+  EXPECT_GE(columns.size(), 2250u) << "a wall from end to end";
+}
+
+TEST(Preview, TheScaleBarHasARoundLength) {
+  for (const double resolution : {0.01, 0.037, 0.05, 3.0}) {
+    for (const int width : {1, 10, 137, 700}) {
+      const std::vector<OccupancyGrid> maps{make_grid(width, 5, resolution, {}, Cell::free),
+                                            map_from({"."}, resolution)};
+      const Picture picture = preview(maps, {{{0, {}}, {1, {}}}});
+      // The page's ink is drawn in text, in dots of a few pixels, and in the bar.
+      int bar = 0;
+      for (int y = 0; y < picture.image.height; ++y) {
+        for (int x = 0, run = 0; x < picture.image.width; ++x) {
+          run = picture.at(x, y) == Rgb{45, 45, 50} ? run + 1 : 0;
+          bar = std::max(bar, run);
+        }
+      }
+      const int zoom = std::clamp(1400 / std::max(width, 5), 1, 32);
+      const double length = bar * resolution / zoom;
+      const double power = std::pow(10.0, std::floor(std::log10(length) + 0.02));
+      double error = 1.0;
+      for (const double digit : {1.0, 2.0, 5.0})
+        error = std::min(error, std::abs(length / power - digit) / digit);
+      EXPECT_LT(error, 0.02) << bar << " pixels are " << length << " m";
+      EXPECT_LT(bar, picture.image.width / 2);
+    }
+  }
+}
+
+TEST(Preview, MapsThatWereLeftOutAreShownByThemselves) {
+  const std::vector<OccupancyGrid> maps{map_from({"#.."}), map_from({"##."}), map_from({"###"})};
+  const Picture none = preview(maps, {});
+  EXPECT_EQ(none.cells(map_colour(0)), 1u);
+  EXPECT_EQ(none.cells(map_colour(1)), 2u);
+  EXPECT_EQ(none.cells(map_colour(2)), 3u);
+  const Picture some = preview(maps, {{{0, {}}, {1, {}}}});
+  EXPECT_EQ(some.cells(map_colour(2)), 3u);
+}
+
+TEST(Preview, EveryComponentIsShown) {
+  const std::vector<OccupancyGrid> maps{map_from({"#."}), map_from({".."}), map_from({"##"}),
+                                        map_from({" ."})};
+  const Picture picture = preview(maps, {{{0, {}}, {1, {}}}, {{2, {}}, {3, {}}}});
+  EXPECT_EQ(picture.cells(Colours::disagreement), 2u) << "one in each";
+  EXPECT_EQ(picture.cells(map_colour(2)), 1u);
+}
+
+TEST(Preview, ManyMapsStayReadable) {
+  const std::vector<OccupancyGrid> maps(100, map_from({"#."}));
+  std::vector<Member> members;
+  for (std::size_t i = 0; i < 40; ++i) members.push_back({i, {static_cast<double>(i), 0.0, 0.0}});
+  const Picture picture = preview(maps, {members});
+  EXPECT_LT(picture.image.width, 2000);
+  EXPECT_LT(picture.image.height, 4000);
+}
+
+TEST(Preview, OddMapsAndNames) {
+  std::vector<OccupancyGrid> maps;
+  for (std::size_t i = 0; i < test::kHostileNames.size(); ++i)
+    maps.push_back(make_grid(1, 1, 1e-6, {1e9, 0.0, 1.0}));
+  maps[0] = make_grid(1, 1, 1000.0, {}, Cell::occupied);
+  maps[1] = make_grid(1, 2000, 0.05, {}, Cell::occupied);
+  for (const auto& components :
+       std::vector<std::vector<std::vector<Member>>>{{}, {{{0, {}}, {2, {}}}}, {{{1, {}}, {3, {}}}}}) {
+    const std::string png = preview_png(test::kHostileNames, maps, test::merged(maps, components));
+    EXPECT_GT(decode_png(png).width, 0);
+  }
+  EXPECT_GT(decode_png(preview_png({}, {}, {})).width, 0);
+}
+
+TEST(Preview, EveryMapNeedsAName) {
+  const std::vector<OccupancyGrid> maps{map_from({"#"}), map_from({"#"})};
+  EXPECT_THROW(preview_png({"a"}, maps, test::merged(maps, {})), std::out_of_range);
+  EXPECT_THROW(preview_png({"a"}, maps, test::merged(maps, {{{0, {}}, {1, {}}}})), std::out_of_range);
+}
+
+}  // namespace
+}  // namespace gridmerge

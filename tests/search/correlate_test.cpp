@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "correlate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace gridmerge {
+namespace {
+
+TEST(Correlate, EqualsTheLiteralSum) {
+  std::mt19937 random(11);
+  const auto below = [&](int limit) { return static_cast<int>(random() % static_cast<unsigned>(limit)); };
+  for (int run = 0; run < 20; ++run) {
+    ScoreImage output;
+    output.width = kCorrelateBlock * (1 + below(3));
+    output.height = 1 + below(20);
+    ScoreImage input;
+    input.width = output.width + below(50);
+    input.height = output.height + 1 + below(30);
+    for (int i = 0; i < input.width * input.height; ++i)
+      input.values.push_back(static_cast<std::int16_t>(below(201) - 100));
+    output.values.assign(static_cast<std::size_t>(output.width) * output.height, 77);
+
+    const int first = below(3);
+    const int room = input.width * (input.height - output.height) + (input.width - output.width) - first;
+    std::vector<std::int32_t> offsets;
+    for (int i = below(40); i > 0; --i) offsets.push_back(below(room + 1));
+
+    correlate(input, first, offsets, output);
+    for (int y = 0; y < output.height; ++y) {
+      for (int x = 0; x < output.width; ++x) {
+        int sum = 0;
+        for (const int offset : offsets) sum += input.values[first + y * input.width + x + offset];
+        ASSERT_EQ(output.values[y * output.width + x], sum) << run << " " << x << " " << y;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gridmerge

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/similarity/evidence.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "random_grid.hpp"
+
+namespace gridmerge {
+namespace {
+
+constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+
+/// The sum of the table over every wall point of `points`, looked up in `map` one by one.
+double sum_of_table(const WallMap& map, const WallMap& points, const SE2& T, const ErrorModel& model) {
+  const auto table = evidence_table(model, map.background);
+  double sum = 0.0;
+  for (const WallPoint& wall : points.walls) {
+    const Point2 p = T * wall.position;
+    const int x = static_cast<int>(std::floor(p.x));
+    const int y = static_cast<int>(std::floor(p.y));
+    if (x < 0 || y < 0 || x >= map.width || y >= map.height) continue;
+    const Place place = map.places[static_cast<std::size_t>(y) * map.width + x];
+    if (place.distance == kUnseen) continue;
+    Facing facing = Facing::unclear;
+    if (wall.facing != kNoDirection && place.facing != kNoDirection) {
+      const int turn = static_cast<int>(std::lround(T.theta / (2.0 * std::numbers::pi) * kDirections));
+      const double between = 2.0 * std::numbers::pi * (wall.facing + turn - place.facing) / kDirections;
+      facing = std::cos(between) > -1e-9 ? Facing::same : Facing::opposite;
+    }
+    sum += table[encounter(place.distance, facing)];
+  }
+  return sum;
+}
+
+TEST(EvidenceTable, IsTheLogOfTheMixtureOverTheBackground) {
+  std::array<double, kDistanceBins> background{};
+  background.fill(1.0 / kDistanceBins);
+  const auto table = evidence_table({1.0, 0.2}, background);
+  const double on_the_wall = std::erf(0.5 / std::numbers::sqrt2);
+  EXPECT_NEAR(table[encounter(0, Facing::unclear)], std::log(0.8 * on_the_wall * kDistanceBins + 0.2), 1e-6);
+  EXPECT_NEAR(table[encounter(0, Facing::same)], std::log(0.8 * on_the_wall * kDistanceBins * 1.8 + 0.2),
+              1e-6);
+  EXPECT_NEAR(table[encounter(0, Facing::opposite)], std::log(0.8 * on_the_wall * kDistanceBins * 0.2 + 0.2),
+              1e-6);
+  EXPECT_NEAR(table[encounter(kDistanceBins - 1, Facing::unclear)], std::log(0.2), 1e-6);
+}
+
+TEST(EvidenceTable, ExpectsNothingOfUnrelatedMaps) {
+  // Under the background the likelihood ratio has the mean 1: chance is never evidence. Unrelated walls face
+  // the same way every second time.
+  const WallMap map = make_wall_map(test::random_grid(5, 60, 50), 0.1);
+  for (const ErrorModel& model : error_models()) {
+    const auto table = evidence_table(model, map.background);
+    double unclear = 0.0;
+    double facing = 0.0;
+    for (int bin = 0; bin < kDistanceBins; ++bin) {
+      unclear += map.background[bin] * std::exp(table[encounter(bin, Facing::unclear)]);
+      facing +=
+          0.5 * map.background[bin] *
+          (std::exp(table[encounter(bin, Facing::same)]) + std::exp(table[encounter(bin, Facing::opposite)]));
+    }
+    EXPECT_NEAR(unclear, 1.0, 1e-5);
+    EXPECT_NEAR(facing, 1.0, 1e-5);
+  }
+}
+
+TEST(WallEvidence, AWallSeenFromTheOtherSideIsNotTheSameWall) {
+  // Two rooms that share a wall: each robot saw it from its own room.
+  OccupancyGrid left = make_grid(40, 40, 0.1);
+  OccupancyGrid right = make_grid(40, 40, 0.1);
+  for (int row = 0; row < 40; ++row) {
+    for (int column = 0; column < 20; ++column) {
+      left.at(column, row) = Cell::free;
+      right.at(39 - column, row) = Cell::free;
+    }
+    left.at(20, row) = Cell::occupied;
+    right.at(20, row) = Cell::occupied;
+  }
+  const WallMap left_walls = make_wall_map(left, 0.1);
+  const WallMap right_walls = make_wall_map(right, 0.1);
+  const SE2 T = inverse(left_walls.T_map_grid) * right_walls.T_map_grid;
+  const SE2 T_cells{T.x / 0.1, T.y / 0.1, T.theta};
+  const double same_side = WallEvidence(left_walls, left_walls, kAll)({}).score;
+  EXPECT_GT(same_side, 100.0);
+  EXPECT_LT(WallEvidence(left_walls, right_walls, kAll)(T_cells).score, 0.5 * same_side);
+}
+
+TEST(AreaEvidence, SpeaksForAgreementAndAgainstDisagreement) {
+  EXPECT_EQ(area_evidence(0.0, 0.0), 0.0);
+  EXPECT_GT(area_evidence(970.0, 30.0), 0.0);
+  EXPECT_LT(area_evidence(850.0, 150.0), 0.0);
+  EXPECT_NEAR(area_evidence(1940.0, 60.0), 2.0 * area_evidence(970.0, 30.0), 1e-9);
+}
+
+RC_GTEST_PROP(WallEvidence, IsTheBestModelsSumOverAllWalls, (unsigned seed)) {
+  const WallMap fixed = make_wall_map(test::random_grid(seed, 40, 30), 0.1);
+  const WallMap moving = make_wall_map(test::random_grid(seed + 1, 25, 35), 0.1);
+  const SE2 T{*rc::gen::inRange(-30, 30) + 0.31, *rc::gen::inRange(-30, 30) + 0.17,
+              *rc::gen::inRange(-314, 314) / 100.0};
+  const Evidence found = WallEvidence(fixed, moving, kAll)(T);
+  double best = -std::numeric_limits<double>::infinity();
+  for (const ErrorModel& model : error_models()) {
+    best = std::max(best,
+                    sum_of_table(fixed, moving, T, model) + sum_of_table(moving, fixed, inverse(T), model));
+  }
+  RC_ASSERT(std::abs(found.score - best) < 0.01 + 1e-5 * std::abs(best));
+}
+
+RC_GTEST_PROP(WallEvidence, IsTheSameFromEitherSide, (unsigned seed)) {
+  const WallMap a = make_wall_map(test::random_grid(seed, 40, 30), 0.1);
+  const WallMap b = make_wall_map(test::random_grid(seed + 1, 25, 35), 0.1);
+  const SE2 T{3.21, -1.17, *rc::gen::inRange(-314, 314) / 100.0};
+  const double forth = WallEvidence(a, b, kAll)(T).score;
+  const double back = WallEvidence(b, a, kAll)(inverse(T)).score;
+  RC_ASSERT(std::abs(forth - back) < 0.01 + 1e-3 * std::abs(forth));
+}
+
+TEST(WallEvidence, IsZeroWhereTheMapsDoNotMeet) {
+  const WallMap map = make_wall_map(test::random_grid(7, 40, 30), 0.1);
+  for (const SE2& far : {SE2{1000.0, 0.0, 0.0}, SE2{1e300, 0.0, 0.0}, SE2{0.0, -1e12, 1.0}}) {
+    const Evidence found = WallEvidence(map, map, kAll)(far);
+    EXPECT_EQ(found.score, 0.0);
+    EXPECT_EQ(found.seen_walls, 0.0);
+  }
+}
+
+TEST(WallEvidence, PrefersTheTruePoseAndATightModelForAPerfectCopy) {
+  const WallMap map = make_wall_map(test::random_grid(7, 60, 50), 0.1);
+  const WallEvidence evidence(map, map, kAll);
+  const Evidence truth = evidence({});
+  EXPECT_EQ(truth.model.sigma, error_models().front().sigma);
+  EXPECT_EQ(truth.model.outliers, error_models().front().outliers);
+  for (const SE2& off : {SE2{2.0, 0.0, 0.0}, SE2{0.0, -2.0, 0.0}, SE2{0.0, 0.0, 0.1}}) {
+    EXPECT_GT(truth.score, evidence(off).score);
+  }
+}
+
+TEST(WallEvidence, MinSigmaLeavesOutTheTightModels) {
+  const WallMap map = make_wall_map(test::random_grid(7, 60, 50), 0.1);
+  const WallEvidence evidence(map, map, kAll);
+  EXPECT_GE(evidence({}, 2.0).model.sigma, 2.0);
+  EXPECT_EQ(evidence({}, 1e9).model.sigma, error_models().back().sigma);
+}
+
+TEST(WallEvidence, AFewPointsStandForAll) {
+  const WallMap map = make_wall_map(test::random_grid(7, 200, 200), 0.1);
+  const double all = WallEvidence(map, map, kAll)({}).score;
+  EXPECT_NEAR(WallEvidence(map, map, 200)({}).score, all, 0.2 * all);
+}
+
+TEST(DrawEvenly, TakesEveryPointOrSpreadsTheCount) {
+  std::vector<WallPoint> points;
+  for (int i = 0; i < 10; ++i) points.push_back({{static_cast<double>(i), 0.0}, kNoDirection});
+  EXPECT_EQ(draw_evenly(points, 20).size(), 10U);
+  const std::vector<WallPoint> five = draw_evenly(points, 5);
+  ASSERT_EQ(five.size(), 5U);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(five[i].position.x, 2.0 * i);
+  EXPECT_TRUE(draw_evenly({}, 5).empty());
+  EXPECT_TRUE(draw_evenly(points, 0).empty());
+}
+
+}  // namespace
+}  // namespace gridmerge

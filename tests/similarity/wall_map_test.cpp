@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/similarity/wall_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "random_grid.hpp"
+
+namespace gridmerge {
+namespace {
+
+/// Centre of a cell of the wall map, in the map frame.
+Point2 centre_of(const WallMap& map, int x, int y) {
+  return map.T_map_grid * Point2{(x + 0.5) * map.cell, (y + 0.5) * map.cell};
+}
+
+TEST(WallMap, DistancesAreWithinEightPercentOfTheEuclideanOnes) {
+  const OccupancyGrid grid = test::random_grid(3, 40, 30);
+  const WallMap map = make_wall_map(grid, grid.resolution);
+  for (int y = 1; y + 1 < map.height; ++y) {
+    for (int x = 1; x + 1 < map.width; ++x) {
+      const int bin = map.places[static_cast<std::size_t>(y) * map.width + x].distance;
+      if (bin == kUnseen) continue;
+      double nearest = std::numeric_limits<double>::infinity();
+      for (int row = 0; row < grid.height; ++row) {
+        for (int column = 0; column < grid.width; ++column) {
+          if (grid.at(column, row) != Cell::occupied) continue;
+          const Point2 p = centre_of(map, x, y);
+          const Point2 wall = grid.cell_center(column, row);
+          nearest = std::min(nearest, std::hypot(p.x - wall.x, p.y - wall.y) / map.cell);
+        }
+      }
+      if (bin == kDistanceBins - 1) {
+        EXPECT_GE(nearest, 0.92 * (kDistanceBins - 1.5));
+      } else {
+        EXPECT_NEAR(bin, nearest, 0.5 + 0.08 * nearest + 1e-9);
+      }
+    }
+  }
+}
+
+TEST(WallMap, WallsKeepTheirPlaceInTheMapFrame) {
+  OccupancyGrid grid = make_grid(30, 20, 0.05, {3.0, -2.0, 0.7}, Cell::free);
+  grid.at(21, 13) = Cell::occupied;
+  for (const double cell : {0.05, 0.1, 0.17}) {
+    const WallMap map = make_wall_map(grid, cell);
+    ASSERT_EQ(map.walls.size(), 1U) << cell;
+    const Point2 found =
+        map.T_map_grid * Point2{map.walls[0].position.x * cell, map.walls[0].position.y * cell};
+    EXPECT_NEAR(found.x, grid.cell_center(21, 13).x, 1e-5);
+    EXPECT_NEAR(found.y, grid.cell_center(21, 13).y, 1e-5);
+  }
+}
+
+TEST(WallMap, OnlyKnownPlacesAndTheirSurroundingsAreSeen) {
+  OccupancyGrid grid = make_grid(30, 30, 0.1);
+  grid.at(10, 10) = Cell::free;
+  grid.at(20, 20) = Cell::occupied;
+  const WallMap map = make_wall_map(grid, 0.1);
+  int seen = 0;
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      if (map.places[static_cast<std::size_t>(y) * map.width + x].distance == kUnseen) continue;
+      ++seen;
+      const Point2 p = centre_of(map, x, y);
+      const double from_free = std::hypot(p.x - 1.05, p.y - 1.05);
+      const double from_wall = std::hypot(p.x - 2.05, p.y - 2.05);
+      EXPECT_LE(std::min(from_free, from_wall), 0.25);
+    }
+  }
+  EXPECT_EQ(seen, 2 * 13);  // two discs of radius 2 cells
+}
+
+TEST(WallMap, BackgroundIsADistributionWithoutZeros) {
+  for (const OccupancyGrid& grid :
+       {test::random_grid(1, 30, 40), make_grid(1, 1, 0.1), make_grid(5, 5, 1.0, {}, Cell::free)}) {
+    const WallMap map = make_wall_map(grid, grid.resolution);
+    EXPECT_NEAR(std::accumulate(map.background.begin(), map.background.end(), 0.0), 1.0, 1e-12);
+    for (const double share : map.background) EXPECT_GT(share, 0.0);
+  }
+}
+
+TEST(WallMap, CoarserCellsHoldTheCentroidOfTheirWalls) {
+  OccupancyGrid grid = make_grid(8, 8, 0.1, {}, Cell::free);
+  grid.at(4, 4) = Cell::occupied;
+  grid.at(5, 4) = Cell::occupied;
+  const WallMap map = make_wall_map(grid, 0.4);
+  ASSERT_EQ(map.walls.size(), 1U);
+  const Point2 found = map.T_map_grid * Point2{map.walls[0].position.x * 0.4, map.walls[0].position.y * 0.4};
+  EXPECT_NEAR(found.x, 0.5, 1e-6);
+  EXPECT_NEAR(found.y, 0.45, 1e-6);
+}
+
+/// The direction [rad, grid frame] that a facing stands for.
+double angle_of(std::uint8_t facing) {
+  return 2.0 * std::numbers::pi * facing / kDirections;
+}
+
+TEST(WallMap, WallsFaceTheirFreeSide) {
+  OccupancyGrid grid = make_grid(30, 30, 0.1);
+  for (int row = 0; row < 30; ++row) {
+    for (int column = 0; column < 15; ++column) grid.at(column, row) = Cell::free;
+    grid.at(15, row) = Cell::occupied;
+  }
+  const WallMap map = make_wall_map(grid, 0.1);
+  ASSERT_EQ(map.walls.size(), 30U);
+  EXPECT_NEAR(angle_of(map.walls[15].facing), std::numbers::pi, 1e-9);
+  // The places around take it over.
+  const Point2 at = map.walls[15].position;
+  for (const int dx : {-5, -1, 1}) {
+    const std::size_t i = static_cast<std::size_t>(at.y) * map.width + static_cast<std::size_t>(at.x + dx);
+    EXPECT_EQ(map.places[i].facing, map.walls[15].facing) << dx;
+  }
+}
+
+TEST(WallMap, AWallThatIsFreeOnBothSidesFacesNowhere) {
+  OccupancyGrid grid = make_grid(31, 31, 0.1, {}, Cell::free);
+  for (int row = 0; row < 31; ++row) grid.at(15, row) = Cell::occupied;
+  const WallMap map = make_wall_map(grid, 0.1);
+  EXPECT_EQ(map.walls[15].facing, kNoDirection);
+}
+
+}  // namespace
+}  // namespace gridmerge
