@@ -12,6 +12,7 @@ namespace {
 constexpr double kLeadWeight = 0.25;
 constexpr double kAcceptanceWeight = 95.0;
 constexpr double kBias = -93.0;
+constexpr double kMaxAcceptance = 0.975;
 
 }  // namespace
 
@@ -26,7 +27,9 @@ VerdictFeatures make_verdict_features(const std::vector<double>& scores, double 
 
 double probability_of(const VerdictFeatures& features) {
   if (features.lead <= 0.0) return 0.0;
-  const double logit = kBias + kLeadWeight * features.lead + kAcceptanceWeight * features.acceptance_index;
+  // Above this the index says how clean the maps are, not whether they belong together.
+  const double index = std::min(features.acceptance_index, kMaxAcceptance);
+  const double logit = kBias + kLeadWeight * features.lead + kAcceptanceWeight * index;
   return 1.0 / (1.0 + std::exp(-logit));
 }
 

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/match/match.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+
+#include "gridmerge/grid/resample.hpp"
+#include "support/building.hpp"
+
+namespace gridmerge {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// A pose of any heading, some metres off.
+SE2 random_pose(std::mt19937& random) {
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / static_cast<double>(std::mt19937::max());
+  };
+  return {uniform(-20.0, 20.0), uniform(-20.0, 20.0), uniform(-std::numbers::pi, std::numbers::pi)};
+}
+
+void expect_near(const SE2& found, const SE2& truth, double metres, double radians) {
+  EXPECT_NEAR(found.theta - truth.theta,
+              2.0 * std::numbers::pi * std::round((found.theta - truth.theta) / (2.0 * std::numbers::pi)),
+              radians);
+  EXPECT_NEAR(found.x, truth.x, metres);
+  EXPECT_NEAR(found.y, truth.y, metres);
+}
+
+TEST(Match, RecoversARotatedMapWithinHalfACell) {
+  std::mt19937 random(4);
+  const OccupancyGrid building = test::draw_building(1);
+  for (int run = 0; run < 6; ++run) {
+    const SE2 T_robot_building = random_pose(random);
+    const OccupancyGrid turned = transform_grid(building, T_robot_building, building.resolution);
+    const MatchResult result = match(building, turned);
+    EXPECT_EQ(result.verdict, Verdict::accepted) << run;
+    // At the middle of the building, where the rotation's own error does not reach far.
+    const Point2 middle{9.0, 6.5};
+    const Point2 back = result.T_fixed_moving * (T_robot_building * middle);
+    EXPECT_NEAR(back.x, middle.x, 0.5 * building.resolution) << run;
+    EXPECT_NEAR(back.y, middle.y, 0.5 * building.resolution) << run;
+    EXPECT_NEAR(std::remainder(result.T_fixed_moving.theta + T_robot_building.theta, 2.0 * std::numbers::pi),
+                0.0, 0.2 * kDegree)
+        << run;
+  }
+}
+
+TEST(Match, JoinsPartsThatOverlap) {
+  std::mt19937 random(5);
+  const OccupancyGrid building = test::draw_building(2);
+  const SE2 T_a = random_pose(random);
+  const SE2 T_b = random_pose(random);
+  const OccupancyGrid a = test::map_part(building, {0.0, 0.0, 12.0, 13.0}, T_a);
+  const OccupancyGrid b = test::map_part(building, {5.0, 0.0, 18.0, 13.0}, T_b);
+  const MatchResult result = match(a, b);
+  EXPECT_EQ(result.verdict, Verdict::accepted);
+  expect_near(result.T_fixed_moving, T_a * inverse(T_b), 0.4, 1.0 * kDegree);
+  EXPECT_GT(result.overlap, 0.4);
+  EXPECT_GT(result.acceptance_index, 0.9);
+  EXPECT_EQ(result.hypotheses.front().T_fixed_moving, result.T_fixed_moving);
+  EXPECT_EQ(result.hypotheses.front().probability, result.probability);
+}
+
+TEST(Match, TheOtherWayRoundIsTheInverse) {
+  std::mt19937 random(6);
+  const OccupancyGrid building = test::draw_building(3);
+  const OccupancyGrid a = test::map_part(building, {0.0, 0.0, 13.0, 13.0}, random_pose(random));
+  const OccupancyGrid b = test::map_part(building, {4.0, 0.0, 18.0, 13.0}, random_pose(random));
+  const MatchResult forth = match(a, b);
+  const MatchResult back = match(b, a);
+  expect_near(back.T_fixed_moving, inverse(forth.T_fixed_moving), 1e-9, 1e-9);
+  EXPECT_EQ(forth.verdict, back.verdict);
+  EXPECT_EQ(forth.probability, back.probability);
+  EXPECT_EQ(forth.agreement, back.agreement);
+  EXPECT_EQ(forth.overlap, back.overlap);
+}
+
+TEST(Match, RefusesUnrelatedBuildings) {
+  for (unsigned seed = 10; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    const OccupancyGrid a = test::draw_building(seed);
+    const OccupancyGrid b =
+        transform_grid(test::draw_building(seed + 100), random_pose(random), a.resolution);
+    EXPECT_EQ(match(a, b).verdict, Verdict::refused) << seed;
+  }
+}
+
+TEST(Match, HandlesOtherResolutionsAndYawedOrigins) {
+  const OccupancyGrid fine = test::draw_building(1);
+  const SE2 T_robot_building{4.0, -3.0, 2.0};
+  OccupancyGrid coarse = transform_grid(fine, T_robot_building, 1.6 * fine.resolution);
+  const MatchResult upright = match(fine, coarse);
+  EXPECT_EQ(upright.verdict, Verdict::accepted);
+  expect_near(upright.T_fixed_moving, inverse(T_robot_building), 0.3, 1.0 * kDegree);
+
+  const SE2 T_other_robot{1.0, 2.0, -0.8};  // the same cells in a frame that makes the grid lie askew
+  coarse.origin = T_other_robot * coarse.origin;
+  const MatchResult askew = match(fine, coarse);
+  expect_near(askew.T_fixed_moving, upright.T_fixed_moving * inverse(T_other_robot), 1e-6, 1e-6);
+}
+
+TEST(Match, TwoIdenticalMapsLieOnEachOther) {
+  const OccupancyGrid map = test::draw_building(1);
+  const MatchResult result = match(map, map);
+  EXPECT_EQ(result.verdict, Verdict::accepted);
+  expect_near(result.T_fixed_moving, {}, 0.5 * map.resolution, 0.2 * kDegree);
+  EXPECT_GT(result.overlap, 0.99);
+}
+
+TEST(Match, DoesNotDependOnThreads) {
+  const OccupancyGrid building = test::draw_building(2);
+  const OccupancyGrid a = test::map_part(building, {0.0, 0.0, 12.0, 13.0}, {1.0, 2.0, 0.5});
+  const OccupancyGrid b = test::map_part(building, {5.0, 0.0, 18.0, 13.0}, {-4.0, 1.0, 2.5});
+  MatchOptions options;
+  options.threads = 1;
+  const MatchResult one = match(a, b, options);
+  options.threads = 3;
+  const MatchResult three = match(a, b, options);
+  ASSERT_EQ(one.hypotheses.size(), three.hypotheses.size());
+  for (std::size_t i = 0; i < one.hypotheses.size(); ++i) {
+    EXPECT_EQ(one.hypotheses[i].T_fixed_moving, three.hypotheses[i].T_fixed_moving);
+    EXPECT_EQ(one.hypotheses[i].score, three.hypotheses[i].score);
+  }
+  EXPECT_EQ(one.probability, three.probability);
+}
+
+TEST(Match, MapsWithNothingToGoByAreRefused) {
+  const OccupancyGrid map = test::draw_building(1);
+  for (const OccupancyGrid& poor :
+       {make_grid(1, 1, 0.05), make_grid(1, 1, 0.05, {}, Cell::occupied), make_grid(30, 30, 0.05),
+        make_grid(30, 30, 0.05, {}, Cell::free), make_grid(30, 30, 0.05, {}, Cell::occupied),
+        make_grid(400, 1, 0.05, {}, Cell::occupied)}) {
+    for (const MatchResult& result : {match(map, poor), match(poor, map), match(poor, poor)}) {
+      EXPECT_EQ(result.verdict, Verdict::refused);
+      EXPECT_TRUE(std::isfinite(result.T_fixed_moving.x) && std::isfinite(result.probability));
+    }
+  }
+}
+
+TEST(Match, ReportsProgressAndListsNoMoreThanAsked) {
+  MatchOptions options;
+  options.max_hypotheses = 3;
+  double last = 0.0;
+  options.progress = [&](double share) {
+    EXPECT_GE(share, last);
+    last = share;
+  };
+  const MatchResult result = match(test::draw_building(1), test::draw_building(2), options);
+  EXPECT_EQ(last, 1.0);
+  EXPECT_LE(result.hypotheses.size(), 3U);
+  EXPECT_GT(result.seconds, 0.0);
+}
+
+TEST(Match, RefusesInvalidInput) {
+  const OccupancyGrid map = test::draw_building(1);
+  OccupancyGrid broken = map;
+  broken.resolution = -1.0;
+  EXPECT_THROW(match(map, broken), std::invalid_argument);
+  EXPECT_THROW(match(broken, map), std::invalid_argument);
+  MatchOptions options;
+  options.threads = -1;
+  EXPECT_THROW(match(map, map, options), std::invalid_argument);
+  options = {};
+  options.accept_probability = std::nan("");
+  EXPECT_THROW(match(map, map, options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gridmerge
