@@ -86,6 +86,7 @@ SetCounts count_sets(const std::vector<SetOutcome>& sets) {
 TimeSummary summarize_times(const std::vector<MatchOutcome>& matches) {
   if (matches.empty()) return {};
   std::vector<double> seconds;
+  seconds.reserve(matches.size());
   for (const MatchOutcome& match : matches) seconds.push_back(match.seconds);
   std::sort(seconds.begin(), seconds.end());
   return {quantile(seconds, 0.5), quantile(seconds, 0.9), seconds.back()};

@@ -23,9 +23,11 @@ CellCounts count_cells(const OccupancyGrid& grid) {
 }
 
 void validate(const OccupancyGrid& grid) {
-  if (grid.width <= 0 || grid.height <= 0) throw std::invalid_argument("the map's width and height must be positive");
+  if (grid.width <= 0 || grid.height <= 0)
+    throw std::invalid_argument("the map's width and height must be positive");
   const std::size_t size = static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
-  if (grid.cells.size() != size) throw std::invalid_argument("the map's cells do not number width times height");
+  if (grid.cells.size() != size)
+    throw std::invalid_argument("the map's cells do not number width times height");
   if (!grid.probability.empty() && grid.probability.size() != size) {
     throw std::invalid_argument("the map's probabilities do not number width times height");
   }

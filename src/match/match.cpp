@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/match/match.hpp"
 
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "gridmerge/match/refine.hpp"
 #include "gridmerge/match/verdict.hpp"
 #include "gridmerge/search/exhaustive.hpp"
+#include "gridmerge/search/parallel.hpp"
 #include "gridmerge/similarity/agreement.hpp"
 #include "gridmerge/similarity/wall_map.hpp"
 
@@ -168,8 +167,8 @@ MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const
   }
 
   const auto start = std::chrono::steady_clock::now();
-  tbb::task_arena arena(options.threads == 0 ? tbb::task_arena::automatic : options.threads);
-  MatchResult result = arena.execute([&] { return match_in_arena(fixed, moving, options); });
+  MatchResult result;
+  with_threads(options.threads, [&] { result = match_in_arena(fixed, moving, options); });
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   report(options, 1.0);
   return result;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/match/refine.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "gridmerge/search/parallel.hpp"
 
 namespace gridmerge {
 
@@ -128,7 +128,7 @@ std::vector<ScoredPose> refine(const WallMap& fixed, const WallMap& moving,
     const Round& round = rounds[r];
     const WallEvidence evidence(fixed, moving, round.points);
     poses.resize(std::min(poses.size(), round.poses));
-    tbb::parallel_for(std::size_t{0}, poses.size(), [&](std::size_t i) {
+    parallel_for(poses.size(), [&](std::size_t i) {
       poses[i] = climb(evidence, metric, poses[i].T_fixed_moving, round.first_step * coarse, round.last_step,
                        round.min_sigma * coarse);
     });

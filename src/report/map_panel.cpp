@@ -48,18 +48,18 @@ std::vector<Sighting> sight(const std::vector<PlacedMap>& maps, const Lattice& l
 }
 
 Colour colour_of(const Sighting& cell, const std::vector<Colour>& colours) {
-  if (cell.free > 0 && cell.occupied > 0) return PreviewColours::disagreement;
-  if (cell.occupied > 1) return PreviewColours::shared_wall;
+  if (cell.free > 0 && cell.occupied > 0) return PreviewColours::kDisagreement;
+  if (cell.occupied > 1) return PreviewColours::kSharedWall;
   if (cell.occupied > 0) return colours[cell.first_occupied];
-  if (cell.free > 1) return PreviewColours::shared_free;
+  if (cell.free > 1) return PreviewColours::kSharedFree;
   if (cell.free > 0) return free_tint(colours[cell.first_free]);
-  return PreviewColours::unknown;
+  return PreviewColours::kUnknown;
 }
 
 Canvas draw_maps(const MapPanel& panel, const Lattice& lattice, int zoom) {
   const std::vector<Sighting> sightings = sight(panel.maps, lattice);
   Canvas canvas(lattice.width * zoom + 2 * kMargin, lattice.height * zoom + 2 * kMargin,
-                PreviewColours::unknown);
+                PreviewColours::kUnknown);
   for (int row = 0; row < lattice.height; ++row) {
     for (int column = 0; column < lattice.width; ++column) {
       const Sighting& cell =
@@ -87,12 +87,12 @@ Canvas draw_scale_bar(double metres_per_pixel, int available, int text_scale) {
   const std::string label = fmt::format("{:.6g} m", length);
   const int gap = 4 * text_scale;
   const int height = text_height(text_scale);
-  Canvas canvas(bar + gap + text_width(label, text_scale), height, Style::page);
+  Canvas canvas(bar + gap + text_width(label, text_scale), height, Style::kPage);
   const int line = text_scale, middle = 3 * text_scale;
-  canvas.fill(0, middle, bar, line, Style::ink);
-  canvas.fill(0, 0, line, 7 * text_scale, Style::ink);
-  canvas.fill(bar - line, 0, line, 7 * text_scale, Style::ink);
-  canvas.write(bar + gap, 0, text_scale, label, Style::ink);
+  canvas.fill(0, middle, bar, line, Style::kInk);
+  canvas.fill(0, 0, line, 7 * text_scale, Style::kInk);
+  canvas.fill(bar - line, 0, line, 7 * text_scale, Style::kInk);
+  canvas.write(bar + gap, 0, text_scale, label, Style::kInk);
   return canvas;
 }
 
@@ -118,8 +118,8 @@ Canvas draw_panel(const MapPanel& panel, int text_scale) {
   const int gap = 3 * text_scale;
   const int drawing_y = text_height(text_scale) + gap;
   const int bar_y = drawing_y + drawing.height() + 2 * gap;
-  Canvas canvas(width, bar_y + scale_bar.height(), Style::page);
-  canvas.write(0, 0, text_scale, title, Style::ink);
+  Canvas canvas(width, bar_y + scale_bar.height(), Style::kPage);
+  canvas.write(0, 0, text_scale, title, Style::kInk);
   canvas.draw(0, drawing_y, drawing);
   canvas.draw(0, bar_y, scale_bar);
   return canvas;

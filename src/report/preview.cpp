@@ -73,7 +73,7 @@ Canvas flow(const std::vector<Canvas>& parts, int width, int gap) {
     row_height = std::max(row_height, part.height());
     x += part.width() + gap;
   }
-  Canvas canvas(used_width, std::max(1, y + row_height), Style::page);
+  Canvas canvas(used_width, std::max(1, y + row_height), Style::kPage);
   for (std::size_t i = 0; i < parts.size(); ++i) canvas.draw(spots[i].x, spots[i].y, parts[i]);
   return canvas;
 }
@@ -83,11 +83,11 @@ Canvas legend_entry(Colour wall, Colour free, const std::string& label, int scal
   const int side = 7 * scale;
   const int text_x = 2 * side + 3 * scale;
   const std::string text = fit_width(label, scale, width - text_x);
-  Canvas canvas(text_x + text_width(text, scale), text_height(scale), Style::page);
-  canvas.fill(0, 0, 2 * side, side, Style::line);
+  Canvas canvas(text_x + text_width(text, scale), text_height(scale), Style::kPage);
+  canvas.fill(0, 0, 2 * side, side, Style::kLine);
   canvas.fill(1, 1, side - 1, side - 2, wall);
   canvas.fill(side, 1, side - 1, side - 2, free);
-  canvas.write(text_x, 0, scale, text, Style::ink);
+  canvas.write(text_x, 0, scale, text, Style::kInk);
   return canvas;
 }
 
@@ -111,8 +111,8 @@ std::vector<Canvas> legend(const std::vector<std::string>& names, const MergeRes
 }
 
 Canvas heading(const std::string& text, int scale) {
-  Canvas canvas(text_width(text, scale), text_height(scale), Style::page);
-  canvas.write(0, 0, scale, text, Style::ink);
+  Canvas canvas(text_width(text, scale), text_height(scale), Style::kPage);
+  canvas.write(0, 0, scale, text, Style::kInk);
   return canvas;
 }
 
@@ -122,7 +122,7 @@ Canvas stack(const std::vector<Canvas>& blocks, int gap) {
     width = std::max(width, block.width());
     height += block.height() + gap;
   }
-  Canvas canvas(width + 2 * gap, height, Style::page);
+  Canvas canvas(width + 2 * gap, height, Style::kPage);
   int y = gap;
   for (const Canvas& block : blocks) {
     canvas.draw(gap, y, block);

@@ -7,9 +7,9 @@ namespace gridmerge {
 
 /// The colours of a preview beside the maps.
 struct Style {
-  static constexpr Colour page{250, 250, 248};
-  static constexpr Colour ink{45, 45, 50};
-  static constexpr Colour line{170, 170, 165};
+  static constexpr Colour kPage{250, 250, 248};
+  static constexpr Colour kInk{45, 45, 50};
+  static constexpr Colour kLine{170, 170, 165};
 };
 
 }  // namespace gridmerge

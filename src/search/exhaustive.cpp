@@ -2,7 +2,6 @@
 #include "gridmerge/search/exhaustive.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <unordered_map>
 
 #include "correlate.hpp"
+#include "gridmerge/search/parallel.hpp"
 #include "gridmerge/similarity/evidence.hpp"
 
 namespace gridmerge {
@@ -217,7 +217,8 @@ std::vector<PoseCandidate> search_all_poses(const WallMap& fixed, const WallMap&
 
   tbb::enumerable_thread_specific<ScoreImage> scratch;
   std::vector<std::vector<Peak>> peaks(options.rotations);
-  tbb::parallel_for(0, options.rotations, [&](int rotation) {
+  parallel_for(peaks.size(), [&](std::size_t i) {
+    const int rotation = static_cast<int>(i);
     const TurnedWalls turned = turn_walls(walls, frame, rotation, evidence.width);
     ScoreImage& scores = scratch.local();
     scores.width = (turned.shifts_x + kCorrelateBlock - 1) / kCorrelateBlock * kCorrelateBlock;

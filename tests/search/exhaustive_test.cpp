@@ -2,12 +2,12 @@
 #include "gridmerge/search/exhaustive.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "../similarity/random_grid.hpp"
+#include "gridmerge/search/parallel.hpp"
 #include "gridmerge/similarity/evidence.hpp"
 
 namespace gridmerge {
@@ -108,8 +108,7 @@ TEST(SearchAllPoses, DoesNotDependOnThreads) {
   const WallMap moving = make_wall_map(test::random_grid(2, 60, 80), 0.1);
   std::vector<std::vector<PoseCandidate>> runs;
   for (const int threads : {1, 2, 4}) {
-    tbb::task_arena arena(threads);
-    runs.push_back(arena.execute([&] { return search_all_poses(fixed, moving); }));
+    with_threads(threads, [&] { runs.push_back(search_all_poses(fixed, moving)); });
   }
   for (const auto& run : runs) {
     ASSERT_EQ(run.size(), runs[0].size());

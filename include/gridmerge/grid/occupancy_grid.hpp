@@ -14,15 +14,16 @@ enum class Cell : std::uint8_t { unknown = 0, free = 1, occupied = 2 };
 
 /// An occupancy grid map: the layout of `nav_msgs/OccupancyGrid`.
 ///
-/// Cells are row-major, row 0 at the bottom, y up: cell (column, row) is `cells[row * width + column]`. `origin` is the
-/// pose of the lower-left corner of cell (0, 0) in the map frame; its yaw may be any angle.
+/// Cells are row-major, row 0 at the bottom, y up: cell (column, row) is `cells[row * width + column]`.
+/// `origin` is the pose of the lower-left corner of cell (0, 0) in the map frame; its yaw may be any angle.
 struct OccupancyGrid {
   int width = 0;            ///< columns
   int height = 0;           ///< rows
   double resolution = 1.0;  ///< metres per cell side
-  SE2 origin;               ///< T_map_grid: takes a point measured from the lower-left corner to the map frame
+  SE2 origin;  ///< T_map_grid: takes a point measured from the lower-left corner to the map frame
   std::vector<Cell> cells;  ///< width * height values
-  /// Occupancy probabilities in [0, 1], NaN where unknown: width * height values, or empty where the input has none.
+  /// Occupancy probabilities in [0, 1], NaN where unknown: width * height values, or empty where the input
+  /// has none.
   std::vector<float> probability;
 
   std::size_t index(int column, int row) const {
@@ -30,7 +31,9 @@ struct OccupancyGrid {
   }
   Cell at(int column, int row) const { return cells[index(column, row)]; }
   Cell& at(int column, int row) { return cells[index(column, row)]; }
-  bool contains(int column, int row) const { return column >= 0 && column < width && row >= 0 && row < height; }
+  bool contains(int column, int row) const {
+    return column >= 0 && column < width && row >= 0 && row < height;
+  }
 
   /// Centre of a cell in the map frame [m].
   Point2 cell_center(int column, int row) const {
@@ -39,7 +42,8 @@ struct OccupancyGrid {
 };
 
 /// A grid of `width` x `height` cells, all of them `fill`.
-OccupancyGrid make_grid(int width, int height, double resolution, const SE2& origin = {}, Cell fill = Cell::unknown);
+OccupancyGrid make_grid(int width, int height, double resolution, const SE2& origin = {},
+                        Cell fill = Cell::unknown);
 
 struct CellCounts {
   std::size_t unknown = 0;
@@ -52,8 +56,8 @@ struct CellCounts {
 /// Number of cells of each value. O(cells).
 CellCounts count_cells(const OccupancyGrid& grid);
 
-/// Throws std::invalid_argument, saying what is wrong, unless sizes are positive, the vectors' lengths fit them, and
-/// resolution and origin are finite (resolution also positive).
+/// Throws std::invalid_argument, saying what is wrong, unless sizes are positive, the vectors' lengths fit
+/// them, and resolution and origin are finite (resolution also positive).
 void validate(const OccupancyGrid& grid);
 
 }  // namespace gridmerge

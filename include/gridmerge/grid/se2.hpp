@@ -11,7 +11,8 @@ struct Point2 {
   friend bool operator==(const Point2&, const Point2&) = default;
 };
 
-/// A rigid transform of the plane: a counter-clockwise rotation by `theta` about the origin, then the translation
+/// A rigid transform of the plane: a counter-clockwise rotation by `theta` about the origin, then the
+/// translation
 /// (`x`, `y`) (Birk & Carpin 2006, eq. 1). Metres and radians; `theta` is kept in (-pi, pi].
 /// Named after its frames: `T_a_b` takes a point given in frame b to frame a.
 struct SE2 {

@@ -8,8 +8,8 @@
 
 namespace gridmerge {
 
-/// The text with control characters shown as escapes, so that it is one line of a terminal whatever it holds. What is
-/// escaped already stays as it is.
+/// The text with control characters shown as escapes, so that it is one line of a terminal whatever it holds.
+/// What is escaped already stays as it is.
 std::string escape_controls(std::string_view text);
 
 /// A file that cannot be read or written. The message names the file and the cause, "a.yaml: missing key

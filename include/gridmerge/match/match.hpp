@@ -13,8 +13,8 @@ enum class Verdict { refused, accepted };
 
 /// One way in which the moving map may lie on the fixed one.
 struct Hypothesis {
-  SE2 T_fixed_moving;        ///< between the map frames
-  double score = 0.0;        ///< log-likelihood ratio "same place" against "unrelated" [nats]; larger is better
+  SE2 T_fixed_moving;  ///< between the map frames
+  double score = 0.0;  ///< log-likelihood ratio "same place" against "unrelated" [nats]; larger is better
   double probability = 0.0;  ///< that this pose is the true one
 };
 
@@ -28,13 +28,13 @@ struct MatchOptions {
 
 struct MatchResult {
   Verdict verdict = Verdict::refused;
-  SE2 T_fixed_moving;             ///< the best hypothesis, given for a refused pair too
-  double probability = 0.0;       ///< that the best hypothesis is the true pose
-  double acceptance_index = 0.0;  ///< agreement / (agreement + disagreement); 0 when nothing overlaps
-  std::int64_t agreement = 0;     ///< cells known in both maps and equal
-  std::int64_t disagreement = 0;  ///< cells known in both maps and different
-  double overlap = 0.0;           ///< share of the smaller map's known cells that are known in both
-  double seconds = 0.0;           ///< wall time from grids in memory to the verdict
+  SE2 T_fixed_moving;                  ///< the best hypothesis, given for a refused pair too
+  double probability = 0.0;            ///< that the best hypothesis is the true pose
+  double acceptance_index = 0.0;       ///< agreement / (agreement + disagreement); 0 when nothing overlaps
+  std::int64_t agreement = 0;          ///< cells known in both maps and equal
+  std::int64_t disagreement = 0;       ///< cells known in both maps and different
+  double overlap = 0.0;                ///< share of the smaller map's known cells that are known in both
+  double seconds = 0.0;                ///< wall time from grids in memory to the verdict
   std::vector<Hypothesis> hypotheses;  ///< distinct, best first; empty only when a map has nothing to go by
 };
 

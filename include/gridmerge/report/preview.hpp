@@ -20,11 +20,11 @@ struct Colour {
 
 /// The colours of a preview. Free space that one map saw has a light tint of the map's colour.
 struct PreviewColours {
-  static constexpr Colour unknown{221, 221, 217};
-  static constexpr Colour shared_free{255, 255, 255};  ///< free in two maps or more
-  static constexpr Colour shared_wall{32, 32, 36};     ///< occupied in two maps or more
-  static constexpr Colour disagreement{213, 94,
-                                       0};  ///< free in one map, occupied in another; nothing else has it
+  static constexpr Colour kUnknown{221, 221, 217};
+  static constexpr Colour kSharedFree{255, 255, 255};  ///< free in two maps or more
+  static constexpr Colour kSharedWall{32, 32, 36};     ///< occupied in two maps or more
+  static constexpr Colour kDisagreement{213, 94,
+                                        0};  ///< free in one map, occupied in another; nothing else has it
 };
 
 /// The colour of input map i, of its walls. The first six are distinct to colour-blind eyes too; further maps
