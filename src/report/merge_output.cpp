@@ -61,6 +61,7 @@ void remove_stale_maps(const fs::path& directory, std::size_t components) {
   for (const fs::path& path : outputs_in(directory)) {
     if (!is_merged_map(path.filename()) || current.contains(path)) continue;
     std::error_code error;
+    if (fs::is_directory(path, error)) continue;  // no map of ours
     fs::remove(path, error);
     if (error) throw FileError(path, "is of an earlier run and cannot be removed: " + error.message());
   }

@@ -104,9 +104,9 @@ std::vector<Canvas> legend(const std::vector<std::string>& names, const MergeRes
   if (entries.empty()) return entries;
   using Colours = PreviewColours;
   entries.push_back(
-      legend_entry(Colours::shared_wall, Colours::shared_free, "in two maps or more", scale, width));
+      legend_entry(Colours::kSharedWall, Colours::kSharedFree, "in two maps or more", scale, width));
   entries.push_back(
-      legend_entry(Colours::disagreement, Colours::disagreement, "maps disagree", scale, width));
+      legend_entry(Colours::kDisagreement, Colours::kDisagreement, "maps disagree", scale, width));
   return entries;
 }
 

@@ -77,6 +77,7 @@ TEST(MergeOutput, RemovesTheMapsOfAnEarlierRunAndNothingElse) {
                      "merged.txt",    "my_merged.yaml",  "notes"};
   for (const std::string& name : others) directory.write(name, "mine");
   directory.write("merged_17.yaml", "of an earlier run");
+  directory.write("merged_18.yaml/notes", "mine");
   write_merge_output(directory.path(), kSources, kMaps, two_components());
   write_merge_output(directory.path(), kSources, kMaps, one_component());
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged_2.yaml")));
@@ -86,6 +87,7 @@ TEST(MergeOutput, RemovesTheMapsOfAnEarlierRunAndNothingElse) {
   write_merge_output(directory.path(), kSources, kMaps, test::merged(kMaps, {}));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged.yaml")));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged.pgm")));
+  EXPECT_EQ(read_file(directory.file("merged_18.yaml/notes")), "mine");
   for (const std::string& name : others) EXPECT_EQ(read_file(directory.file(name)), "mine") << name;
 }
 

@@ -65,9 +65,9 @@ TEST(Preview, ShowsWhoSawWhat) {
                                         map_from({"#...", "....", "###."})};
   const Picture picture = preview(maps, {{{0, {}}, {1, {1.0, 0.0, 0.0}}}});
   EXPECT_EQ(picture.cells(map_colour(0)), 1u) << "wall of a";
-  EXPECT_EQ(picture.cells(Colours::shared_wall), 1u);
-  EXPECT_EQ(picture.cells(Colours::disagreement), 3u);
-  EXPECT_EQ(picture.cells(Colours::shared_free), 5u);
+  EXPECT_EQ(picture.cells(Colours::kSharedWall), 1u);
+  EXPECT_EQ(picture.cells(Colours::kDisagreement), 3u);
+  EXPECT_EQ(picture.cells(Colours::kSharedFree), 5u);
 }
 
 TEST(Preview, WallsOfTheSecondMapHaveItsColour) {
@@ -75,13 +75,13 @@ TEST(Preview, WallsOfTheSecondMapHaveItsColour) {
   const Picture picture = preview(maps, {{{0, {}}, {1, {1.0, 0.0, 0.0}}}});
   EXPECT_EQ(picture.cells(map_colour(0)), 1u);
   EXPECT_EQ(picture.cells(map_colour(1)), 2u);
-  EXPECT_EQ(picture.cells(Colours::shared_free), 2u);
-  EXPECT_EQ(picture.cells(Colours::disagreement), 0u);
+  EXPECT_EQ(picture.cells(Colours::kSharedFree), 2u);
+  EXPECT_EQ(picture.cells(Colours::kDisagreement), 0u);
 }
 
 TEST(Preview, NothingElseHasTheColourOfDisagreement) {
   const std::vector<OccupancyGrid> maps{map_from({"#.."}), map_from({"...##"})};
-  const auto legend_only = preview(maps, {{{0, {}}, {1, {1.0, 0.0, 0.0}}}}).pixels(Colours::disagreement);
+  const auto legend_only = preview(maps, {{{0, {}}, {1, {1.0, 0.0, 0.0}}}}).pixels(Colours::kDisagreement);
   EXPECT_FALSE(legend_only.empty());
   const auto [first, last] = std::minmax_element(legend_only.begin(), legend_only.end());
   EXPECT_LT(last->first - first->first, 64) << "the legend's sample only";
@@ -89,16 +89,16 @@ TEST(Preview, NothingElseHasTheColourOfDisagreement) {
 }
 
 TEST(Preview, EighteenMapsHaveEighteenColours) {
-  std::set<Rgb> colours{rgb(Colours::unknown), rgb(Colours::shared_free), rgb(Colours::shared_wall),
-                        rgb(Colours::disagreement)};
+  std::set<Rgb> colours{rgb(Colours::kUnknown), rgb(Colours::kSharedFree), rgb(Colours::kSharedWall),
+                        rgb(Colours::kDisagreement)};
   for (std::size_t i = 0; i < 18; ++i) EXPECT_TRUE(colours.insert(rgb(map_colour(i))).second) << i;
-  for (std::size_t i = 18; i < 100; ++i) EXPECT_NE(map_colour(i), Colours::disagreement) << i;
+  for (std::size_t i = 18; i < 100; ++i) EXPECT_NE(map_colour(i), Colours::kDisagreement) << i;
 }
 
 TEST(Preview, NorthIsUpAndEastIsRight) {
   const std::vector<OccupancyGrid> maps{map_from({"..#", "...", "..."}), map_from({"#"})};
   const Picture picture = preview(maps, {{{0, {}}, {1, {}}}});
-  const auto shared_free = picture.pixels(Colours::disagreement);  // lower left: free in a, wall in b
+  const auto shared_free = picture.pixels(Colours::kDisagreement);  // lower left: free in a, wall in b
   const auto wall = picture.pixels(map_colour(0));
   EXPECT_EQ(shared_free.front().second - wall.front().second, 2 * 32);
   EXPECT_EQ(wall.front().first - shared_free.front().first, 2 * 32);
@@ -114,7 +114,7 @@ TEST(Preview, PlacesMapsByTheirTransforms) {
   EXPECT_EQ(wall.size(), 2u * 32 * 32) << "upright";
   const auto [left, right] = std::minmax_element(wall.begin(), wall.end());
   EXPECT_EQ(right->first - left->first, 31) << "one cell wide";
-  const auto free = picture.pixels(Colours::unknown);
+  const auto free = picture.pixels(Colours::kUnknown);
   EXPECT_EQ(left->first - free.front().first, 12 + 2 * 32)
       << "to the left of x = 3, beyond the panel's margin";
 }
@@ -171,7 +171,7 @@ TEST(Preview, EveryComponentIsShown) {
   const std::vector<OccupancyGrid> maps{map_from({"#."}), map_from({".."}), map_from({"##"}),
                                         map_from({" ."})};
   const Picture picture = preview(maps, {{{0, {}}, {1, {}}}, {{2, {}}, {3, {}}}});
-  EXPECT_EQ(picture.cells(Colours::disagreement), 2u) << "one in each";
+  EXPECT_EQ(picture.cells(Colours::kDisagreement), 2u) << "one in each";
   EXPECT_EQ(picture.cells(map_colour(2)), 1u);
 }
 
