@@ -127,7 +127,7 @@ TEST_F(Match, MapsWithNothingToGoByAreRefused) {
 }
 
 TEST_F(Match, ResolutionsTooFarApartAreAnErrorThatNamesBothMaps) {
-  OccupancyGrid coarse = make_grid(3000, 3000, 5000.0, {}, Cell::free);
+  OccupancyGrid coarse = make_grid(3000, 3000, 1000.0, {}, Cell::free);
   for (int i = 0; i < 3000; ++i) coarse.at(i, 7) = Cell::occupied;
   const std::string huge = write_map(directory, "huge", coarse);
   const Outcome outcome = run({"match", left, huge, "--json"});
