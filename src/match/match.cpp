@@ -21,6 +21,9 @@ namespace {
 
 /// Larger maps are compared in larger cells, so that time and memory stay bounded.
 constexpr double kMaxCellsAlongSide = 800.0;
+/// Small maps are searched in finer steps, large ones in coarser: the search takes about the same time for all.
+constexpr double kCoarseCellsAlongSide = 150.0;
+constexpr double kCoarseSigma = 0.8;  // tolerance of the search [coarse cells]
 /// Poses nearer than this share of the larger map's side, and never less than kMinDistinct, are one
 /// hypothesis.
 constexpr double kDistinctShare = 0.03;
@@ -95,14 +98,17 @@ std::vector<Hypothesis> find_hypotheses(const OccupancyGrid& fixed, const Occupa
   const WallMap moving_walls = make_wall_map(moving, cell);
   report(options, 0.1);
 
-  const ExhaustiveSearchOptions search;
+  const double side = std::max(longer_side(fixed), longer_side(moving)) / cell;
+  ExhaustiveSearchOptions search;
+  search.coarse_factor = std::clamp(static_cast<int>(std::ceil(side / kCoarseCellsAlongSide)), 2, 5);
+  search.sigma = kCoarseSigma * search.coarse_factor;
   const std::vector<PoseCandidate> candidates = search_all_poses(fixed_walls, moving_walls, search);
   report(options, 0.5);
 
   RefineOptions refinement;
   refinement.coarse_cell = search.coarse_factor;
   refinement.distinct =
-      std::max(kMinDistinct, kDistinctShare * std::max(longer_side(fixed), longer_side(moving)) / cell);
+      std::max(kMinDistinct, kDistinctShare * side);
   refinement.max_poses = std::max(kRankedPoses, options.max_hypotheses);
   const std::vector<ScoredPose> poses = refine(fixed_walls, moving_walls, candidates, refinement,
                                                [&](double share) { report(options, 0.5 + 0.45 * share); });

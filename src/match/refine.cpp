@@ -113,10 +113,10 @@ std::vector<ScoredPose> refine(const WallMap& fixed, const WallMap& moving,
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   const double coarse = options.coarse_cell;
   const std::array<Round, 4> rounds{{
-      {250, kAll, 0.0, 1.0, 0.35, 0.0},                   // score only
-      {250, 200, 0.5, coarse / 4.0, 0.35, coarse / 4.0},  // into the basin
-      {500, 60, 0.25, 1.0, 0.0, coarse / 2.0},            // the error model settles
-      {2000, 2 * options.max_poses, 0.25, 0.25, 0.0, options.distinct},
+      {150, kAll, 0.0, 1.0, 0.35, 0.0},                   // score only
+      {200, 150, 0.5, coarse / 4.0, 0.35, coarse / 4.0},  // into the basin
+      {400, 50, 0.25, 1.0, 0.0, coarse / 2.0},            // the error model settles
+      {1000, 2 * options.max_poses, 0.25, 0.25, 0.0, options.distinct},
   }};
 
   const PoseMetric metric = make_pose_metric(moving);

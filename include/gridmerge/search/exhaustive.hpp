@@ -15,10 +15,10 @@ struct PoseCandidate {
 };
 
 struct ExhaustiveSearchOptions {
-  int coarse_factor = 4;      ///< cells of the wall maps to a cell of the search, along a side
+  int coarse_factor = 5;      ///< cells of the wall maps to a cell of the search, along a side
   int rotations = 180;        ///< evenly spaced over the full turn
   std::size_t samples = 128;  ///< wall points of the moving map that are scored, at most kMaxSearchSamples
-  std::size_t max_candidates = 2000;
+  std::size_t max_candidates = 1500;
   double sigma = 3.2;     ///< tolerance of the score [cells of the wall maps]
   double outliers = 0.5;  ///< see ErrorModel: generous, since only the ranking matters here
 };
