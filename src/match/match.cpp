@@ -21,7 +21,8 @@ namespace {
 
 /// Larger maps are compared in larger cells, so that time and memory stay bounded.
 constexpr double kMaxCellsAlongSide = 800.0;
-/// Small maps are searched in finer steps, large ones in coarser: the search takes about the same time for all.
+/// Small maps are searched in finer steps, large ones in coarser: the search takes about the same time for
+/// all.
 constexpr double kCoarseCellsAlongSide = 150.0;
 constexpr double kCoarseSigma = 0.8;  // tolerance of the search [coarse cells]
 /// Poses nearer than this share of the larger map's side, and never less than kMinDistinct, are one
@@ -107,8 +108,7 @@ std::vector<Hypothesis> find_hypotheses(const OccupancyGrid& fixed, const Occupa
 
   RefineOptions refinement;
   refinement.coarse_cell = search.coarse_factor;
-  refinement.distinct =
-      std::max(kMinDistinct, kDistinctShare * side);
+  refinement.distinct = std::max(kMinDistinct, kDistinctShare * side);
   refinement.max_poses = std::max(kRankedPoses, options.max_hypotheses);
   const std::vector<ScoredPose> poses = refine(fixed_walls, moving_walls, candidates, refinement,
                                                [&](double share) { report(options, 0.5 + 0.45 * share); });
