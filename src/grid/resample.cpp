@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 namespace gridmerge {
 
@@ -14,17 +16,28 @@ constexpr double kMaxCells = 268435456.0;  // 2^28
 }
 
 OccupancyGrid crop_to_known(const OccupancyGrid& grid) {
-  int left = grid.width, right = -1, bottom = grid.height, top = -1;
-  for (int row = 0; row < grid.height; ++row) {
+  const auto is_known = [](std::uint8_t cell) { return cell != 0; };
+  static_assert(static_cast<int>(Cell::unknown) == 0);
+  std::vector<std::uint8_t> columns(grid.width, 0);  // 0 where every cell is unknown
+  std::vector<std::uint8_t> rows(grid.height, 0);
+  for (int row = 0; row < grid.height; ++row) {  // no branches: vectorised
+    const Cell* cells = grid.cells.data() + grid.index(0, row);
+    std::uint8_t any = 0;
     for (int column = 0; column < grid.width; ++column) {
-      if (grid.at(column, row) == Cell::unknown) continue;
-      left = std::min(left, column);
-      right = std::max(right, column);
-      bottom = std::min(bottom, row);
-      top = row;
+      const std::uint8_t cell = static_cast<std::uint8_t>(cells[column]);
+      columns[column] |= cell;
+      any |= cell;
     }
+    rows[row] = any;
   }
-  if (right < 0) left = right = bottom = top = 0;
+  int left = 0, right = 0, bottom = 0, top = 0;
+  const auto first_known = std::find_if(rows.begin(), rows.end(), is_known);
+  if (first_known != rows.end()) {
+    bottom = static_cast<int>(first_known - rows.begin());
+    top = static_cast<int>(rows.rend() - std::find_if(rows.rbegin(), rows.rend(), is_known)) - 1;
+    left = static_cast<int>(std::find_if(columns.begin(), columns.end(), is_known) - columns.begin());
+    right = static_cast<int>(columns.rend() - std::find_if(columns.rbegin(), columns.rend(), is_known)) - 1;
+  }
 
   const Point2 corner = grid.origin * Point2{left * grid.resolution, bottom * grid.resolution};
   OccupancyGrid cropped =

@@ -101,7 +101,7 @@ std::vector<Hypothesis> find_hypotheses(const OccupancyGrid& fixed, const Occupa
 
   const double side = std::max(longer_side(fixed), longer_side(moving)) / cell;
   ExhaustiveSearchOptions search;
-  search.coarse_factor = std::clamp(static_cast<int>(std::ceil(side / kCoarseCellsAlongSide)), 2, 5);
+  search.coarse_factor = std::clamp(static_cast<int>(std::ceil(side / kCoarseCellsAlongSide)), 2, 4);
   search.sigma = kCoarseSigma * search.coarse_factor;
   const std::vector<PoseCandidate> candidates = search_all_poses(fixed_walls, moving_walls, search);
   report(options, 0.5);

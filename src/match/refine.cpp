@@ -124,9 +124,10 @@ std::vector<ScoredPose> refine(const WallMap& fixed, const WallMap& moving,
   poses.reserve(candidates.size());
   for (const PoseCandidate& candidate : candidates) poses.push_back({candidate.T_fixed_moving, {}});
 
+  const WallEvidence all_points(fixed, moving, kAll);
   for (std::size_t r = 0; r < rounds.size(); ++r) {
     const Round& round = rounds[r];
-    const WallEvidence evidence(fixed, moving, round.points);
+    const WallEvidence evidence = all_points.with_points(round.points);
     poses.resize(std::min(poses.size(), round.poses));
     parallel_for(poses.size(), [&](std::size_t i) {
       poses[i] = climb(evidence, metric, poses[i].T_fixed_moving, round.first_step * coarse, round.last_step,
@@ -137,7 +138,6 @@ std::vector<ScoredPose> refine(const WallMap& fixed, const WallMap& moving,
   }
   if (poses.size() > options.max_poses) poses.resize(options.max_poses);
 
-  const WallEvidence all_points(fixed, moving, kAll);
   for (ScoredPose& pose : poses) pose.evidence = all_points(pose.T_fixed_moving);
   sort_by_score(poses);
   return poses;

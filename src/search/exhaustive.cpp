@@ -13,17 +13,19 @@
 #include "correlate.hpp"
 #include "gridmerge/search/parallel.hpp"
 #include "gridmerge/similarity/evidence.hpp"
+#include "local_maxima.hpp"
 
 namespace gridmerge {
 
 namespace {
 
-constexpr double kScale = 16.0;       // score units a nat
-constexpr double kMaxEvidence = 8.0;  // nats that one wall point may count, for 16-bit sums
+constexpr double kScale = 6.0;  // score units a nat
 constexpr std::size_t kPeaksPerRotation = 96;
 constexpr int kPeakFloor = 4;  // peaks below the best of their rotation by this factor are dropped
 constexpr int kApart = 2;      // candidates nearer than this in x, y and rotation are one
-static_assert(kMaxSearchSamples * kMaxEvidence * kScale < 32767.0);
+/// Shifts at which fewer than this share of the samples could lie on the fixed map are not looked at.
+constexpr double kLeastMet = 0.04;
+static_assert(kMaxSearchSamples * kMaxCorrelated < 32767);
 
 /// A local maximum of the score, in steps of the search.
 struct Peak {
@@ -69,8 +71,8 @@ SearchFrame make_frame(const WallMap& fixed, const WallMap& moving, const Exhaus
 
 /// The evidence of a wall in each coarse cell of the fixed map, with a rim of zeros on all sides for every
 /// shift of the box, so that the kernel needs no bounds checks.
-ScoreImage make_score_image(const WallMap& fixed, const SearchFrame& frame,
-                            const ExhaustiveSearchOptions& options) {
+EvidenceImage make_evidence_image(const WallMap& fixed, const SearchFrame& frame,
+                                  const ExhaustiveSearchOptions& options) {
   const auto table = evidence_table({options.sigma, options.outliers}, fixed.background);
   std::vector<float> sums(static_cast<std::size_t>(frame.fixed_width) * frame.fixed_height, 0.0F);
   for (int y = 0; y < fixed.height; ++y) {
@@ -82,7 +84,7 @@ ScoreImage make_score_image(const WallMap& fixed, const SearchFrame& frame,
     }
   }
 
-  ScoreImage image;
+  EvidenceImage image;
   image.width = frame.fixed_width + 2 * frame.box + kCorrelateBlock;
   image.height = frame.fixed_height + 2 * frame.box;
   image.values.assign(static_cast<std::size_t>(image.width) * image.height, 0);
@@ -91,20 +93,37 @@ ScoreImage make_score_image(const WallMap& fixed, const SearchFrame& frame,
     for (int x = 0; x < frame.fixed_width; ++x) {
       const double mean = sums[static_cast<std::size_t>(y) * frame.fixed_width + x] / cells;
       image.values[static_cast<std::size_t>(y + frame.box) * image.width + x + frame.box] =
-          static_cast<std::int16_t>(std::lround(kScale * std::clamp(mean, -kMaxEvidence, kMaxEvidence)));
+          static_cast<std::int8_t>(
+              std::clamp<long>(std::lround(kScale * mean), -kMaxCorrelated, kMaxCorrelated));
     }
   }
   return image;
 }
 
-/// The turned wall points in the box, and the shifts at which their bounding box touches the fixed map.
+/// The turned wall points in the box, and the shifts at which enough of them can meet the fixed map.
 struct TurnedWalls {
-  std::vector<std::int32_t> offsets;  // into the score image
-  int first_x = 0;                    // shifts, with one more on each side, where the score is 0
+  std::vector<std::int32_t> offsets;  // into the evidence image
+  int first_x = 0;                    // shifts, with one more on each side
   int first_y = 0;
   int shifts_x = 0;
   int shifts_y = 0;
 };
+
+/// The shifts along one axis at which at least `least` of the points can lie in [0, length).
+struct Shifts {
+  int first;
+  int count;
+};
+Shifts useful_shifts(std::vector<int>& points, std::size_t least, int box, int length) {
+  const auto low = points.begin() + static_cast<std::ptrdiff_t>(least - 1);
+  std::nth_element(points.begin(), low, points.end());
+  const int lowest = *low;
+  const auto high = points.end() - static_cast<std::ptrdiff_t>(least);
+  std::nth_element(points.begin(), high, points.end());
+  const int highest = *high;
+  // The fixed map begins at `box`, and points are shifted by the result. One more on either side: the rim.
+  return {box - highest - 1, length + highest - lowest + 2};
+}
 
 TurnedWalls turn_walls(const std::vector<WallPoint>& walls, const SearchFrame& frame, int rotation,
                        int image_width) {
@@ -113,47 +132,31 @@ TurnedWalls turn_walls(const std::vector<WallPoint>& walls, const SearchFrame& f
   const double s = std::sin(angle);
   TurnedWalls turned;
   turned.offsets.reserve(walls.size());
-  int left = frame.box, right = 0, bottom = frame.box, top = 0;
+  std::vector<int> columns;
+  std::vector<int> rows;
   for (const WallPoint& wall : walls) {
     const double x = wall.position.x - frame.centre.x;
     const double y = wall.position.y - frame.centre.y;
-    const int column = static_cast<int>(std::floor((c * x - s * y) / frame.factor + 0.5 * frame.box));
-    const int row = static_cast<int>(std::floor((s * x + c * y) / frame.factor + 0.5 * frame.box));
-    turned.offsets.push_back(row * image_width + column);
-    left = std::min(left, column);
-    right = std::max(right, column);
-    bottom = std::min(bottom, row);
-    top = std::max(top, row);
+    columns.push_back(static_cast<int>(std::floor((c * x - s * y) / frame.factor + 0.5 * frame.box)));
+    rows.push_back(static_cast<int>(std::floor((s * x + c * y) / frame.factor + 0.5 * frame.box)));
+    turned.offsets.push_back(rows.back() * image_width + columns.back());
   }
-  turned.first_x = frame.box - right - 1;
-  turned.first_y = frame.box - top - 1;
-  turned.shifts_x = frame.fixed_width + right - left + 2;
-  turned.shifts_y = frame.fixed_height + top - bottom + 2;
+  const std::size_t least = 1 + static_cast<std::size_t>(kLeastMet * static_cast<double>(walls.size()));
+  const Shifts x = useful_shifts(columns, least, frame.box, frame.fixed_width);
+  const Shifts y = useful_shifts(rows, least, frame.box, frame.fixed_height);
+  turned.first_x = x.first;
+  turned.shifts_x = x.count;
+  turned.first_y = y.first;
+  turned.shifts_y = y.count;
   return turned;
 }
 
-/// The best local maxima (of 3 x 3 shifts) of one rotation. On a plateau the last cell in reading order
-/// stands for all.
+/// The best local maxima of one rotation.
 std::vector<Peak> find_peaks(const ScoreImage& scores, const TurnedWalls& turned, int rotation) {
-  const int width = scores.width;
-  int best = 0;
-  for (int y = 0; y < turned.shifts_y; ++y) {  // without the columns that only fill up a block
-    const auto row = scores.values.begin() + static_cast<std::ptrdiff_t>(y) * width;
-    best = std::max<int>(best, *std::max_element(row, row + turned.shifts_x));
-  }
-  const int floor = best / kPeakFloor;
+  const int floor = find_maximum(scores, turned.shifts_x) / kPeakFloor;
   std::vector<Peak> peaks;
-  for (int y = 1; y + 1 < turned.shifts_y; ++y) {
-    for (int x = 1; x + 1 < turned.shifts_x; ++x) {
-      const std::int16_t* at = scores.values.data() + static_cast<std::size_t>(y) * width + x;
-      const int score = *at;
-      if (score > floor && score >= at[-1] && score > at[1] && score >= at[-width - 1] &&
-          score >= at[-width] && score >= at[-width + 1] && score > at[width - 1] && score > at[width] &&
-          score > at[width + 1]) {
-        peaks.push_back({rotation, turned.first_x + x, turned.first_y + y, score});
-      }
-    }
-  }
+  for (const LocalMaximum& maximum : find_local_maxima(scores, turned.shifts_x, floor))
+    peaks.push_back({rotation, turned.first_x + maximum.x, turned.first_y + maximum.y, maximum.score});
   if (peaks.size() > kPeaksPerRotation) {
     std::nth_element(peaks.begin(), peaks.begin() + kPeaksPerRotation, peaks.end());
     peaks.resize(kPeaksPerRotation);
@@ -210,7 +213,7 @@ std::vector<PoseCandidate> search_all_poses(const WallMap& fixed, const WallMap&
                                             const ExhaustiveSearchOptions& options) {
   check(fixed, moving, options);
   const SearchFrame frame = make_frame(fixed, moving, options);
-  const ScoreImage evidence = make_score_image(fixed, frame, options);
+  const EvidenceImage evidence = make_evidence_image(fixed, frame, options);
   const std::vector<WallPoint> walls = draw_evenly(moving.walls, options.samples);
 
   if (walls.empty()) return {};

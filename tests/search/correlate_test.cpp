@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "gridmerge/search/exhaustive.hpp"
+
 namespace gridmerge {
 namespace {
 
@@ -15,11 +17,11 @@ TEST(Correlate, EqualsTheLiteralSum) {
     ScoreImage output;
     output.width = kCorrelateBlock * (1 + below(3));
     output.height = 1 + below(20);
-    ScoreImage input;
+    EvidenceImage input;
     input.width = output.width + below(50);
     input.height = output.height + 1 + below(30);
     for (int i = 0; i < input.width * input.height; ++i)
-      input.values.push_back(static_cast<std::int16_t>(below(201) - 100));
+      input.values.push_back(static_cast<std::int8_t>(below(2 * kMaxCorrelated + 1) - kMaxCorrelated));
     output.values.assign(static_cast<std::size_t>(output.width) * output.height, 77);
 
     const int first = below(3);
@@ -35,6 +37,16 @@ TEST(Correlate, EqualsTheLiteralSum) {
         ASSERT_EQ(output.values[y * output.width + x], sum) << run << " " << x << " " << y;
       }
     }
+  }
+}
+
+TEST(Correlate, DoesNotOverflowWithTheLargestInputs) {
+  for (const int value : {kMaxCorrelated, -kMaxCorrelated}) {
+    EvidenceImage input{kCorrelateBlock, 1,
+                        std::vector<std::int8_t>(kCorrelateBlock, static_cast<std::int8_t>(value))};
+    ScoreImage output{kCorrelateBlock, 1, std::vector<std::int16_t>(kCorrelateBlock, 0)};
+    correlate(input, 0, std::vector<std::int32_t>(kMaxSearchSamples, 0), output);
+    for (const std::int16_t sum : output.values) ASSERT_EQ(sum, value * static_cast<int>(kMaxSearchSamples));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -45,8 +46,9 @@ class LiteralScore {
         if (distance != kUnseen) sum += table_[encounter(distance, Facing::unclear)];
       }
     }
-    return inside ? static_cast<int>(std::lround(16.0 * (static_cast<double>(sum) / (factor_ * factor_))))
-                  : 0;
+    if (!inside) return 0;
+    return std::clamp(static_cast<int>(std::lround(6.0 * (static_cast<double>(sum) / (factor_ * factor_)))),
+                      -15, 15);
   }
 
   const WallMap& fixed_;

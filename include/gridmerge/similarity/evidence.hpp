@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -56,9 +57,12 @@ struct Evidence {
 /// serves clean maps and bent ones.
 class WallEvidence {
  public:
-  /// Both maps must have cells of the same size. Uses at most `max_points` wall
-  /// points of each map, evenly drawn, each standing for its share of the walls.
+  /// Both maps must have cells of the same size, and outlive this. Uses at most `max_points` wall points of
+  /// each map, evenly drawn, each standing for its share of the walls. O(cells of both).
   WallEvidence(const WallMap& fixed, const WallMap& moving, std::size_t max_points);
+
+  /// The same with another number of points. O(points).
+  WallEvidence with_points(std::size_t max_points) const;
 
   /// Evidence for a pose between the grid frames, in cells. Only models of sigma >= min_sigma [cells] are
   /// tried. O(points + models * bins).
@@ -72,6 +76,7 @@ class WallEvidence {
   struct LookUp {
     explicit LookUp(const WallMap& map);
 
+    const std::vector<WallPoint>& walls;
     int width;
     float last_x;                       // of the last column
     float last_y;                       // of the last row
@@ -81,18 +86,19 @@ class WallEvidence {
 
   /// Drawn walls, one array a coordinate.
   struct Points {
+    Points() = default;
     Points(const std::vector<WallPoint>& walls, std::size_t max_points);
 
     std::vector<float> x;
     std::vector<float> y;
     std::vector<int> facing;
-    float weight;  // walls that each of them stands for
+    float weight = 0.0F;  // walls that each of them stands for
   };
 
   static Histogram count_encounters(const LookUp& map, const Points& points, const SE2& T_map_points);
 
-  LookUp fixed_;
-  LookUp moving_;
+  std::shared_ptr<const LookUp> fixed_;  // shared by all that differ in their points only
+  std::shared_ptr<const LookUp> moving_;
   Points fixed_walls_;
   Points moving_walls_;
 };

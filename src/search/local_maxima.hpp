@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "correlate.hpp"
+
+namespace gridmerge {
+
+struct LocalMaximum {
+  int x;
+  int y;
+  int score;
+};
+
+/// The largest score in the first `columns` columns; 0 if none is positive. O(scores); vectorised.
+int find_maximum(const ScoreImage& scores, int columns);
+
+/// Scores above `floor` that none of their eight neighbours exceeds, in reading order, in the first `columns`
+/// columns and without the image's rim. On a plateau the last cell in reading order stands for all.
+/// O(scores); vectorised.
+std::vector<LocalMaximum> find_local_maxima(const ScoreImage& scores, int columns, int floor);
+
+}  // namespace gridmerge

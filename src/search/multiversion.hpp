@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// Before a function: one build of it for every x86-64 machine, and one for those with AVX2; the loader picks.
+// Only for functions whose results are the same bits either way (integers). Sanitizers run before the
+// resolver can, and get the first.
+#if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define GRIDMERGE_MULTIVERSION __attribute__((target_clones("avx2", "default")))
+#else
+#define GRIDMERGE_MULTIVERSION
+#endif
