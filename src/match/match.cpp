@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/refine.hpp"
@@ -13,6 +14,7 @@
 #include "gridmerge/search/exhaustive.hpp"
 #include "gridmerge/search/parallel.hpp"
 #include "gridmerge/similarity/agreement.hpp"
+#include "gridmerge/similarity/wall_lines.hpp"
 #include "gridmerge/similarity/wall_map.hpp"
 
 namespace gridmerge {
@@ -65,6 +67,12 @@ SE2 to_map_frames(const SE2& T_cells, const WallMap& fixed, const WallMap& movin
   return fixed.T_map_grid * T_metres * inverse(moving.T_map_grid);
 }
 
+/// The inverse of to_map_frames().
+SE2 to_cells(const SE2& T_fixed_moving, const WallMap& fixed, const WallMap& moving) {
+  const SE2 T_metres = inverse(fixed.T_map_grid) * T_fixed_moving * moving.T_map_grid;
+  return {T_metres.x / fixed.cell, T_metres.y / fixed.cell, T_metres.theta};
+}
+
 void report(const MatchOptions& options, double share) {
   if (options.progress) options.progress(share);
 }
@@ -91,9 +99,14 @@ std::vector<Hypothesis> rank(const std::vector<ScoredPose>& poses, const Occupan
   return hypotheses;
 }
 
+struct FoundHypotheses {
+  std::vector<Hypothesis> ranked;  // best first
+  double wall_lines = 0.0;         // on which the maps agree under the best one
+};
+
 /// `moving` is the map that is_smaller() picked.
-std::vector<Hypothesis> find_hypotheses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                        const MatchOptions& options) {
+FoundHypotheses find_hypotheses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                const MatchOptions& options) {
   const double cell = working_cell(fixed, moving);
   const WallMap fixed_walls = make_wall_map(fixed, cell);
   const WallMap moving_walls = make_wall_map(moving, cell);
@@ -112,12 +125,17 @@ std::vector<Hypothesis> find_hypotheses(const OccupancyGrid& fixed, const Occupa
   refinement.max_poses = std::max(kRankedPoses, options.max_hypotheses);
   const std::vector<ScoredPose> poses = refine(fixed_walls, moving_walls, candidates, refinement,
                                                [&](double share) { report(options, 0.5 + 0.45 * share); });
-  return rank(poses, fixed, moving, fixed_walls, moving_walls);
+  FoundHypotheses found{rank(poses, fixed, moving, fixed_walls, moving_walls)};
+  if (!found.ranked.empty()) {
+    const SE2 T_cells = to_cells(found.ranked.front().T_fixed_moving, fixed_walls, moving_walls);
+    found.wall_lines = count_wall_lines(fixed_walls, moving_walls, T_cells);
+  }
+  return found;
 }
 
 /// The best hypothesis has the verdict's probability; the others share the rest in proportion to their
 /// scores.
-void assign_probabilities(std::vector<Hypothesis>& hypotheses, double acceptance_index) {
+void assign_probabilities(std::vector<Hypothesis>& hypotheses, double acceptance_index, double wall_lines) {
   std::vector<double> scores;
   double others = 0.0;
   for (const Hypothesis& hypothesis : hypotheses) {
@@ -125,7 +143,7 @@ void assign_probabilities(std::vector<Hypothesis>& hypotheses, double acceptance
     others += hypothesis.score;
   }
   others -= scores.front();
-  const double best = probability_of(make_verdict_features(scores, acceptance_index));
+  const double best = probability_of({find_lead(scores), acceptance_index, wall_lines});
   hypotheses[0].probability = best;
   for (std::size_t i = 1; i < hypotheses.size(); ++i) {  // a runner-up is never called likelier than the best
     hypotheses[i].probability = std::min(best, (1.0 - best) * hypotheses[i].score / others);
@@ -141,14 +159,15 @@ MatchResult match_in_arena(const OccupancyGrid& fixed, const OccupancyGrid& movi
   const OccupancyGrid& smaller = swapped ? fixed_known : moving_known;
 
   MatchResult result;
-  result.hypotheses = find_hypotheses(larger, smaller, options);
+  FoundHypotheses found = find_hypotheses(larger, smaller, options);
+  result.hypotheses = std::move(found.ranked);
   if (result.hypotheses.empty()) return result;
   const AgreementCounts counts = count_agreement(larger, smaller, result.hypotheses.front().T_fixed_moving);
   result.acceptance_index = counts.acceptance_index();
   result.agreement = counts.agreement;
   result.disagreement = counts.disagreement;
   result.overlap = measure_overlap(larger, smaller, counts);
-  assign_probabilities(result.hypotheses, result.acceptance_index);
+  assign_probabilities(result.hypotheses, result.acceptance_index, found.wall_lines);
 
   if (swapped) {
     for (Hypothesis& hypothesis : result.hypotheses)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "correlate.hpp"
 
-#include "multiversion.hpp"
+#include "../grid/multiversion.hpp"
 
 namespace gridmerge {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "multiversion.hpp"
+#include "../grid/multiversion.hpp"
 
 namespace gridmerge {
 

@@ -171,5 +171,33 @@ TEST(Match, RefusesInvalidInput) {
   EXPECT_THROW(match(map, map, options), std::invalid_argument);
 }
 
+/// What a robot sees of a plain room from `reach` metres around one of its corners, the room turned so that
+/// the corner is the lower left one. Walls waver by a cell.
+OccupancyGrid corner_of_a_room(double reach, unsigned seed) {
+  constexpr double kCell = 0.05;
+  const int side = static_cast<int>(reach / kCell);
+  OccupancyGrid map = make_grid(side + 10, side + 10, kCell);
+  std::mt19937 random(seed);
+  for (int y = 5; y < side + 5; ++y) {
+    for (int x = 5; x < side + 5; ++x) {
+      if (std::hypot(x, y) * kCell < reach) map.at(x, y) = Cell::free;
+    }
+  }
+  for (int i = 5; i < side; ++i) {
+    map.at(i, 5 + static_cast<int>(random() % 2)) = Cell::occupied;
+    map.at(5 + static_cast<int>(random() % 2), i) = Cell::occupied;
+  }
+  return map;
+}
+
+TEST(Match, DoesNotBelieveInABareCorner) {
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const OccupancyGrid a = corner_of_a_room(7.0, seed);
+    const OccupancyGrid b =
+        transform_grid(corner_of_a_room(6.0 + seed, seed + 100), {3.0, 1.0, 0.5 * seed}, 0.05);
+    EXPECT_EQ(match(a, b).verdict, Verdict::refused) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace gridmerge

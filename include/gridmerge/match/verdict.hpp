@@ -11,12 +11,14 @@ struct VerdictFeatures {
   /// when there is none. A score is a sum over many places, so chance moves it by about its square root.
   double lead = 0.0;
   double acceptance_index = 0.0;  ///< of the best hypothesis
+  double wall_lines = 0.0;        ///< count_wall_lines() of the best hypothesis
 };
 
-/// From the scores of distinct hypotheses, best first, all positive. No hypothesis has no lead.
-VerdictFeatures make_verdict_features(const std::vector<double>& scores, double acceptance_index);
+/// (best - second) / sqrt(best), from the scores of distinct hypotheses, best first, all positive.
+double find_lead(const std::vector<double>& scores);
 
-/// Probability that the best hypothesis is the true pose. Rises with both features; 0 without a lead.
+/// Probability that the best hypothesis is the true pose. Rises with every feature. Without a lead it is
+/// about 1/2 at most: another hypothesis is as good.
 double probability_of(const VerdictFeatures& features);
 
 }  // namespace gridmerge

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/similarity/image_similarity.hpp"
+
+namespace gridmerge {
+
+/// Poses that a walk starts from: the best of them under Delta is taken. The maps' centres (of their known
+/// rectangles) lie on each other, shifted and turned.
+struct StartPoseOptions {
+  int rotations = 72;     ///< evenly spaced over the full turn: every 5 degrees
+  int offsets = 1;        ///< shifts on each side of the centre, in x and in y: 1 makes 3 x 3
+  double offset = 100.0;  ///< between two shifts [cells of the fixed map]
+};
+
+struct RandomWalkOptions {
+  StartPoseOptions start;
+  double c_lock = 0.0;         ///< weight of (dis - agr) in Delta; not negative
+  std::size_t memory = 50;     ///< M: accepted samples whose steps set the mean and covariance of proposals
+  double first_step = 10.0;    ///< standard deviation of proposals before anything is accepted [cells]
+  double smallest_step = 0.5;  ///< bounds of a proposal's standard deviation in any direction [cells]
+  double largest_step = 40.0;
+  /// A sample worse by d is accepted with probability exp(-d / temperature). 0 never accepts one: hill
+  /// climbing.
+  double temperature = 0.0;
+  /// The temperature is multiplied with this after every proposal: 1 keeps it, less is simulated annealing.
+  double cooling = 1.0;
+  std::size_t patience = 2000;         ///< proposals without an improvement of the best after which to stop
+  std::size_t max_proposals = 200000;  ///< stop then in any case
+  std::uint64_t seed = 1;
+  bool record_trace = false;
+};
+
+/// A sample that a walk accepted.
+struct WalkSample {
+  std::size_t step = 0;  ///< proposals made so far; 0 is the start
+  SE2 T_fixed_moving;    ///< between map frames [m, rad]
+  double delta = 0.0;
+  double psi = 0.0;
+  std::int64_t agreement = 0;
+  std::int64_t disagreement = 0;
+};
+
+struct RandomWalkResult {
+  SE2 T_fixed_moving;          ///< the best sample, between map frames [m, rad]
+  ImageSimilarity similarity;  ///< there
+  double delta = 0.0;          ///< there
+  std::size_t proposals = 0;
+  std::size_t accepted = 0;
+  std::vector<WalkSample> trace;  ///< the start and every accepted sample, if asked for
+};
+
+/// The start poses, between map frames, in the order rotation, row, column. Throws std::invalid_argument for
+/// options that make no sense. O(poses).
+std::vector<SE2> make_start_poses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                  const StartPoseOptions& options);
+
+/// The adaptive random walk of Birk & Carpin 2006 (algorithm 1), which minimises Delta = psi + c_lock * (dis
+/// - agr). Proposals are normal; their mean and covariance are those of the steps between the last `memory`
+/// accepted samples, with the covariance's eigenvalues held between smallest_step^2 and largest_step^2. A
+/// rotation counts as the way that it moves a cell at the moving map's root mean square radius. A proposal
+/// that takes the rectangles of known cells off each other is refused without being measured.
+///
+/// The same seed gives the same walk on the same machine, whatever the number of threads (only the start
+/// poses are measured in parallel, in the calling TBB arena). Throws std::invalid_argument for invalid grids
+/// or options. `progress` is called with the number of proposals made, now and then.
+RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                             const RandomWalkOptions& options = {},
+                             const std::function<void(std::size_t)>& progress = {});
+
+}  // namespace gridmerge

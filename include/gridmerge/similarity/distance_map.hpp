@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gridmerge/grid/occupancy_grid.hpp"
+
+namespace gridmerge {
+
+/// In a DistanceMap: the grid has no cell of the value.
+inline constexpr std::uint16_t kNoDistance = 0xffff;
+
+/// Manhattan distances between cells are kept in 16 bits: width + height must not exceed this.
+inline constexpr int kMaxDistanceMapSides = 32000;
+
+/// d-map_c of Birk & Carpin 2006: for every cell of a grid the Manhattan distance [cells] to the nearest cell
+/// of one value, row-major as the grid; kNoDistance everywhere if there is none.
+struct DistanceMap {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint16_t> distances;
+
+  std::uint16_t at(int column, int row) const {
+    return distances[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(column)];
+  }
+};
+
+/// Algorithm 2 of the paper, with its two passes split by direction: down, up, then both ways along the rows,
+/// eight of which go at a time. Throws std::invalid_argument if width + height > kMaxDistanceMapSides.
+/// O(cells); vectorised.
+DistanceMap make_distance_map(const OccupancyGrid& grid, Cell value);
+
+}  // namespace gridmerge

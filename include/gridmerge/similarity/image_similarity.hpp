@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gridmerge/grid/occupancy_grid.hpp"
+
+namespace gridmerge {
+
+// The measures of A. Birk and S. Carpin, "Merging occupancy grid maps from multiple robots", Proc. IEEE,
+// 2006.
+//
+// They compare cells of one lattice. Here that is the fixed map's, continued without end: each of its cells
+// takes the value of the moving cell in which its centre falls (nearest cell), and is unknown where there is
+// none. Centres are computed with 32 fractional bits of a cell; one that falls on the edge between two cells
+// to that precision may go to either.
+
+/// omega (eq. 2): cells of the fixed map that have the same value, unknown included, as the moving map's
+/// there. Symmetric for maps of one size and origin under the identity. Throws std::invalid_argument for
+/// invalid grids. O(cells of both).
+std::int64_t count_equal_cells(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                               const SE2& T_fixed_moving);
+
+/// omega for k maps (eq. 3): cells at which all of them have the same value, unknown included. The maps must
+/// be of one size; resolutions and origins are not looked at. Every cell counts for a single map, none for no
+/// map. Throws std::invalid_argument if sizes differ. O(k * cells).
+std::int64_t count_equal_cells(std::span<const OccupancyGrid> maps);
+
+/// d(m1, m2, c) (algorithm 3, divided by the number of cells): the mean over the cells of m1 with value c of
+/// the Manhattan distance to m2's nearest cell with value c.
+struct DirectedDistance {
+  std::int64_t sum = 0;    ///< [cells]
+  std::int64_t count = 0;  ///< cells of m1 with the value; 0 as well when m2 has none of them
+
+  /// A value that is missing in either map leaves the distance undefined: it counts as 0.
+  bool defined() const { return count > 0; }
+  double mean() const { return defined() ? static_cast<double>(sum) / static_cast<double>(count) : 0.0; }
+};
+
+/// What the paper measures of a pose.
+struct ImageSimilarity {
+  DirectedDistance fixed_to_moving_free;
+  DirectedDistance moving_to_fixed_free;
+  DirectedDistance fixed_to_moving_occupied;
+  DirectedDistance moving_to_fixed_occupied;
+  std::int64_t agreement = 0;     ///< agr: cells known in both maps and equal
+  std::int64_t disagreement = 0;  ///< dis: cells known in both maps and different
+
+  /// psi: the sum of the four mean distances; 0 for equal maps. Smaller is more similar.
+  double psi() const {
+    return fixed_to_moving_free.mean() + moving_to_fixed_free.mean() + fixed_to_moving_occupied.mean() +
+           moving_to_fixed_occupied.mean();
+  }
+  /// How many of psi's four distances are undefined and count as 0.
+  int undefined_terms() const {
+    return !fixed_to_moving_free.defined() + !moving_to_fixed_free.defined() +
+           !fixed_to_moving_occupied.defined() + !moving_to_fixed_occupied.defined();
+  }
+  /// Delta = psi + c_lock * (dis - agr), to be minimised.
+  double delta(double c_lock) const { return psi() + c_lock * static_cast<double>(disagreement - agreement); }
+  /// ai = agr / (agr + dis); 0 when nothing is known in common.
+  double acceptance_index() const {
+    const std::int64_t known = agreement + disagreement;
+    return known == 0 ? 0.0 : static_cast<double>(agreement) / static_cast<double>(known);
+  }
+};
+
+/// Measures poses of one pair of maps. The fixed map's distance maps are made once; a pose then costs the
+/// moving map's turning, its two distance maps and the sums, in memory that is kept from pose to pose. Only
+/// the rectangle of known cells of either map is touched, which changes nothing in the results.
+///
+/// Copies share what belongs to the maps and have memory of their own: one copy a thread.
+class SimilarityMeter {
+ public:
+  /// Copies what it needs of the maps. Throws std::invalid_argument for an invalid grid, or one of width +
+  /// height > kMaxDistanceMapSides / 4. O(cells).
+  SimilarityMeter(const OccupancyGrid& fixed, const OccupancyGrid& moving);
+  SimilarityMeter(const SimilarityMeter& other);
+  SimilarityMeter& operator=(const SimilarityMeter&) = delete;
+  ~SimilarityMeter();
+
+  /// `T_fixed_moving` is between map frames [m, rad]. Throws std::invalid_argument if it is not finite, or
+  /// puts the maps more than about kMaxDistanceMapSides / 2 cells apart.
+  /// O(cells of the rectangle that holds both maps' known cells).
+  ImageSimilarity operator()(const SE2& T_fixed_moving);
+
+ private:
+  struct Maps;
+  struct Scratch;
+  std::shared_ptr<const Maps> maps_;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+/// The same for a single pose.
+ImageSimilarity measure_similarity(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                   const SE2& T_fixed_moving);
+
+}  // namespace gridmerge

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/search/random_walk.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <stdexcept>
+
+#include "gridmerge/grid/resample.hpp"
+#include "gridmerge/search/parallel.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+/// A step of the walk: x, y, and the way of a cell at the moving map's radius when it turns [cells].
+using Step = Eigen::Vector3d;
+
+/// The known rectangle of a map, about its centre.
+struct Rectangle {
+  explicit Rectangle(const OccupancyGrid& map) {
+    const OccupancyGrid known = crop_to_known(map);
+    half_width = 0.5 * known.width * known.resolution;
+    half_height = 0.5 * known.height * known.resolution;
+    T_map_centre = known.origin * SE2{half_width, half_height, 0.0};
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (int row = 0; row < known.height; ++row) {
+      for (int column = 0; column < known.width; ++column) {
+        if (known.at(column, row) == Cell::unknown) continue;
+        const double x = (column + 0.5) * known.resolution - half_width;
+        const double y = (row + 0.5) * known.resolution - half_height;
+        sum += x * x + y * y;
+        ++count;
+      }
+    }
+    radius = std::max(known.resolution, count > 0 ? std::sqrt(sum / static_cast<double>(count)) : 0.0);
+  }
+
+  double reach() const { return std::hypot(half_width, half_height); }
+
+  double half_width;   // [m]
+  double half_height;  // [m]
+  double radius;       // root mean square distance of the known cells from the centre [m]
+  SE2 T_map_centre;
+};
+
+/// Poses of the moving map, told by where its centre lies from the fixed map's and how it is turned.
+class Poses {
+ public:
+  Poses(const OccupancyGrid& fixed, const OccupancyGrid& moving)
+      : fixed_(fixed), moving_(moving), cell_(fixed.resolution) {}
+
+  /// `dx`, `dy` [m] along the axes of the fixed map's frame.
+  SE2 at(double dx, double dy, double theta) const {
+    const SE2 centre{fixed_.T_map_centre.x + dx, fixed_.T_map_centre.y + dy, normalize_angle(theta)};
+    return centre * inverse(SE2{moving_.T_map_centre.x, moving_.T_map_centre.y, 0.0});
+  }
+
+  SE2 moved(const SE2& T_fixed_moving, const Step& step) const {
+    const Point2 centre = T_fixed_moving * Point2{moving_.T_map_centre.x, moving_.T_map_centre.y};
+    return at(centre.x - fixed_.T_map_centre.x + step.x() * cell_,
+              centre.y - fixed_.T_map_centre.y + step.y() * cell_,
+              T_fixed_moving.theta + step.z() * cell_ / moving_.radius);
+  }
+
+  Step between(const SE2& from, const SE2& to) const {
+    const Point2 centre{moving_.T_map_centre.x, moving_.T_map_centre.y};
+    const Point2 a = from * centre;
+    const Point2 b = to * centre;
+    return {(b.x - a.x) / cell_, (b.y - a.y) / cell_,
+            normalize_angle(to.theta - from.theta) * moving_.radius / cell_};
+  }
+
+  /// Whether the circles around the known rectangles meet: beyond that no cells can.
+  bool may_touch(const SE2& T_fixed_moving) const {
+    const Point2 centre = T_fixed_moving * Point2{moving_.T_map_centre.x, moving_.T_map_centre.y};
+    return std::hypot(centre.x - fixed_.T_map_centre.x, centre.y - fixed_.T_map_centre.y) <=
+           fixed_.reach() + moving_.reach();
+  }
+
+ private:
+  Rectangle fixed_;
+  Rectangle moving_;
+  double cell_;  // [m]
+};
+
+/// Normal proposals, learnt from the last accepted steps.
+class Proposals {
+ public:
+  explicit Proposals(const RandomWalkOptions& options)
+      : options_(options), shape_(Eigen::Matrix3d::Identity() * options.first_step) {}
+
+  Step draw(std::mt19937_64& random) {
+    Step standard;
+    for (double& value : standard) value = normal_(random);
+    return mean_ + shape_ * standard;
+  }
+
+  void learn(const Step& accepted) {
+    steps_.push_back(accepted);
+    if (steps_.size() > options_.memory) steps_.pop_front();
+    constexpr std::size_t kEnough = 4;  // for a covariance of three numbers
+    if (steps_.size() < kEnough) return;
+    const double count = static_cast<double>(steps_.size());
+    mean_.setZero();
+    for (const Step& step : steps_) mean_ += step / count;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const Step& step : steps_) covariance += (step - mean_) * (step - mean_).transpose() / (count - 1.0);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
+    Step deviations;
+    for (int i = 0; i < 3; ++i) {
+      deviations[i] = std::clamp(std::sqrt(std::max(0.0, eigen.eigenvalues()[i])), options_.smallest_step,
+                                 options_.largest_step);
+    }
+    shape_ = eigen.eigenvectors() * deviations.asDiagonal();
+  }
+
+ private:
+  const RandomWalkOptions& options_;
+  std::deque<Step> steps_;
+  Step mean_ = Step::Zero();
+  Eigen::Matrix3d shape_;  // a square root of the covariance
+  std::normal_distribution<double> normal_;
+};
+
+void check(const StartPoseOptions& options) {
+  if (options.rotations < 1) throw std::invalid_argument("the walk needs at least one start rotation");
+  if (options.offsets < 0) throw std::invalid_argument("the number of start offsets must not be negative");
+  if (!(options.offset >= 0.0 && std::isfinite(options.offset)))
+    throw std::invalid_argument("the start offset must not be negative");
+}
+
+void check(const RandomWalkOptions& options) {
+  const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
+  if (!(options.c_lock >= 0.0 && std::isfinite(options.c_lock)))
+    throw std::invalid_argument("c_lock must be a number, and not negative");
+  if (options.memory < 2) throw std::invalid_argument("the walk must remember at least two samples");
+  if (!positive(options.first_step) || !positive(options.smallest_step) ||
+      !(options.largest_step >= options.smallest_step && std::isfinite(options.largest_step)))
+    throw std::invalid_argument("the walk's steps must be positive, and the largest not below the smallest");
+  if (!(options.temperature >= 0.0 && std::isfinite(options.temperature)))
+    throw std::invalid_argument("the temperature must not be negative");
+  if (!(options.cooling > 0.0 && options.cooling <= 1.0))
+    throw std::invalid_argument("cooling must lie in (0, 1]");
+  if (options.patience < 1 || options.max_proposals < 1)
+    throw std::invalid_argument("the walk must be allowed at least one proposal");
+}
+
+struct Sample {
+  SE2 T_fixed_moving;
+  ImageSimilarity similarity;
+  double delta;
+};
+
+/// The best of the start poses. Each is measured by itself, so the result does not depend on threads.
+Sample find_start(const SimilarityMeter& meter, const std::vector<SE2>& starts, double c_lock) {
+  constexpr std::size_t kPerTask = 9;  // poses for which one copy of the meter is made
+  const std::size_t tasks = (starts.size() + kPerTask - 1) / kPerTask;
+  std::vector<std::optional<Sample>> samples(starts.size());
+  parallel_for(tasks, [&](std::size_t task) {
+    SimilarityMeter own(meter);
+    for (std::size_t i = task * kPerTask; i < std::min(starts.size(), (task + 1) * kPerTask); ++i) {
+      const ImageSimilarity similarity = own(starts[i]);
+      samples[i] = Sample{starts[i], similarity, similarity.delta(c_lock)};
+    }
+  });
+  return **std::min_element(samples.begin(), samples.end(),
+                            [](const auto& a, const auto& b) { return a->delta < b->delta; });
+}
+
+/// The random selector of the paper: decides whether the walk goes to a sample.
+bool select(double worse_by, double temperature, std::mt19937_64& random) {
+  if (worse_by < 0.0) return true;
+  if (temperature <= 0.0) return false;
+  return std::uniform_real_distribution<double>()(random) < std::exp(-worse_by / temperature);
+}
+
+WalkSample describe(std::size_t step, const Sample& sample) {
+  return {step,
+          sample.T_fixed_moving,
+          sample.delta,
+          sample.similarity.psi(),
+          sample.similarity.agreement,
+          sample.similarity.disagreement};
+}
+
+}  // namespace
+
+std::vector<SE2> make_start_poses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                  const StartPoseOptions& options) {
+  check(options);
+  const Poses poses(fixed, moving);
+  const double offset = options.offset * fixed.resolution;
+  std::vector<SE2> starts;
+  for (int rotation = 0; rotation < options.rotations; ++rotation) {
+    const double theta = 2.0 * std::numbers::pi * rotation / options.rotations;
+    for (int row = -options.offsets; row <= options.offsets; ++row) {
+      for (int column = -options.offsets; column <= options.offsets; ++column)
+        starts.push_back(poses.at(column * offset, row * offset, theta));
+    }
+  }
+  return starts;
+}
+
+RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                             const RandomWalkOptions& options,
+                             const std::function<void(std::size_t)>& progress) {
+  check(options);
+  SimilarityMeter meter(fixed, moving);
+  const Poses poses(fixed, moving);
+  Sample current = find_start(meter, make_start_poses(fixed, moving, options.start), options.c_lock);
+  Sample best = current;
+
+  RandomWalkResult result;
+  if (options.record_trace) result.trace.push_back(describe(0, current));
+  std::mt19937_64 random(options.seed);
+  Proposals proposals(options);
+  double temperature = options.temperature;
+  std::size_t last_improvement = 0;
+  while (result.proposals < options.max_proposals && result.proposals - last_improvement < options.patience) {
+    const SE2 T = poses.moved(current.T_fixed_moving, proposals.draw(random));
+    ++result.proposals;
+    constexpr std::size_t kReportEvery = 100;
+    if (progress && result.proposals % kReportEvery == 0) progress(result.proposals);
+    temperature *= options.cooling;
+    if (!poses.may_touch(T)) continue;
+    const ImageSimilarity similarity = meter(T);
+    const double delta = similarity.delta(options.c_lock);
+    if (!select(delta - current.delta, temperature, random)) continue;
+    proposals.learn(poses.between(current.T_fixed_moving, T));
+    current = {T, similarity, delta};
+    ++result.accepted;
+    if (options.record_trace) result.trace.push_back(describe(result.proposals, current));
+    if (delta >= best.delta) continue;
+    best = current;
+    last_improvement = result.proposals;
+  }
+  result.T_fixed_moving = best.T_fixed_moving;
+  result.similarity = best.similarity;
+  result.delta = best.delta;
+  return result;
+}
+
+}  // namespace gridmerge

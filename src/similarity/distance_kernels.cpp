@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "distance_kernels.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "../grid/multiversion.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+// One strip column, and its halves: 16 and 8 lanes of 16 bits.
+using Column = std::uint16_t __attribute__((vector_size(32)));
+using Eight = std::uint16_t __attribute__((vector_size(16)));
+using StripBytes = std::uint8_t __attribute__((vector_size(16)));
+using Bytes = std::uint8_t __attribute__((vector_size(32)));
+static_assert(sizeof(Column) == kStripRows * sizeof(std::uint16_t));
+
+// By reference: returned by value, vectors would have another ABI in each of a function's versions.
+template <typename Vector, typename Value>
+inline __attribute__((always_inline)) void load(const Value* from, Vector& vector) {
+  std::memcpy(&vector, from, sizeof vector);
+}
+
+template <typename Vector, typename Value>
+inline __attribute__((always_inline)) void store(const Vector& vector, Value* to) {
+  std::memcpy(to, &vector, sizeof vector);
+}
+
+/// nearest = min(nearest + 1, the distances at `at`), stored there.
+inline __attribute__((always_inline)) void relax_column(Column& nearest, std::uint16_t* at) {
+  Column here;
+  load(at, here);
+  nearest += 1;
+  nearest = nearest < here ? nearest : here;
+  store(nearest, at);
+}
+
+/// Element (i, j) of the result is element (j, i) of `rows`. Each round interleaves rows that lie half the
+/// tile apart; three rounds rotate the six bits of an element's address by half.
+inline __attribute__((always_inline)) void transpose(Eight (&rows)[kTile]) {
+  for (int round = 0; round < 3; ++round) {
+    Eight mixed[kTile];
+    for (int i = 0; i < kTile / 2; ++i) {
+      mixed[2 * i] = __builtin_shufflevector(rows[i], rows[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
+      mixed[2 * i + 1] = __builtin_shufflevector(rows[i], rows[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
+    }
+    for (int i = 0; i < kTile; ++i) rows[i] = mixed[i];
+  }
+}
+
+}  // namespace
+
+GRIDMERGE_MULTIVERSION
+void mark_value(const std::uint8_t* cells, std::size_t count, std::uint8_t value, std::uint16_t* distances) {
+  for (std::size_t i = 0; i < count; ++i) distances[i] = cells[i] == value ? 0 : kFarDistance;
+}
+
+GRIDMERGE_MULTIVERSION
+void relax_row(std::uint16_t* row, const std::uint16_t* neighbour, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint16_t next = static_cast<std::uint16_t>(neighbour[i] + 1);
+    row[i] = next < row[i] ? next : row[i];
+  }
+}
+
+GRIDMERGE_MULTIVERSION
+void rows_to_strip(const std::uint16_t* rows, std::size_t stride, int columns, std::uint16_t* strip) {
+  for (int x = 0; x < columns; x += kTile) {
+    for (int half = 0; half < kStripRows; half += kTile) {
+      Eight tile[kTile];
+      for (int i = 0; i < kTile; ++i) load(rows + (half + i) * stride + x, tile[i]);
+      transpose(tile);
+      for (int i = 0; i < kTile; ++i)
+        store(tile[i], strip + static_cast<std::size_t>(x + i) * kStripRows + half);
+    }
+  }
+}
+
+GRIDMERGE_MULTIVERSION
+void strip_to_rows(const std::uint16_t* strip, int columns, std::uint16_t* rows, std::size_t stride) {
+  for (int x = 0; x < columns; x += kTile) {
+    for (int half = 0; half < kStripRows; half += kTile) {
+      Eight tile[kTile];
+      for (int i = 0; i < kTile; ++i)
+        load(strip + static_cast<std::size_t>(x + i) * kStripRows + half, tile[i]);
+      transpose(tile);
+      for (int i = 0; i < kTile; ++i) store(tile[i], rows + (half + i) * stride + x);
+    }
+  }
+}
+
+GRIDMERGE_MULTIVERSION
+void sweep_right(std::uint16_t* strip, int columns) {
+  Column nearest;
+  load(strip, nearest);
+  for (int x = 1; x < columns; ++x) relax_column(nearest, strip + static_cast<std::size_t>(x) * kStripRows);
+}
+
+GRIDMERGE_MULTIVERSION
+void sweep_left(std::uint16_t* strip, int columns) {
+  Column nearest;
+  load(strip + static_cast<std::size_t>(columns - 1) * kStripRows, nearest);
+  for (int x = columns - 2; x >= 0; --x)
+    relax_column(nearest, strip + static_cast<std::size_t>(x) * kStripRows);
+}
+
+GRIDMERGE_MULTIVERSION
+std::uint64_t sum_where(const std::uint16_t* distances, const std::uint8_t* cells, std::size_t count,
+                        std::uint8_t value) {
+  std::uint64_t sum = 0;
+  std::size_t i = 0;
+  while (i + kStripRows <= count) {
+    // The bytes of the distances are added up apart, each in 16 bits for as long as they fit.
+    constexpr std::size_t kBlock = 256 * kStripRows;
+    const std::size_t last = std::min(i + kBlock, count - (count - i) % kStripRows);
+    Column low{};
+    Column high{};
+    for (; i < last; i += kStripRows) {
+      Column distance;
+      StripBytes bytes;
+      load(distances + i, distance);
+      load(cells + i, bytes);
+      const Column cell = __builtin_convertvector(bytes, Column);
+      const Column counted = distance & static_cast<Column>(cell == static_cast<std::uint16_t>(value));
+      low += counted & 0xff;
+      high += counted >> 8;
+    }
+    for (int lane = 0; lane < kStripRows; ++lane) sum += low[lane] + std::uint64_t{256} * high[lane];
+  }
+  for (; i < count; ++i) sum += cells[i] == value ? distances[i] : 0;
+  return sum;
+}
+
+namespace {
+
+/// Cells are compared this many at a time, and counted in 8 bits for as long as that fits.
+constexpr std::size_t kLanes = 32;
+constexpr std::size_t kCountedBlock = 255 * kLanes;
+
+}  // namespace
+
+GRIDMERGE_MULTIVERSION
+std::int64_t count_where(const std::uint8_t* cells, std::size_t count, std::uint8_t value) {
+  std::int64_t sum = 0;
+  std::size_t i = 0;
+  while (i + kLanes <= count) {
+    const std::size_t last = std::min(i + kCountedBlock, count - (count - i) % kLanes);
+    Bytes found{};
+    for (; i < last; i += kLanes) {
+      Bytes here;
+      load(cells + i, here);
+      found -= static_cast<Bytes>(here == value);  // true is -1
+    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane) sum += found[lane];
+  }
+  for (; i < count; ++i) sum += cells[i] == value;
+  return sum;
+}
+
+GRIDMERGE_MULTIVERSION
+CommonCells count_common(const std::uint8_t* a, const std::uint8_t* b, std::size_t count) {
+  CommonCells common;
+  std::size_t i = 0;
+  while (i + kLanes <= count) {
+    const std::size_t last = std::min(i + kCountedBlock, count - (count - i) % kLanes);
+    Bytes equal{};
+    Bytes different{};
+    for (; i < last; i += kLanes) {
+      Bytes ours;
+      Bytes theirs;
+      load(a + i, ours);
+      load(b + i, theirs);
+      const Bytes known = static_cast<Bytes>((ours != 0) & (theirs != 0));
+      const Bytes same = static_cast<Bytes>(ours == theirs);
+      equal -= known & same;
+      different -= known & ~same;
+    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      common.equal += equal[lane];
+      common.different += different[lane];
+    }
+  }
+  for (; i < count; ++i) {
+    if (a[i] == 0 || b[i] == 0) continue;
+    ++(a[i] == b[i] ? common.equal : common.different);
+  }
+  return common;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/similarity/image_similarity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "distance_kernels.hpp"
+#include "gridmerge/grid/resample.hpp"
+#include "gridmerge/similarity/distance_map.hpp"
+#include "nearest_cells.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+constexpr std::uint8_t kFree = static_cast<std::uint8_t>(Cell::free);
+constexpr std::uint8_t kOccupied = static_cast<std::uint8_t>(Cell::occupied);
+
+int round_up(int value, int multiple) {
+  return (value + multiple - 1) / multiple * multiple;
+}
+
+}  // namespace
+
+/// What does not change from pose to pose. Boxes and rows are in cells of the fixed map's known rectangle.
+struct SimilarityMeter::Maps {
+  /// A value's cells in the fixed map.
+  struct FixedClass {
+    std::int64_t count = 0;
+    DistanceMap distance;
+  };
+
+  Maps(const OccupancyGrid& fixed_map, const OccupancyGrid& moving_map)
+      : fixed(crop_to_known(fixed_map)), moving(crop_to_known(moving_map)) {
+    // A turned map is at most sqrt(2) times as wide; two of them must fit.
+    if (fixed.width + fixed.height + 2 * (moving.width + moving.height) > kMaxDistanceMapSides) {
+      throw std::invalid_argument("the maps are too large for the image similarity: it takes about " +
+                                  std::to_string(kMaxDistanceMapSides / 6) + " cells a side");
+    }
+    const auto* cells = reinterpret_cast<const std::uint8_t*>(fixed.cells.data());
+    for (const std::uint8_t value : {kFree, kOccupied}) {
+      FixedClass& of_value = classes[value - kFree];
+      of_value.count = count_where(cells, fixed.cells.size(), value);
+      of_value.distance = make_distance_map(fixed, static_cast<Cell>(value));
+    }
+    const int strips = round_up(fixed.height, kStripRows) / kStripRows;
+    strip_cells.assign(static_cast<std::size_t>(strips) * fixed.width * kStripRows, 0);
+    for (int row = 0; row < fixed.height; ++row) {
+      std::uint8_t* strip =
+          strip_cells.data() + static_cast<std::size_t>(row / kStripRows) * fixed.width * kStripRows;
+      for (int column = 0; column < fixed.width; ++column) {
+        strip[static_cast<std::size_t>(column) * kStripRows + row % kStripRows] =
+            static_cast<std::uint8_t>(fixed.at(column, row));
+      }
+    }
+  }
+
+  const FixedClass& of(std::uint8_t value) const { return classes[value - kFree]; }
+
+  OccupancyGrid fixed;   // the known rectangle
+  OccupancyGrid moving;  // the known rectangle
+  std::array<FixedClass, 2> classes;
+  std::vector<std::uint8_t> strip_cells;  // the fixed map's cells in strips of kStripRows rows
+};
+
+/// Memory that is kept from pose to pose.
+struct SimilarityMeter::Scratch {
+  CellsOnLattice moving;
+  std::vector<std::uint16_t>
+      rows;  // distances to the moving map's cells of one value, after the columns' passes
+  std::vector<std::uint16_t> strip;  // the same of kStripRows rows
+};
+
+namespace {
+
+/// The sum over the fixed map's cells of one value of the distance to the nearest such cell of the moving
+/// map, which must have one.
+class FixedToMoving {
+ public:
+  FixedToMoving(const CellsOnLattice& moving, int fixed_width, int fixed_height,
+                std::vector<std::uint16_t>& rows, std::vector<std::uint16_t>& strip)
+      : moving_(moving),
+        fixed_width_(fixed_width),
+        fixed_height_(fixed_height),
+        hull_{std::min(0, moving.box.left), std::min(0, moving.box.bottom),
+              std::max(fixed_width, moving.box.right),
+              std::max(round_up(fixed_height, kStripRows), moving.box.top)},
+        rows_(rows),
+        strip_(strip) {}
+
+  std::int64_t sum(const std::vector<std::uint8_t>& strip_cells, std::uint8_t value) {
+    pass_columns(value);
+    std::int64_t sum = 0;
+    const std::size_t strip_size = static_cast<std::size_t>(fixed_width_) * kStripRows;
+    for (int row = 0; row < fixed_height_; row += kStripRows) {
+      pass_rows(row);
+      sum += static_cast<std::int64_t>(sum_where(
+          strip_.data() + static_cast<std::size_t>(-hull_.left) * kStripRows,
+          strip_cells.data() + static_cast<std::size_t>(row / kStripRows) * strip_size, strip_size, value));
+    }
+    return sum;
+  }
+
+ private:
+  std::uint16_t* row_at(int row) {
+    return rows_.data() + static_cast<std::size_t>(row - hull_.bottom) * moving_.stride;
+  }
+
+  /// Distances along the columns, for the moving map's columns and all rows of the hull.
+  void pass_columns(std::uint8_t value) {
+    rows_.resize(moving_.stride * static_cast<std::size_t>(hull_.height()));
+    for (int row = hull_.bottom; row < hull_.top; ++row) {
+      if (row >= moving_.box.bottom && row < moving_.box.top) {
+        mark_value(moving_.row(row), moving_.stride, value, row_at(row));
+      } else {
+        std::fill_n(row_at(row), moving_.stride, kFarDistance);
+      }
+      if (row > hull_.bottom) relax_row(row_at(row), row_at(row - 1), moving_.stride);
+    }
+    for (int row = hull_.top - 2; row >= 0; --row) relax_row(row_at(row), row_at(row + 1), moving_.stride);
+  }
+
+  /// From there the distances of kStripRows rows, for all columns of the hull.
+  void pass_rows(int first) {
+    const int columns = hull_.width();
+    const std::size_t before = static_cast<std::size_t>(moving_.box.left - hull_.left) * kStripRows;
+    const std::size_t own = moving_.stride * kStripRows;
+    const std::size_t all = std::max(static_cast<std::size_t>(columns) * kStripRows, before + own);
+    strip_.resize(all);
+    std::fill_n(strip_.begin(), before, kFarDistance);
+    std::fill(strip_.begin() + static_cast<std::ptrdiff_t>(before + own), strip_.end(), kFarDistance);
+    rows_to_strip(row_at(first), moving_.stride, static_cast<int>(moving_.stride), strip_.data() + before);
+    sweep_right(strip_.data(), columns);
+    sweep_left(strip_.data(), columns);
+  }
+
+  const CellsOnLattice& moving_;
+  int fixed_width_;
+  int fixed_height_;
+  CellBox hull_;  // of both maps; its rows are whole strips where the fixed map is
+  std::vector<std::uint16_t>& rows_;
+  std::vector<std::uint16_t>& strip_;
+};
+
+/// The sum over the moving map's cells of one value of the distance to the nearest such cell of the fixed
+/// map. Beyond the fixed map's rectangle the distance is that of the nearest cell inside, and the way there:
+/// exact for Manhattan distances, because each coordinate has to be crossed anyway.
+std::int64_t sum_moving_to_fixed(const CellsOnLattice& moving, const DistanceMap& distance,
+                                 std::uint8_t value) {
+  const CellBox& box = moving.box;
+  const int width = distance.width;
+  const int left = std::clamp(0, box.left, box.right);  // of the columns that both have
+  const int right = std::clamp(width, left, box.right);
+  std::int64_t sum = 0;
+  for (int row = box.bottom; row < box.top; ++row) {
+    const std::uint8_t* cells = moving.row(row);
+    const int inside_row = std::clamp(row, 0, distance.height - 1);
+    const std::int64_t way = std::abs(row - inside_row);
+    const std::uint16_t* distances =
+        distance.distances.data() + static_cast<std::size_t>(inside_row) * static_cast<std::size_t>(width);
+    if (left < right) {
+      sum += static_cast<std::int64_t>(sum_where(distances + left, cells + (left - box.left),
+                                                 static_cast<std::size_t>(right - left), value));
+    }
+    for (int x = box.left; x < left; ++x) {
+      if (cells[x - box.left] == value) sum += distances[0] - x;
+    }
+    for (int x = right; x < box.right; ++x) {
+      if (cells[x - box.left] == value) sum += distances[width - 1] + x - (width - 1);
+    }
+    if (way > 0) sum += way * count_where(cells, static_cast<std::size_t>(box.width()), value);
+  }
+  return sum;
+}
+
+CommonCells compare_cells(const CellsOnLattice& moving, const OccupancyGrid& fixed) {
+  const CellBox& box = moving.box;
+  const int left = std::max(0, box.left);
+  const int right = std::min(fixed.width, box.right);
+  CommonCells common;
+  if (left >= right) return common;
+  for (int row = std::max(0, box.bottom); row < std::min(fixed.height, box.top); ++row) {
+    const auto* fixed_row =
+        reinterpret_cast<const std::uint8_t*>(fixed.cells.data()) + fixed.index(left, row);
+    const CommonCells of_row =
+        count_common(fixed_row, moving.row(row) + (left - box.left), static_cast<std::size_t>(right - left));
+    common.equal += of_row.equal;
+    common.different += of_row.different;
+  }
+  return common;
+}
+
+void check_finite(const SE2& T) {
+  if (!std::isfinite(T.x) || !std::isfinite(T.y) || !std::isfinite(T.theta))
+    throw std::invalid_argument("the transform must be finite");
+}
+
+SE2 between_grids(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& T_fixed_moving) {
+  return inverse(fixed.origin) * T_fixed_moving * moving.origin;
+}
+
+}  // namespace
+
+SimilarityMeter::SimilarityMeter(const OccupancyGrid& fixed, const OccupancyGrid& moving)
+    : scratch_(std::make_unique<Scratch>()) {
+  validate(fixed);
+  validate(moving);
+  maps_ = std::make_shared<Maps>(fixed, moving);
+}
+
+SimilarityMeter::SimilarityMeter(const SimilarityMeter& other)
+    : maps_(other.maps_), scratch_(std::make_unique<Scratch>()) {}
+
+SimilarityMeter::~SimilarityMeter() = default;
+
+ImageSimilarity SimilarityMeter::operator()(const SE2& T_fixed_moving) {
+  check_finite(T_fixed_moving);
+  const Maps& maps = *maps_;
+  CellsOnLattice& moving = scratch_->moving;
+  const SE2 T_fixedgrid_movinggrid = between_grids(maps.fixed, maps.moving, T_fixed_moving);
+  const double resolution = maps.fixed.resolution;
+  const CellBox box = box_on_lattice(maps.moving, T_fixedgrid_movinggrid, resolution);
+  if (std::max(maps.fixed.width, box.right) - std::min(0, box.left) + std::max(maps.fixed.height, box.top) -
+          std::min(0, box.bottom) >
+      kMaxDistanceMapSides) {
+    throw std::invalid_argument("the transform puts the maps too far apart");
+  }
+  draw_nearest_cells(maps.moving, T_fixedgrid_movinggrid, resolution, kStripRows, moving);
+
+  ImageSimilarity result;
+  const CommonCells common = compare_cells(moving, maps.fixed);
+  result.agreement = common.equal;
+  result.disagreement = common.different;
+
+  FixedToMoving fixed_to_moving(moving, maps.fixed.width, maps.fixed.height, scratch_->rows, scratch_->strip);
+  const auto measure = [&](std::uint8_t value, DirectedDistance& from_fixed, DirectedDistance& from_moving) {
+    const Maps::FixedClass& fixed_class = maps.of(value);
+    const std::int64_t count = count_where(moving.cells.data(), moving.cells.size(), value);
+    if (fixed_class.count == 0 || count == 0) return;
+    from_fixed = {fixed_to_moving.sum(maps.strip_cells, value), fixed_class.count};
+    from_moving = {sum_moving_to_fixed(moving, fixed_class.distance, value), count};
+  };
+  measure(kFree, result.fixed_to_moving_free, result.moving_to_fixed_free);
+  measure(kOccupied, result.fixed_to_moving_occupied, result.moving_to_fixed_occupied);
+  return result;
+}
+
+ImageSimilarity measure_similarity(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                   const SE2& T_fixed_moving) {
+  return SimilarityMeter(fixed, moving)(T_fixed_moving);
+}
+
+std::int64_t count_equal_cells(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                               const SE2& T_fixed_moving) {
+  validate(fixed);
+  validate(moving);
+  check_finite(T_fixed_moving);
+  CellsOnLattice drawn;
+  draw_nearest_cells(moving, between_grids(fixed, moving, T_fixed_moving), fixed.resolution, 1, drawn);
+  const CellBox& box = drawn.box;
+  std::int64_t equal = 0;
+  for (int row = 0; row < fixed.height; ++row) {
+    for (int column = 0; column < fixed.width; ++column) {
+      const bool inside = column >= box.left && column < box.right && row >= box.bottom && row < box.top;
+      const std::uint8_t other = inside ? drawn.row(row)[column - box.left] : 0;
+      equal += static_cast<std::uint8_t>(fixed.at(column, row)) == other;
+    }
+  }
+  return equal;
+}
+
+std::int64_t count_equal_cells(std::span<const OccupancyGrid> maps) {
+  if (maps.empty()) return 0;
+  for (const OccupancyGrid& map : maps) {
+    validate(map);
+    if (map.width != maps[0].width || map.height != maps[0].height)
+      throw std::invalid_argument("the maps must be of one size");
+  }
+  std::int64_t equal = 0;
+  for (std::size_t i = 0; i < maps[0].cells.size(); ++i) {
+    equal += std::all_of(maps.begin() + 1, maps.end(),
+                         [&](const OccupancyGrid& map) { return map.cells[i] == maps[0].cells[i]; });
+  }
+  return equal;
+}
+
+}  // namespace gridmerge

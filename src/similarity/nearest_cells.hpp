@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gridmerge/grid/occupancy_grid.hpp"
+
+namespace gridmerge {
+
+/// A rectangle of cells.
+struct CellBox {
+  int left = 0;
+  int bottom = 0;
+  int right = 0;  ///< one past the last column
+  int top = 0;    ///< one past the last row
+
+  int width() const { return right - left; }
+  int height() const { return top - bottom; }
+};
+
+/// A grid drawn on another grid's lattice: cell (column, row) of `box` is
+/// cells[(row - box.bottom) * stride + column - box.left], unknown where the grid has no cell.
+struct CellsOnLattice {
+  CellBox box;  ///< in cells of the lattice
+  std::size_t stride = 0;
+  std::vector<std::uint8_t> cells;  ///< values of Cell
+
+  const std::uint8_t* row(int lattice_row) const {
+    return cells.data() + static_cast<std::size_t>(lattice_row - box.bottom) * stride;
+  }
+};
+
+/// The box of lattice cells whose centres may fall into `grid`, and perhaps a rim of others.
+/// `T_lattice_grid` is between the lower-left corners, in metres; the lattice's cells have sides of
+/// `lattice_resolution` metres. Throws std::invalid_argument if coordinates exceed a million cells. O(1).
+CellBox box_on_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution);
+
+/// Gives every cell of the lattice the value of the cell of `grid` under its centre. `stride` of the
+/// result is a multiple of `stride_multiple`. Fixed-point arithmetic with 40 fractional bits of a cell: no
+/// rounding to and from floating point inside, and the same bits on every machine. Reuses the result's
+/// memory. O(cells of the box).
+void draw_nearest_cells(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution,
+                        std::size_t stride_multiple, CellsOnLattice& result);
+
+}  // namespace gridmerge

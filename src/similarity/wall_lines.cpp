@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/similarity/wall_lines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace gridmerge {
+
+namespace {
+
+constexpr int kMeetingDistance = 4;  // cells: bent maps meet no closer
+constexpr int kFacingTolerance = 6;  // of kDirections
+
+constexpr int kAngles = 128;  // normals of lines that are tried
+constexpr int kAnglesPerDirection = kAngles / kDirections;
+constexpr int kVotedAngles = 8;       // on either side of a point's facing
+constexpr int kTakenAngles = 20;      // the same for the points that a line takes with it
+constexpr float kOffsetBin = 4.0F;    // cells
+constexpr float kTakenOffset = 6.0F;  // cells
+constexpr std::size_t kMaxLines = 24;
+constexpr int kShortestLine = 6;  // points
+
+struct MetPoint {
+  float x;
+  float y;
+  int angle;  // of its facing, in kAngles
+};
+
+int turn_between(int a, int b, int full_turn) {
+  const int turn = std::abs(a - b) % full_turn;
+  return std::min(turn, full_turn - turn);
+}
+
+/// The moving map's walls that lie on walls of the fixed one which face the same side [cells, fixed grid
+/// frame].
+std::vector<MetPoint> find_met_walls(const WallMap& fixed, const WallMap& moving, const SE2& T) {
+  const double turns = T.theta / (2.0 * std::numbers::pi) + 1.0;
+  const int turned = static_cast<int>(std::lround(turns * kDirections)) % kDirections;
+  std::vector<MetPoint> met;
+  for (const WallPoint& wall : moving.walls) {
+    const Point2 p = T * wall.position;
+    if (!(p.x >= 0.0 && p.y >= 0.0 && p.x < fixed.width && p.y < fixed.height)) continue;
+    const Place& place = fixed.places[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(fixed.width) +
+                                      static_cast<std::size_t>(p.x)];
+    if (place.distance == kUnseen || place.distance > kMeetingDistance) continue;
+    if (wall.facing == kNoDirection || place.facing == kNoDirection) continue;
+    const int facing = (wall.facing + turned) % kDirections;
+    if (turn_between(facing, place.facing, kDirections) > kFacingTolerance) continue;
+    met.push_back({static_cast<float>(p.x), static_cast<float>(p.y), facing * kAnglesPerDirection});
+  }
+  return met;
+}
+
+/// Takes lines off a set of points, the one with the most votes first.
+class LineTaker {
+ public:
+  explicit LineTaker(double diagonal) : offsets_(2 * (static_cast<int>(diagonal / kOffsetBin) + 2)) {
+    for (int angle = 0; angle < kAngles; ++angle) {
+      const double radians = 2.0 * std::numbers::pi * angle / kAngles;
+      cos_[angle] = static_cast<float>(std::cos(radians));
+      sin_[angle] = static_cast<float>(std::sin(radians));
+    }
+  }
+
+  /// The number of points taken from `points`; 0 when no line is long enough.
+  std::size_t take(std::vector<MetPoint>& points) {
+    votes_.assign(static_cast<std::size_t>(kAngles) * offsets_, 0);
+    int most = kShortestLine - 1;
+    int best_angle = -1;
+    int best_offset = 0;
+    for (const MetPoint& point : points) {
+      for (int step = -kVotedAngles; step <= kVotedAngles; ++step) {
+        const int angle = (point.angle + step + kAngles) % kAngles;
+        const int offset = static_cast<int>(std::floor(distance(point, angle) / kOffsetBin)) + offsets_ / 2;
+        const int votes = ++votes_[static_cast<std::size_t>(angle) * offsets_ + offset];
+        if (votes <= most) continue;
+        most = votes;
+        best_angle = angle;
+        best_offset = offset;
+      }
+    }
+    if (best_angle < 0) return 0;
+    const float middle = (static_cast<float>(best_offset - offsets_ / 2) + 0.5F) * kOffsetBin;
+    return std::erase_if(points, [&](const MetPoint& point) {
+      return turn_between(point.angle, best_angle, kAngles) <= kTakenAngles &&
+             std::abs(distance(point, best_angle) - middle) <= kTakenOffset;
+    });
+  }
+
+ private:
+  float distance(const MetPoint& point, int angle) const {
+    return cos_[angle] * point.x + sin_[angle] * point.y;
+  }
+
+  int offsets_;
+  std::array<float, kAngles> cos_{};
+  std::array<float, kAngles> sin_{};
+  std::vector<int> votes_;  // by angle and offset
+};
+
+}  // namespace
+
+double count_wall_lines(const WallMap& fixed, const WallMap& moving, const SE2& T_fixed_moving_cells) {
+  std::vector<MetPoint> points = find_met_walls(fixed, moving, T_fixed_moving_cells);
+  LineTaker taker(std::hypot(fixed.width, fixed.height));
+  std::vector<std::size_t> lengths;
+  double total = 0.0;
+  while (lengths.size() < kMaxLines) {
+    const std::size_t length = taker.take(points);
+    if (length == 0) break;
+    lengths.push_back(length);
+    total += static_cast<double>(length);
+  }
+  if (lengths.empty()) return 0.0;
+  double entropy = 0.0;
+  for (const std::size_t length : lengths) {
+    const double share = static_cast<double>(length) / total;
+    entropy -= share * std::log(share);
+  }
+  return std::exp(entropy);
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/similarity/wall_lines.hpp"
+
+#include <gtest/gtest.h>
+
+namespace gridmerge {
+namespace {
+
+constexpr int kSide = 160;
+
+void draw_wall(OccupancyGrid& map, int x0, int y0, int x1, int y1) {
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) map.at(x, y) = Cell::occupied;
+  }
+}
+
+/// The lower left corner of a room.
+OccupancyGrid corner() {
+  OccupancyGrid map = make_grid(kSide, kSide, 0.05);
+  for (int y = 20; y < kSide; ++y) {
+    for (int x = 20; x < kSide; ++x) map.at(x, y) = Cell::free;
+  }
+  draw_wall(map, 20, 20, kSide - 1, 20);
+  draw_wall(map, 20, 20, 20, kSide - 1);
+  return map;
+}
+
+double lines_of(const OccupancyGrid& map) {
+  const WallMap walls = make_wall_map(map, map.resolution);
+  return count_wall_lines(walls, walls, {});
+}
+
+TEST(WallLines, ACornerHasTwo) {
+  EXPECT_NEAR(lines_of(corner()), 2.0, 0.2);
+}
+
+TEST(WallLines, ARoomHasFour) {
+  OccupancyGrid room = corner();
+  draw_wall(room, 20, kSide - 1, kSide - 1, kSide - 1);
+  draw_wall(room, kSide - 1, 20, kSide - 1, kSide - 1);
+  EXPECT_NEAR(lines_of(room), 4.0, 0.3);
+}
+
+TEST(WallLines, EveryFurtherPieceOfWallAdds) {
+  OccupancyGrid map = corner();
+  double last = lines_of(map);
+  for (int i = 0; i < 3; ++i) {
+    draw_wall(map, 50 + 30 * i, 40 + 25 * i, 52 + 30 * i, 80 + 25 * i);
+    const double lines = lines_of(map);
+    EXPECT_GT(lines, last + 0.5);
+    last = lines;
+  }
+}
+
+TEST(WallLines, DoNotDependOnThePose) {
+  const OccupancyGrid map = corner();
+  const WallMap walls = make_wall_map(map, map.resolution);
+  OccupancyGrid elsewhere = map;
+  elsewhere.origin = {4.0, -3.0, 1.0};
+  const WallMap other = make_wall_map(elsewhere, map.resolution);
+  EXPECT_EQ(count_wall_lines(walls, other, {}), count_wall_lines(walls, walls, {}));
+}
+
+TEST(WallLines, WallsThatDoNotMeetAreNone) {
+  const WallMap walls = make_wall_map(corner(), 0.05);
+  EXPECT_EQ(count_wall_lines(walls, walls, {1000.0, 0.0, 0.0}), 0.0);
+  EXPECT_EQ(count_wall_lines(walls, walls, {25.0, 25.0, 0.0}), 0.0);
+  const WallMap empty = make_wall_map(make_grid(30, 30, 0.05, {}, Cell::free), 0.05);
+  EXPECT_EQ(count_wall_lines(walls, empty, {}), 0.0);
+}
+
+}  // namespace
+}  // namespace gridmerge
