@@ -7,7 +7,6 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
-#include <optional>
 #include <random>
 #include <stdexcept>
 
@@ -129,27 +128,11 @@ class Proposals {
   std::normal_distribution<double> normal_;
 };
 
-void check(const StartPoseOptions& options) {
+void validate(const StartPoseOptions& options) {
   if (options.rotations < 1) throw std::invalid_argument("the walk needs at least one start rotation");
   if (options.offsets < 0) throw std::invalid_argument("the number of start offsets must not be negative");
   if (!(options.offset >= 0.0 && std::isfinite(options.offset)))
     throw std::invalid_argument("the start offset must not be negative");
-}
-
-void check(const RandomWalkOptions& options) {
-  const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
-  if (!(options.c_lock >= 0.0 && std::isfinite(options.c_lock)))
-    throw std::invalid_argument("c_lock must be a number, and not negative");
-  if (options.memory < 2) throw std::invalid_argument("the walk must remember at least two samples");
-  if (!positive(options.first_step) || !positive(options.smallest_step) ||
-      !(options.largest_step >= options.smallest_step && std::isfinite(options.largest_step)))
-    throw std::invalid_argument("the walk's steps must be positive, and the largest not below the smallest");
-  if (!(options.temperature >= 0.0 && std::isfinite(options.temperature)))
-    throw std::invalid_argument("the temperature must not be negative");
-  if (!(options.cooling > 0.0 && options.cooling <= 1.0))
-    throw std::invalid_argument("cooling must lie in (0, 1]");
-  if (options.patience < 1 || options.max_proposals < 1)
-    throw std::invalid_argument("the walk must be allowed at least one proposal");
 }
 
 struct Sample {
@@ -157,22 +140,6 @@ struct Sample {
   ImageSimilarity similarity;
   double delta;
 };
-
-/// The best of the start poses. Each is measured by itself, so the result does not depend on threads.
-Sample find_start(const SimilarityMeter& meter, const std::vector<SE2>& starts, double c_lock) {
-  constexpr std::size_t kPerTask = 9;  // poses for which one copy of the meter is made
-  const std::size_t tasks = (starts.size() + kPerTask - 1) / kPerTask;
-  std::vector<std::optional<Sample>> samples(starts.size());
-  parallel_for(tasks, [&](std::size_t task) {
-    SimilarityMeter own(meter);
-    for (std::size_t i = task * kPerTask; i < std::min(starts.size(), (task + 1) * kPerTask); ++i) {
-      const ImageSimilarity similarity = own(starts[i]);
-      samples[i] = Sample{starts[i], similarity, similarity.delta(c_lock)};
-    }
-  });
-  return **std::min_element(samples.begin(), samples.end(),
-                            [](const auto& a, const auto& b) { return a->delta < b->delta; });
-}
 
 /// The random selector of the paper: decides whether the walk goes to a sample.
 bool select(double worse_by, double temperature, std::mt19937_64& random) {
@@ -190,31 +157,61 @@ WalkSample describe(std::size_t step, const Sample& sample) {
           sample.similarity.disagreement};
 }
 
-}  // namespace
-
-std::vector<SE2> make_start_poses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                  const StartPoseOptions& options) {
-  check(options);
-  const Poses poses(fixed, moving);
-  const double offset = options.offset * fixed.resolution;
+std::vector<SE2> make_start_poses(const Poses& poses, double cell, const StartPoseOptions& options) {
   std::vector<SE2> starts;
   for (int rotation = 0; rotation < options.rotations; ++rotation) {
     const double theta = 2.0 * std::numbers::pi * rotation / options.rotations;
     for (int row = -options.offsets; row <= options.offsets; ++row) {
       for (int column = -options.offsets; column <= options.offsets; ++column)
-        starts.push_back(poses.at(column * offset, row * offset, theta));
+        starts.push_back(poses.at(column * options.offset * cell, row * options.offset * cell, theta));
     }
   }
   return starts;
 }
 
-RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                             const RandomWalkOptions& options,
-                             const std::function<void(std::size_t)>& progress) {
-  check(options);
+}  // namespace
+
+void validate(const RandomWalkOptions& options) {
+  const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
+  if (!(options.c_lock >= 0.0 && std::isfinite(options.c_lock)))
+    throw std::invalid_argument("c_lock must be a number, and not negative");
+  if (options.memory < 2) throw std::invalid_argument("the walk must remember at least two samples");
+  if (!positive(options.first_step) || !positive(options.smallest_step) ||
+      !(options.largest_step >= options.smallest_step && std::isfinite(options.largest_step)))
+    throw std::invalid_argument("the walk's steps must be positive, and the largest not below the smallest");
+  if (!(options.temperature >= 0.0 && std::isfinite(options.temperature)))
+    throw std::invalid_argument("the temperature must not be negative");
+  if (!(options.cooling > 0.0 && options.cooling <= 1.0))
+    throw std::invalid_argument("cooling must lie in (0, 1]");
+  if (options.patience < 1 || options.max_proposals < 1)
+    throw std::invalid_argument("the walk must be allowed at least one proposal");
+}
+
+std::vector<MeasuredPose> measure_start_poses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                              const StartPoseOptions& options) {
+  validate(options);
+  const SimilarityMeter meter(fixed, moving);
+  const std::vector<SE2> starts = make_start_poses(Poses(fixed, moving), fixed.resolution, options);
+  std::vector<MeasuredPose> measured(starts.size());
+  constexpr std::size_t kPerTask = 9;  // poses for which one copy of the meter is made
+  parallel_for((starts.size() + kPerTask - 1) / kPerTask, [&](std::size_t task) {
+    SimilarityMeter own(meter);
+    for (std::size_t i = task * kPerTask; i < std::min(starts.size(), (task + 1) * kPerTask); ++i)
+      measured[i] = {starts[i], own(starts[i])};
+  });
+  return measured;
+}
+
+RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& start,
+                             const RandomWalkOptions& options) {
+  validate(options);
   SimilarityMeter meter(fixed, moving);
   const Poses poses(fixed, moving);
-  Sample current = find_start(meter, make_start_poses(fixed, moving, options.start), options.c_lock);
+  const auto measure = [&](const SE2& T) {
+    const ImageSimilarity similarity = meter(T);
+    return Sample{T, similarity, similarity.delta(options.c_lock)};
+  };
+  Sample current = measure(start);
   Sample best = current;
 
   RandomWalkResult result;
@@ -226,18 +223,15 @@ RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& mo
   while (result.proposals < options.max_proposals && result.proposals - last_improvement < options.patience) {
     const SE2 T = poses.moved(current.T_fixed_moving, proposals.draw(random));
     ++result.proposals;
-    constexpr std::size_t kReportEvery = 100;
-    if (progress && result.proposals % kReportEvery == 0) progress(result.proposals);
     temperature *= options.cooling;
     if (!poses.may_touch(T)) continue;
-    const ImageSimilarity similarity = meter(T);
-    const double delta = similarity.delta(options.c_lock);
-    if (!select(delta - current.delta, temperature, random)) continue;
+    const Sample proposed = measure(T);
+    if (!select(proposed.delta - current.delta, temperature, random)) continue;
     proposals.learn(poses.between(current.T_fixed_moving, T));
-    current = {T, similarity, delta};
+    current = proposed;
     ++result.accepted;
     if (options.record_trace) result.trace.push_back(describe(result.proposals, current));
-    if (delta >= best.delta) continue;
+    if (current.delta >= best.delta) continue;
     best = current;
     last_improvement = result.proposals;
   }

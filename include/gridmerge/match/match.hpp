@@ -14,7 +14,8 @@ enum class Verdict { refused, accepted };
 /// One way in which the moving map may lie on the fixed one.
 struct Hypothesis {
   SE2 T_fixed_moving;  ///< between the map frames
-  double score = 0.0;  ///< log-likelihood ratio "same place" against "unrelated" [nats]; larger is better
+  /// Larger is better: the log-likelihood ratio "same place" against "unrelated" [nats].
+  double score = 0.0;
   double probability = 0.0;  ///< that this pose is the true one
 };
 

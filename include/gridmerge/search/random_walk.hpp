@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
@@ -11,7 +10,7 @@
 
 namespace gridmerge {
 
-/// Poses that a walk starts from: the best of them under Delta is taken. The maps' centres (of their known
+/// Poses that walks start from: those that are best under Delta. The maps' centres (of their known
 /// rectangles) lie on each other, shifted and turned.
 struct StartPoseOptions {
   int rotations = 72;     ///< evenly spaced over the full turn: every 5 degrees
@@ -19,8 +18,13 @@ struct StartPoseOptions {
   double offset = 100.0;  ///< between two shifts [cells of the fixed map]
 };
 
+/// A pose and what the paper measures there.
+struct MeasuredPose {
+  SE2 T_fixed_moving;  ///< between map frames [m, rad]
+  ImageSimilarity similarity;
+};
+
 struct RandomWalkOptions {
-  StartPoseOptions start;
   double c_lock = 0.0;         ///< weight of (dis - agr) in Delta; not negative
   std::size_t memory = 50;     ///< M: accepted samples whose steps set the mean and covariance of proposals
   double first_step = 10.0;    ///< standard deviation of proposals before anything is accepted [cells]
@@ -56,22 +60,26 @@ struct RandomWalkResult {
   std::vector<WalkSample> trace;  ///< the start and every accepted sample, if asked for
 };
 
-/// The start poses, between map frames, in the order rotation, row, column. Throws std::invalid_argument for
-/// options that make no sense. O(poses).
-std::vector<SE2> make_start_poses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                  const StartPoseOptions& options);
+/// The start poses in the order rotation, row, column, with their measures, from which Delta follows for any
+/// c_lock. Measured in parallel in the calling TBB arena; the result does not depend on threads. Throws
+/// std::invalid_argument for invalid grids, maps that are too large (see SimilarityMeter), or options that
+/// make no sense. O(poses) measurements.
+std::vector<MeasuredPose> measure_start_poses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                              const StartPoseOptions& options = {});
 
-/// The adaptive random walk of Birk & Carpin 2006 (algorithm 1), which minimises Delta = psi + c_lock * (dis
-/// - agr). Proposals are normal; their mean and covariance are those of the steps between the last `memory`
-/// accepted samples, with the covariance's eigenvalues held between smallest_step^2 and largest_step^2. A
-/// rotation counts as the way that it moves a cell at the moving map's root mean square radius. A proposal
-/// that takes the rectangles of known cells off each other is refused without being measured.
+/// The adaptive random walk of Birk & Carpin 2006 (algorithm 1) from one pose. It minimises Delta = psi +
+/// c_lock * (dis - agr). Proposals are normal; their mean and covariance are those of the steps between the
+/// last `memory` accepted samples, with the covariance's eigenvalues held between smallest_step^2 and
+/// largest_step^2. A rotation counts as the way that it moves a cell at the moving map's root mean square
+/// radius. A proposal that takes the maps' known rectangles off each other for certain is refused without
+/// being measured.
 ///
-/// The same seed gives the same walk on the same machine, whatever the number of threads (only the start
-/// poses are measured in parallel, in the calling TBB arena). Throws std::invalid_argument for invalid grids
-/// or options. `progress` is called with the number of proposals made, now and then.
-RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                             const RandomWalkOptions& options = {},
-                             const std::function<void(std::size_t)>& progress = {});
+/// The same seed gives the same walk on the same machine. Throws std::invalid_argument for invalid grids,
+/// options or start. O(proposals) measurements.
+RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& start,
+                             const RandomWalkOptions& options = {});
+
+/// Throws std::invalid_argument, saying what is wrong, for options that make no sense.
+void validate(const RandomWalkOptions& options);
 
 }  // namespace gridmerge

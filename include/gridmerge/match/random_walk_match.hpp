@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "gridmerge/match/match.hpp"
+#include "gridmerge/search/random_walk.hpp"
+
+namespace gridmerge {
+
+struct RandomWalkMatchOptions {
+  StartPoseOptions start;
+  /// Of each walk. Its seed is the first walk's; the others' follow from it. Its c_lock is not used.
+  RandomWalkOptions walk;
+  /// c_lock of the first, second, ... walk, from the start again when there are more walks.
+  std::vector<double> c_locks{0.0};
+  int restarts = 1;                       ///< how many walks there are, at least 1
+  double accept_acceptance_index = 0.98;  ///< the verdict is `accepted` from this acceptance index on
+  int threads = 0;  ///< worker threads; 0 = one a core. The result does not depend on it.
+  /// Called now and then with the number of finished walks and of all; never from two threads at once.
+  std::function<void(int, int)> progress;
+  /// Called at the end for every walk, in order, with its number from 0 and its c_lock.
+  std::function<void(int, double, const RandomWalkResult&)> on_walk;
+};
+
+/// Finds how `moving` lies on `fixed` as Birk & Carpin (2006) do: adaptive random walks from a lattice of
+/// start poses, of which the one with the best acceptance index is kept, and accepted if that is large
+/// enough.
+///
+/// The result is that of match() with these differences: a hypothesis's score is its acceptance index; the
+/// acceptance index also stands for the probability, for want of one (it is not one: see docs/paper.md);
+/// agreement and disagreement are counted on the fixed map's lattice; walks that end within ten cells of each
+/// other are one hypothesis. Throws std::invalid_argument for invalid grids or options.
+MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                 const RandomWalkMatchOptions& options = {});
+
+}  // namespace gridmerge

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/search/random_walk.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "../similarity/random_grid.hpp"
+#include "gridmerge/grid/resample.hpp"
+#include "gridmerge/search/parallel.hpp"
+#include "support/building.hpp"
+
+namespace gridmerge {
+namespace {
+
+double error_at(const Point2& p, const SE2& found, const SE2& truth) {
+  const Point2 a = found * p;
+  const Point2 b = truth * p;
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+TEST(StartPoses, AreTheRotationsTimesTheShiftsOfTheCentre) {
+  const OccupancyGrid fixed = test::random_grid(1, 40, 30);
+  const OccupancyGrid moving = test::random_grid(2, 20, 26);
+  StartPoseOptions options;
+  options.offset = 4.0;
+  const auto starts = measure_start_poses(fixed, moving, options);
+  ASSERT_EQ(starts.size(), 72U * 9U);
+  const auto centre_of = [](const OccupancyGrid& map) {
+    const OccupancyGrid known = crop_to_known(map);
+    return known.origin * Point2{0.5 * known.width * known.resolution, 0.5 * known.height * known.resolution};
+  };
+  const Point2 fixed_centre = centre_of(fixed);
+  const double step = 4.0 * fixed.resolution;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const Point2 centre = starts[i].T_fixed_moving * centre_of(moving);
+    EXPECT_NEAR(centre.x - fixed_centre.x, step * (static_cast<int>(i % 3) - 1), 1e-9);
+    EXPECT_NEAR(centre.y - fixed_centre.y, step * (static_cast<int>(i / 3 % 3) - 1), 1e-9);
+    const double turn = starts[i].T_fixed_moving.theta - 5.0 * std::numbers::pi / 180.0 * static_cast<double>(i / 9);
+    EXPECT_NEAR(std::remainder(turn, 2.0 * std::numbers::pi), 0.0, 1e-9);
+    EXPECT_EQ(starts[i].similarity.psi(), measure_similarity(fixed, moving, starts[i].T_fixed_moving).psi());
+  }
+}
+
+TEST(StartPoses, DoNotDependOnThreads) {
+  const OccupancyGrid fixed = test::random_grid(1, 40, 30);
+  std::vector<std::vector<MeasuredPose>> runs;
+  for (const int threads : {1, 2}) with_threads(threads, [&] { runs.push_back(measure_start_poses(fixed, fixed)); });
+  for (std::size_t i = 0; i < runs[0].size(); ++i)
+    EXPECT_EQ(runs[0][i].similarity.delta(2.0), runs[1][i].similarity.delta(2.0));
+}
+
+TEST(StartPoses, RefuseOptionsThatMakeNoSense) {
+  const OccupancyGrid map = test::random_grid(1, 20, 20);
+  EXPECT_THROW(measure_start_poses(map, map, {0, 1, 100.0}), std::invalid_argument);
+  EXPECT_THROW(measure_start_poses(map, map, {72, -1, 100.0}), std::invalid_argument);
+  EXPECT_THROW(measure_start_poses(map, map, {72, 1, -1.0}), std::invalid_argument);
+  EXPECT_THROW(measure_start_poses(map, map, {72, 1, std::nan("")}), std::invalid_argument);
+}
+
+/// A building and the same one seen from elsewhere, cells of 0.1 m.
+struct EasyPair {
+  OccupancyGrid fixed = downsample(test::draw_building(3), 2);
+  SE2 T_moving_fixed{4.0, -2.0, 0.8};
+  OccupancyGrid moving = transform_grid(fixed, T_moving_fixed, fixed.resolution);
+  /// Off by some cells and degrees.
+  SE2 start = SE2{0.6, -0.5, 0.06} * inverse(T_moving_fixed);
+};
+
+TEST(RandomWalk, ConvergesFromNearTheTruth) {
+  const EasyPair pair;
+  int right = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    RandomWalkOptions options;
+    options.seed = seed;
+    const RandomWalkResult result = random_walk(pair.fixed, pair.moving, pair.start, options);
+    right += error_at({10.0, 5.0}, result.T_fixed_moving, inverse(pair.T_moving_fixed)) < 0.3 ? 1 : 0;
+  }
+  EXPECT_GE(right, 9);
+}
+
+TEST(RandomWalk, ASeedReproducesItBitForBit) {
+  const EasyPair pair;
+  RandomWalkOptions options;
+  options.temperature = 0.3;
+  options.patience = 300;
+  options.record_trace = true;
+  options.seed = 5;
+  const RandomWalkResult one = random_walk(pair.fixed, pair.moving, pair.start, options);
+  const RandomWalkResult again = random_walk(pair.fixed, pair.moving, pair.start, options);
+  EXPECT_EQ(one.T_fixed_moving, again.T_fixed_moving);
+  EXPECT_EQ(one.delta, again.delta);
+  EXPECT_EQ(one.proposals, again.proposals);
+  ASSERT_EQ(one.trace.size(), again.trace.size());
+  options.seed = 6;
+  EXPECT_FALSE(random_walk(pair.fixed, pair.moving, pair.start, options).T_fixed_moving == one.T_fixed_moving);
+}
+
+TEST(RandomWalk, TheTraceTellsTheWalk) {
+  const EasyPair pair;
+  RandomWalkOptions options;
+  options.temperature = 0.3;
+  options.c_lock = 0.5;
+  options.patience = 300;
+  options.record_trace = true;
+  const RandomWalkResult result = random_walk(pair.fixed, pair.moving, pair.start, options);
+  ASSERT_EQ(result.trace.size(), result.accepted + 1);
+  EXPECT_EQ(result.trace.front().step, 0U);
+  EXPECT_EQ(result.trace.front().T_fixed_moving, pair.start);
+  double least = result.trace.front().delta;
+  for (std::size_t i = 0; i < result.trace.size(); ++i) {
+    const WalkSample& sample = result.trace[i];
+    if (i > 0) EXPECT_GT(sample.step, result.trace[i - 1].step);
+    EXPECT_DOUBLE_EQ(sample.delta,
+                     sample.psi + 0.5 * static_cast<double>(sample.disagreement - sample.agreement));
+    least = std::min(least, sample.delta);
+  }
+  EXPECT_EQ(least, result.delta);
+  EXPECT_LE(result.trace.back().step, result.proposals);
+}
+
+TEST(RandomWalk, HillClimbingNeverGoesBack) {
+  const EasyPair pair;
+  RandomWalkOptions options;
+  options.patience = 300;
+  options.record_trace = true;
+  const RandomWalkResult result = random_walk(pair.fixed, pair.moving, pair.start, options);
+  for (std::size_t i = 1; i < result.trace.size(); ++i) EXPECT_LT(result.trace[i].delta, result.trace[i - 1].delta);
+}
+
+TEST(RandomWalk, StopsWhenItsPatienceOrItsProposalsRunOut) {
+  const OccupancyGrid map = test::random_grid(1, 30, 30);
+  RandomWalkOptions options;
+  options.patience = 50;
+  EXPECT_EQ(random_walk(map, map, {}, options).proposals, 50U);  // nothing is better than the truth
+  options.patience = 1000;
+  options.max_proposals = 20;
+  EXPECT_EQ(random_walk(map, map, {}, options).proposals, 20U);
+}
+
+TEST(RandomWalk, MapsWithoutAClassAreWalkedAllTheSame) {
+  const OccupancyGrid free = make_grid(20, 20, 0.1, {}, Cell::free);
+  RandomWalkOptions options;
+  options.patience = 50;
+  const RandomWalkResult result = random_walk(free, free, {0.3, 0.0, 0.0}, options);
+  EXPECT_EQ(result.similarity.undefined_terms(), 2);
+  EXPECT_LE(result.delta, measure_similarity(free, free, {0.3, 0.0, 0.0}).psi());
+}
+
+TEST(RandomWalk, RefusesOptionsThatMakeNoSense) {
+  const OccupancyGrid map = test::random_grid(1, 20, 20);
+  const auto refused = [&](auto change) {
+    RandomWalkOptions options;
+    change(options);
+    EXPECT_THROW(random_walk(map, map, {}, options), std::invalid_argument);
+  };
+  refused([](auto& o) { o.c_lock = -1.0; });
+  refused([](auto& o) { o.c_lock = std::nan(""); });
+  refused([](auto& o) { o.memory = 1; });
+  refused([](auto& o) { o.first_step = 0.0; });
+  refused([](auto& o) { o.smallest_step = 50.0; });
+  refused([](auto& o) { o.temperature = -1.0; });
+  refused([](auto& o) { o.cooling = 1.5; });
+  refused([](auto& o) { o.patience = 0; });
+  refused([](auto& o) { o.max_proposals = 0; });
+  EXPECT_THROW(random_walk(map, map, {std::nan(""), 0.0, 0.0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gridmerge
