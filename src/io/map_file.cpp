@@ -41,7 +41,7 @@ auto blaming(const std::filesystem::path& path, const Parse& parse) {
   }
 }
 
-Image read_image(FileReader& file, const LoadOptions& options) {
+MapImage read_image(FileReader& file, const LoadOptions& options) {
   // What is no image, a device without end for one, is not worth reading further.
   const std::string& head = file.read_up_to(kMagicBytes);
   return decode_image(looks_like_image(head) ? file.read_all(max_image_bytes(options)) : head,
