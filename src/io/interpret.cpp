@@ -73,7 +73,8 @@ const char* name(Cell cell) {
 }
 
 // Lightness 205 of 255 is how map_saver writes "unknown": p is 0.196, above a free_thresh of 0.196 by a hair,
-// and below the 0.25 that many a YAML has.
+// and below the 0.25 that many a YAML has. In scale mode map_saver writes whole percents, never 205, so there
+// too it comes from a map whose unknown cells it stands for.
 void warn_of_unknown_gray(const MapYaml& yaml, const MapImage& image, const std::vector<Meaning>& meanings,
                           std::vector<std::string>& warnings) {
   if (image.white * 205 % 255 != 0) return;
@@ -145,10 +146,8 @@ LoadedMap interpret(const MapYaml& yaml, const MapImage& image) {
     }
   }
 
-  if (yaml.mode == MapMode::trinary) {
-    warn_of_unknown_gray(yaml, image, meanings, map.warnings);
-    warn_of_alpha(yaml, image, map.grid, map.warnings);
-  }
+  if (yaml.mode != MapMode::raw) warn_of_unknown_gray(yaml, image, meanings, map.warnings);
+  if (yaml.mode == MapMode::trinary) warn_of_alpha(yaml, image, map.grid, map.warnings);
   if (yaml.mode == MapMode::raw && yaml.negate) {
     map.warnings.emplace_back("negate has no effect in raw mode");
   }

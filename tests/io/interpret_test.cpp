@@ -155,10 +155,14 @@ TEST(Scale, EqualThresholdsLeaveAHalf) {
   EXPECT_EQ(interpret(yaml, image).grid.probability, (std::vector<float>{1.0f, 0.5f, 0.0f}));
 }
 
-TEST(Scale, TakesLightness205ForAProbability) {
+TEST(Scale, WarnsOfUnknownThatLoadsAsFree) {
   MapYaml yaml = yaml_of(MapMode::scale);
+  EXPECT_EQ(interpret(yaml, row_of({0, 205, 254})).warnings, Warnings{});
   yaml.free_thresh = 0.25;
-  EXPECT_EQ(interpret(yaml, row_of({0, 205})).warnings, Warnings{});
+  const LoadedMap map = interpret(yaml, row_of({0, 205, 254}));
+  ASSERT_EQ(map.warnings.size(), 1u);
+  EXPECT_TRUE(contains(map.warnings[0], "1 pixels of lightness 205"));
+  EXPECT_TRUE(contains(map.warnings[0], "load as free with free_thresh 0.25"));
 }
 
 TEST(Raw, ValuesArePercents) {
