@@ -41,9 +41,8 @@ std::string describe_joins(const std::vector<std::string>& names, const MergeRes
   std::string text;
   for (const Join& join : result.joins) {
     fmt::format_to(std::back_inserter(text), "{:<8} probability {:.4f}, {:.3f} s: {} and {}\n",
-                   join.match.verdict == Verdict::accepted ? "accepted" : "refused", join.match.probability,
-                   join.match.seconds, escape_controls(names[join.fixed]),
-                   escape_controls(names[join.moving]));
+                   name_of(join.match.verdict), join.match.probability, join.match.seconds,
+                   escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
   }
   return text;
 }
