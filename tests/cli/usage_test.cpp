@@ -25,7 +25,7 @@ using Words = std::vector<std::string>;
 INSTANTIATE_TEST_SUITE_P(
     Cli, WrongUsage,
     testing::Values(
-        Words{}, Words{"frobnicate"}, Words{"--frobnicate"}, Words{"info"},
+        Words{}, Words{""}, Words{"frobnicate"}, Words{"--frobnicate"}, Words{"info"},
         Words{"info", "a.yaml", "--frobnicate"}, Words{"match"}, Words{"match", "a.yaml"},
         Words{"match", "a.yaml", "b.yaml", "c.yaml"}, Words{"match", "a.yaml", "b.yaml", "--threads", "-1"},
         Words{"match", "a.yaml", "b.yaml", "--threads", "two"},
@@ -45,6 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Usage, AMisspeltCommandIsNamed) {
   EXPECT_NE(run({"mtach", "a.yaml", "b.yaml"}).err.find("'mtach'"), std::string::npos);
+  EXPECT_NE(run({""}).err.find("there is no command ''"), std::string::npos);
 }
 
 TEST(Usage, HelpOfTheProgramNamesEveryCommand) {
