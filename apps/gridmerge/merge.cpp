@@ -73,7 +73,7 @@ int run_merge(const MergeCommandOptions& options) {
   console.clear();
   write_merge_output(options.output, options.maps, maps, result);
   if (options.common.verbose) print(describe_joins(options.maps, result));
-  if (!options.common.quiet) print(describe(options.maps, result));
+  print(describe(options.maps, result));
   console.remark("wrote " + options.output);
   return result.components.size() == 1 && result.left_out.empty() ? kDone : kRefused;
 }

@@ -33,7 +33,8 @@ const CLI::Validator kMetres(
     "");
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
-  CLI::Option* quiet = command.add_flag("-q,--quiet", options.quiet, "Print results and errors only");
+  CLI::Option* quiet = command.add_flag("-q,--quiet", options.quiet,
+                                        "Print results and errors only: no warnings, no progress bar");
   command.add_flag("-v,--verbose", options.verbose, "Print more")->excludes(quiet);
   command
       .add_option("--threads", options.threads, "Worker threads; 0 = one a core. Results do not depend on it")

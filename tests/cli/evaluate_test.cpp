@@ -77,6 +77,12 @@ TEST_F(EvaluateCommand, VerboseTellsOfEachMatch) {
   EXPECT_NE(outcome.out.find("left.yaml right.yaml\n"), std::string::npos) << outcome.out;
 }
 
+TEST_F(EvaluateCommand, QuietStillPrintsTheSummary) {
+  const Outcome outcome = run({"evaluate", "--negatives", negatives, "--quiet"});
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(outcome.out.find("negatives"), std::string::npos) << outcome.out;
+}
+
 TEST_F(EvaluateCommand, ErrorsNameTheTableAndTheLine) {
   expect_error(run({"evaluate", directory.file("none.tsv")}), directory.file("none.tsv"), "No such file");
   expect_error(run({"evaluate", directory.path().string()}), directory.path().string(), "directory");

@@ -91,8 +91,15 @@ TEST_F(Merge, LeavesOutMapsWithNothingToGoBy) {
   const std::string dot = write_map(directory, "dot", make_grid(1, 1, 0.1, {}, Cell::occupied));
   const Outcome outcome = run({"merge", blank, left, dot, right, "-o", output, "--quiet"});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
-  EXPECT_EQ(outcome.out + outcome.err, "");
+  EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(Json::parse(read_file(output + "/transforms.json")).at("left_out"), Json::array({blank, dot}));
+}
+
+TEST_F(Merge, QuietStillPrintsTheResult) {
+  const std::vector<std::string> arguments = {"merge", left, right, "-o", output};
+  std::vector<std::string> quiet = arguments;
+  quiet.push_back("--quiet");
+  EXPECT_EQ(run(quiet).out, run(arguments).out);
 }
 
 TEST_F(Merge, TheNumberOfThreadsChangesNoByte) {
