@@ -70,7 +70,14 @@ void add_evaluate(CLI::App& app, Action& action) {
   add_accept_option(*command, options->accept_probability);
   add_common_options(*command, options->common);
   command->footer(
-      "At least one of the three tables is needed; maps are named relative to the table.\n\n"
+      "At least one of the three tables is needed; maps are named relative to the table. Tables are\n"
+      "tab-separated, and their first line names the columns:\n"
+      "  PAIRS        fixed moving x y theta tolerance, and optionally tier and overlap\n"
+      "  --negatives  fixed moving\n"
+      "  --sets       set map x y theta tolerance\n"
+      "x, y and theta take points of the moving map to the fixed one, of a set's map to the set's frame\n"
+      "(metres, radians); tolerance is the largest root mean square error that counts as correct "
+      "(metres).\n\n"
       "Example:\n  gridmerge evaluate pairs.tsv --negatives negatives.tsv --json result.json");
   command->callback([options, &action] {
     if (options->pairs.empty() && options->negatives.empty() && options->sets.empty()) {

@@ -68,6 +68,14 @@ TEST(Usage, HelpOfACommandHasItsOptionsAndAnExample) {
   }
 }
 
+TEST(Usage, HelpOfEvaluateNamesTheColumnsOfItsTables) {
+  const std::string help = run({"evaluate", "--help"}).out;
+  for (const char* columns : {"fixed moving x y theta tolerance, and optionally tier and overlap",
+                              "fixed moving\n", "set map x y theta tolerance\n"}) {
+    EXPECT_NE(help.find(columns), std::string::npos) << columns;
+  }
+}
+
 TEST(Usage, VersionIsPrinted) {
   const Outcome outcome = run({"--version"});
   EXPECT_EQ(outcome.exit_code, 0);
