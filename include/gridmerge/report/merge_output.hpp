@@ -23,9 +23,9 @@ void prepare_merge_output(const std::filesystem::path& directory,
 /// `names[i]` is what to call map i in them.
 ///
 /// All files are complete on the disk before the first takes its place: when the disk is full, the directory
-/// stays as it was, or is not made. Every other `merged.yaml`, `merged_<number>.yaml` and `.pgm` in the directory is
-/// then removed, so that no map of an earlier run looks like one of this run; without a component there is no
-/// `merged.yaml`. Throws FileError.
+/// stays as it was, or is not made. Every other `merged.yaml`, `merged_<number>.yaml` and `.pgm` in the
+/// directory is then removed, so that no map of an earlier run looks like one of this run; without a
+/// component there is no `merged.yaml`. Throws FileError.
 void write_merge_output(const std::filesystem::path& directory,
                         const std::vector<std::filesystem::path>& inputs,
                         const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
