@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (end == std::string_view::npos) return 0;
   try {
     const MapYaml yaml = parse_map_yaml(bytes.substr(0, end));
-    const Image image = decode_image(bytes.substr(end + kEnd.size()), fuzz::kMaxPixels);
+    const MapImage image = decode_image(bytes.substr(end + kEnd.size()), fuzz::kMaxPixels);
     fuzz::require(fuzz::is_sound(image));
     const OccupancyGrid grid = interpret(yaml, image).grid;
     validate(grid);

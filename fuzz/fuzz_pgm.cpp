@@ -6,7 +6,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gridmerge;
   try {
-    const Image image = decode_pgm(fuzz::as_bytes(data, size), fuzz::kMaxPixels);
+    const MapImage image = decode_pgm(fuzz::as_bytes(data, size), fuzz::kMaxPixels);
     fuzz::require(fuzz::is_sound(image));
   } catch (const ParseError&) {
   }

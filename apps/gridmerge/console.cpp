@@ -84,14 +84,14 @@ void Console::clear() {
   std::fflush(stderr);
 }
 
-OccupancyGrid load(const std::string& path, double resolution, Console& console) {
+LoadedMap load(const std::string& path, double resolution, Console& console) {
   LoadOptions options;
   options.resolution = resolution;
   LoadedMap map = load_map(path, options);
   for (const std::string& warning : map.warnings) console.warn(path + ": " + warning);
   console.remark(fmt::format("read {}: {} x {} cells of {} m", path, map.grid.width, map.grid.height,
                              map.grid.resolution));
-  return std::move(map.grid);
+  return map;
 }
 
 }  // namespace gridmerge::cli

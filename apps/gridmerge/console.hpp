@@ -48,6 +48,6 @@ class Console {
 };
 
 /// load_map() that passes its warnings on to `console`.
-OccupancyGrid load(const std::string& path, double resolution, Console& console);
+LoadedMap load(const std::string& path, double resolution, Console& console);
 
 }  // namespace gridmerge::cli

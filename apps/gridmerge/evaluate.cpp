@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/evaluate/evaluate.hpp"
 
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include "commands.hpp"
 #include "console.hpp"
@@ -20,6 +23,8 @@ struct EvaluateCommandOptions {
   std::string sets;
   std::string json;
   double accept_probability = MatchOptions{}.accept_probability;
+
+  bool writes_json_file() const { return !json.empty() && json != "-"; }
 };
 
 Truth read_truth(const EvaluateCommandOptions& options) {
@@ -30,15 +35,31 @@ Truth read_truth(const EvaluateCommandOptions& options) {
   return truth;
 }
 
+// Known before the work: a result that cannot be written, or that would take the place of what it is made of.
+void try_json_file(const EvaluateCommandOptions& options, const Truth& truth) {
+  const StagedFile trial(options.json, {});
+  std::error_code error;
+  if (!std::filesystem::exists(options.json, error)) return;
+  std::vector<std::filesystem::path> inputs = input_files(truth);
+  inputs.insert(inputs.end(), {options.pairs, options.negatives, options.sets});
+  for (const std::filesystem::path& input : inputs) {
+    if (std::filesystem::equivalent(options.json, input, error)) {
+      throw FileError(options.json, "is an input and would be replaced: choose another file for the result");
+    }
+  }
+}
+
 Evaluation evaluate_files(const EvaluateCommandOptions& options) {
   Console console(options.common);
+  const Truth truth = read_truth(options);
+  if (options.writes_json_file()) try_json_file(options, truth);
   EvaluateOptions engine;
   engine.match = match_options(options.common, options.accept_probability);
   engine.progress = [&](std::size_t done, std::size_t total) {
     console.progress(static_cast<double>(done) / static_cast<double>(total));
   };
   engine.warn = [&](const std::string& warning) { console.warn(warning); };
-  return evaluate(read_truth(options), engine);
+  return evaluate(truth, engine);
 }
 
 int run_evaluate(const EvaluateCommandOptions& options) {
@@ -47,10 +68,10 @@ int run_evaluate(const EvaluateCommandOptions& options) {
     print(evaluation_json(evaluation));
     return kDone;
   }
-  // Before the file, so that a file that cannot be written does not cost the result.
+  // Before the file: should the disk be full by now, the result is not lost.
   if (options.common.verbose) print(case_table(evaluation) + "\n");
   print(summary_table(evaluation, options.accept_probability));
-  if (!options.json.empty()) write_file_atomically(options.json, evaluation_json(evaluation));
+  if (options.writes_json_file()) write_file_atomically(options.json, evaluation_json(evaluation));
   return kDone;
 }
 
@@ -70,7 +91,14 @@ void add_evaluate(CLI::App& app, Action& action) {
   add_accept_option(*command, options->accept_probability);
   add_common_options(*command, options->common);
   command->footer(
-      "At least one of the three tables is needed; maps are named relative to the table.\n\n"
+      "At least one of the three tables is needed; maps are named relative to the table. Tables are\n"
+      "tab-separated, and their first line names the columns:\n"
+      "  PAIRS        fixed moving x y theta tolerance, and optionally tier and overlap\n"
+      "  --negatives  fixed moving\n"
+      "  --sets       set map x y theta tolerance\n"
+      "x, y and theta take points of the moving map to the fixed one, of a set's map to the set's frame\n"
+      "(metres, radians); tolerance is the largest root mean square error that counts as correct "
+      "(metres).\n\n"
       "Example:\n  gridmerge evaluate pairs.tsv --negatives negatives.tsv --json result.json");
   command->callback([options, &action] {
     if (options->pairs.empty() && options->negatives.empty() && options->sets.empty()) {

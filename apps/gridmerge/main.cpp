@@ -40,7 +40,7 @@ std::string help_command(const CLI::App& app) {
 // CLI11 tells of a misspelt command only that there is none.
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   const auto words = app.remaining();
-  const bool misspelt = app.get_subcommands().empty() && !words.empty() && words.front().front() != '-';
+  const bool misspelt = app.get_subcommands().empty() && !words.empty() && !words.front().starts_with('-');
   return misspelt ? "there is no command '" + words.front() + "'" : error.what();
 }
 

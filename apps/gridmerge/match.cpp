@@ -56,8 +56,8 @@ std::string describe(const MatchResult& result, bool verbose) {
 
 MatchResult match_files(const MatchCommandOptions& options) {
   Console console(options.common);
-  const OccupancyGrid fixed = load(options.fixed, options.resolution, console);
-  const OccupancyGrid moving = load(options.moving, options.resolution, console);
+  const OccupancyGrid fixed = load(options.fixed, options.resolution, console).grid;
+  const OccupancyGrid moving = load(options.moving, options.resolution, console).grid;
   MatchOptions engine = match_options(options.common, options.accept_probability);
   engine.progress = [&](double share) { console.progress(share); };
   try {

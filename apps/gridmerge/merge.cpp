@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <iterator>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -26,6 +29,21 @@ struct MergeCommandOptions {
   double accept_probability = MatchOptions{}.accept_probability;
 };
 
+struct Inputs {
+  std::vector<OccupancyGrid> maps;
+  std::vector<std::filesystem::path> files;  // that they were read from
+};
+
+Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
+  Inputs inputs;
+  for (const std::string& path : options.maps) {
+    LoadedMap map = load(path, options.resolution, console);
+    inputs.maps.push_back(std::move(map.grid));
+    inputs.files.insert(inputs.files.end(), map.files.begin(), map.files.end());
+  }
+  return inputs;
+}
+
 MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeCommandOptions& options,
                        Console& console) {
   MergeOptions engine;
@@ -34,16 +52,19 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeComman
   engine.progress = [&](std::size_t done, std::size_t total) {
     console.progress(static_cast<double>(done) / static_cast<double>(total));
   };
-  return merge(maps, engine);
+  try {
+    return merge(maps, engine);
+  } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one
+    throw FileError(options.output, error.what());
+  }
 }
 
 std::string describe_joins(const std::vector<std::string>& names, const MergeResult& result) {
   std::string text;
   for (const Join& join : result.joins) {
     fmt::format_to(std::back_inserter(text), "{:<8} probability {:.4f}, {:.3f} s: {} and {}\n",
-                   join.match.verdict == Verdict::accepted ? "accepted" : "refused", join.match.probability,
-                   join.match.seconds, escape_controls(names[join.fixed]),
-                   escape_controls(names[join.moving]));
+                   name_of(join.match.verdict), join.match.probability, join.match.seconds,
+                   escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
   }
   return text;
 }
@@ -67,14 +88,13 @@ std::string describe(const std::vector<std::string>& names, const MergeResult& r
 
 int run_merge(const MergeCommandOptions& options) {
   Console console(options.common);
-  std::vector<OccupancyGrid> maps;
-  for (const std::string& path : options.maps) maps.push_back(load(path, options.resolution, console));
-  prepare_merge_output(options.output, options.maps);
-  const MergeResult result = merge_maps(maps, options, console);
+  const Inputs inputs = load_inputs(options, console);
+  prepare_merge_output(options.output, inputs.files);
+  const MergeResult result = merge_maps(inputs.maps, options, console);
   console.clear();
-  write_merge_output(options.output, options.maps, maps, result);
+  write_merge_output(options.output, inputs.files, options.maps, inputs.maps, result);
   if (options.common.verbose) print(describe_joins(options.maps, result));
-  if (!options.common.quiet) print(describe(options.maps, result));
+  print(describe(options.maps, result));
   console.remark("wrote " + options.output);
   return result.components.size() == 1 && result.left_out.empty() ? kDone : kRefused;
 }
@@ -95,7 +115,7 @@ void add_merge(CLI::App& app, Action& action) {
       ->add_option("--output-resolution", options->output_resolution,
                    "Metres a cell of the merged map; without it the finest of the maps'")
       ->type_name("METRES")
-      ->check(kMetres);
+      ->check(kMetresPerCell);
   add_accept_option(*command, options->accept_probability);
   add_resolution_option(*command, options->resolution);
   add_common_options(*command, options->common);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "options.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <optional>
 #include <string>
+
+#include "gridmerge/io/map_file.hpp"
 
 namespace gridmerge::cli {
 
@@ -25,15 +29,18 @@ const CLI::Validator kProbability(
 
 }  // namespace
 
-const CLI::Validator kMetres(
+const CLI::Validator kMetresPerCell(
     [](std::string& text) {
       const auto value = parse_finite(text);
-      return value && *value > 0.0 ? std::string() : "'" + text + "' is not a positive number of metres";
+      return value && *value >= kMinResolution && *value <= kMaxResolution
+                 ? std::string()
+                 : fmt::format("'{}' is not between {} and {} metres", text, kMinResolution, kMaxResolution);
     },
     "");
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
-  CLI::Option* quiet = command.add_flag("-q,--quiet", options.quiet, "Print results and errors only");
+  CLI::Option* quiet = command.add_flag("-q,--quiet", options.quiet,
+                                        "Print results and errors only: no warnings, no progress bar");
   command.add_flag("-v,--verbose", options.verbose, "Print more")->excludes(quiet);
   command
       .add_option("--threads", options.threads, "Worker threads; 0 = one a core. Results do not depend on it")
@@ -45,7 +52,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
 void add_resolution_option(CLI::App& command, double& resolution) {
   command.add_option("--resolution", resolution, "Metres a cell of maps that are images without a YAML")
       ->type_name("METRES")
-      ->check(kMetres);
+      ->check(kMetresPerCell);
 }
 
 void add_accept_option(CLI::App& command, double& probability) {

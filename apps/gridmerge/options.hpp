@@ -22,8 +22,8 @@ void add_resolution_option(CLI::App& command, double& resolution);
 /// --accept: from which probability on a pair is accepted.
 void add_accept_option(CLI::App& command, double& probability);
 
-/// A positive, finite number of metres.
-extern const CLI::Validator kMetres;
+/// A resolution that a map can have.
+extern const CLI::Validator kMetresPerCell;
 
 MatchOptions match_options(const CommonOptions& common, double accept_probability);
 

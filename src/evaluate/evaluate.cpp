@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/evaluate/evaluate.hpp"
 
+#include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "gridmerge/evaluate/count.hpp"
+#include "gridmerge/io/map_file.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "map_cache.hpp"
 
@@ -88,6 +91,24 @@ class Evaluator {
 };
 
 }  // namespace
+
+std::vector<std::filesystem::path> input_files(const Truth& truth) {
+  std::set<std::filesystem::path> maps;
+  const auto add_pair = [&](const auto& pair) {
+    maps.insert(pair.fixed.path);
+    maps.insert(pair.moving.path);
+  };
+  std::for_each(truth.pairs.begin(), truth.pairs.end(), add_pair);
+  std::for_each(truth.negatives.begin(), truth.negatives.end(), add_pair);
+  for (const TrueSet& set : truth.sets) {
+    for (const TrueMember& member : set.members) maps.insert(member.map.path);
+  }
+  std::set<std::filesystem::path> files;
+  for (const std::filesystem::path& map : maps) {
+    for (const std::filesystem::path& file : map_files(map)) files.insert(file);
+  }
+  return {files.begin(), files.end()};
+}
 
 Evaluation evaluate(const Truth& truth, const EvaluateOptions& options) {
   Evaluator evaluator(truth, options);

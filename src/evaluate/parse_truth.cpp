@@ -20,6 +20,9 @@ class TruthRows {
 
   TruthMap map(std::size_t row, std::string_view column) const {
     const std::string& name = table_.text(row, column);
+    // The system would read the name up to there, and open another file than the one that messages show.
+    if (name.find('\0') != std::string::npos)
+      table_.fail(row, std::string(column) + " holds a NUL character");
     return {name, directory_ / name};
   }
 

@@ -16,34 +16,30 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kRow = "{:<12} {:>6} {:>10} {:>10} {:>10} {:>10}\n";
-
-const char* verdict_name(Verdict verdict) {
-  return verdict == Verdict::accepted ? "accepted" : "refused";
-}
+constexpr const char* kPairRow = "{:<12} {:>6} {:>10} {:>10} {:>10} {:>10}\n";
 
 std::string pair_row(const std::string& name, const PairCounts& counts) {
-  return fmt::format(kRow, name, counts.total, counts.accepted_correct, counts.accepted_wrong, counts.refused,
-                     counts.best_correct);
+  return fmt::format(kPairRow, name, counts.total, counts.accepted_correct, counts.accepted_wrong,
+                     counts.refused, counts.best_correct);
 }
 
 std::string pair_rows(const std::vector<MatchOutcome>& matches) {
-  std::string text = fmt::format(kRow, "", "", "accepted", "accepted", "", "best");
-  text += fmt::format(kRow, "", "total", "correct", "wrong", "refused", "correct");
+  std::string text = fmt::format(kPairRow, "", "", "accepted", "accepted", "", "best");
+  text += fmt::format(kPairRow, "", "total", "correct", "wrong", "refused", "correct");
   text += pair_row("pairs", count_pairs(matches));
   for (const auto& [tier, counts] : count_tiers(matches)) text += pair_row("  " + tier, counts);
   const NegativeCounts negatives = count_negatives(matches);
-  text += fmt::format(kRow, "negatives", negatives.total, "", negatives.accepted,
+  text += fmt::format(kPairRow, "negatives", negatives.total, "", negatives.accepted,
                       negatives.total - negatives.accepted, "");
   return text;
 }
 
 std::string set_rows(const std::vector<SetOutcome>& sets) {
   const SetCounts counts = count_sets(sets);
-  constexpr const char* row = "{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10}\n";
-  std::string text = fmt::format(row, "", "", "", "", "maps", "maps", "maps");
-  text += fmt::format(row, "", "total", "complete", "maps", "correct", "wrong", "left out");
-  text += fmt::format(row, "sets", counts.total, counts.complete, counts.maps, counts.maps_correct,
+  constexpr const char* kRow = "{:<12} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10}\n";
+  std::string text = fmt::format(kRow, "", "", "", "", "maps", "maps", "maps");
+  text += fmt::format(kRow, "", "total", "complete", "maps", "correct", "wrong", "left out");
+  text += fmt::format(kRow, "sets", counts.total, counts.complete, counts.maps, counts.maps_correct,
                       counts.maps_wrong, counts.maps_left_out);
   return text;
 }
@@ -54,11 +50,11 @@ std::string threshold_rows(const std::vector<MatchOutcome>& matches, double acce
     thresholds.insert(std::lower_bound(thresholds.begin(), thresholds.end(), accept_probability),
                       accept_probability);
   }
-  constexpr const char* row = "{:<12} {:>6} {:>10} {:>10} {:>10}\n";
-  std::string text = fmt::format(row, "probability", "", "correct", "wrong", "negatives");
-  text += fmt::format(row, "at least", "", "accepted", "accepted", "accepted");
+  constexpr const char* kRow = "{:<12} {:>6} {:>10} {:>10} {:>10}\n";
+  std::string text = fmt::format(kRow, "probability", "", "correct", "wrong", "negatives");
+  text += fmt::format(kRow, "at least", "", "accepted", "accepted", "accepted");
   for (const ThresholdCounts& counts : sweep_thresholds(matches, thresholds)) {
-    text += fmt::format(row, counts.threshold, counts.threshold == accept_probability ? "used" : "",
+    text += fmt::format(kRow, counts.threshold, counts.threshold == accept_probability ? "used" : "",
                         counts.correct, counts.wrong, counts.negatives);
   }
   const double area = roc_area(matches);
@@ -74,7 +70,7 @@ Json or_null(const std::optional<T>& value) {
 Json case_json(const MatchOutcome& match) {
   return {{"fixed", match.fixed},
           {"moving", match.moving},
-          {"verdict", verdict_name(match.verdict)},
+          {"verdict", name_of(match.verdict)},
           {"probability", match.probability},
           {"error", or_null(match.error)},
           {"tolerance", or_null(match.tolerance)},
@@ -107,9 +103,8 @@ std::string case_table(const Evaluation& evaluation) {
                               : match.correct() ? "correct"
                               : match.error     ? fmt::format("off by {:.2f} m", *match.error)
                                                 : "no hypothesis";
-    fmt::format_to(std::back_inserter(text), "{:<8} {:.4f}  {:<18} {:.3f} s  {} {}\n",
-                   verdict_name(match.verdict), match.probability, truth, match.seconds, match.fixed,
-                   match.moving);
+    fmt::format_to(std::back_inserter(text), "{:<8} {:.4f}  {:<18} {:.3f} s  {} {}\n", name_of(match.verdict),
+                   match.probability, truth, match.seconds, match.fixed, match.moving);
   }
   for (const SetOutcome& set : evaluation.sets) {
     fmt::format_to(std::back_inserter(text), "set {}: {} maps, {} correct, {} wrong, {} left out\n", set.name,

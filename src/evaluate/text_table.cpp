@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <system_error>
+#include <utility>
 
 #include "gridmerge/io/file_error.hpp"
 
@@ -28,10 +29,10 @@ bool contains(const std::vector<std::string_view>& names, std::string_view name)
 
 }  // namespace
 
-TextTable::TextTable(const std::filesystem::path& path, std::string_view text,
+TextTable::TextTable(std::filesystem::path path, std::string_view text,
                      const std::vector<std::string_view>& required,
                      const std::vector<std::string_view>& optional)
-    : path_(path) {
+    : path_(std::move(path)) {
   std::size_t number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());

@@ -15,8 +15,7 @@ class TextTable {
  public:
   /// Checks the shape of the file's text: every required column once, no column that is neither required nor
   /// optional, and as many fields in every line as there are columns.
-  TextTable(const std::filesystem::path& path, std::string_view text,
-            const std::vector<std::string_view>& required,
+  TextTable(std::filesystem::path path, std::string_view text, const std::vector<std::string_view>& required,
             const std::vector<std::string_view>& optional = {});
 
   std::size_t rows() const { return rows_.size(); }

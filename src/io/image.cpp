@@ -21,7 +21,7 @@ bool looks_like_png(std::string_view bytes) {
 // `Depth` is the number of bytes of a channel, `Colors` the number of colour channels before an alpha
 // channel.
 template <int Depth, int Colors>
-void convert_pixels(const PngImage& png, Image& image) {
+void convert_pixels(const PngImage& png, MapImage& image) {
   const auto sample = [&](std::size_t index) -> std::uint32_t {
     if constexpr (Depth == 1) return png.samples[index];
     return static_cast<std::uint32_t>(png.samples[2 * index] << 8 | png.samples[2 * index + 1]);
@@ -41,8 +41,8 @@ void convert_pixels(const PngImage& png, Image& image) {
   }
 }
 
-Image convert_png(const PngImage& png) {
-  Image image;
+MapImage convert_png(const PngImage& png) {
+  MapImage image;
   image.width = png.width;
   image.height = png.height;
   const std::size_t size = static_cast<std::size_t>(png.width) * static_cast<std::size_t>(png.height);
@@ -65,7 +65,7 @@ bool looks_like_image(std::string_view bytes) {
   return looks_like_png(bytes) || looks_like_pgm(bytes);
 }
 
-Image decode_image(std::string_view bytes, std::size_t max_pixels) {
+MapImage decode_image(std::string_view bytes, std::size_t max_pixels) {
   if (bytes.empty()) throw ParseError("the file is empty");
   if (looks_like_png(bytes)) return convert_png(decode_png(bytes, max_pixels));
   if (looks_like_pgm(bytes)) return decode_pgm(bytes, max_pixels);

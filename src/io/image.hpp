@@ -10,7 +10,7 @@ namespace gridmerge {
 
 /// What a map needs of a picture, top row first. A pixel's lightness is `lightness / white`, exactly:
 /// integers, so that every value can be looked up and thresholds are never missed by a rounding.
-struct Image {
+struct MapImage {
   int width = 0;
   int height = 0;
   std::uint16_t white = 255;             ///< 1..65535
@@ -23,7 +23,7 @@ struct Image {
 bool looks_like_image(std::string_view bytes);
 
 /// Reads a PGM or PNG. Throws ParseError. O(pixels).
-Image decode_image(std::string_view bytes, std::size_t max_pixels);
+MapImage decode_image(std::string_view bytes, std::size_t max_pixels);
 
 /// Throws ParseError unless width and height are positive and width * height <= max_pixels.
 void check_image_size(std::uint64_t width, std::uint64_t height, std::size_t max_pixels);

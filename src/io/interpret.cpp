@@ -73,8 +73,9 @@ const char* name(Cell cell) {
 }
 
 // Lightness 205 of 255 is how map_saver writes "unknown": p is 0.196, above a free_thresh of 0.196 by a hair,
-// and below the 0.25 that many a YAML has.
-void warn_of_unknown_gray(const MapYaml& yaml, const Image& image, const std::vector<Meaning>& meanings,
+// and below the 0.25 that many a YAML has. In scale mode map_saver writes whole percents, never 205, so there
+// too it comes from a map whose unknown cells it stands for.
+void warn_of_unknown_gray(const MapYaml& yaml, const MapImage& image, const std::vector<Meaning>& meanings,
                           std::vector<std::string>& warnings) {
   if (image.white * 205 % 255 != 0) return;
   const auto gray = static_cast<std::uint16_t>(image.white * 205 / 255);
@@ -92,7 +93,7 @@ void warn_of_unknown_gray(const MapYaml& yaml, const Image& image, const std::ve
                   count, name(cell), yaml.free_thresh, yaml.negate ? 1 : 0));
 }
 
-void warn_of_alpha(const MapYaml& yaml, const Image& image, const OccupancyGrid& grid,
+void warn_of_alpha(const MapYaml& yaml, const MapImage& image, const OccupancyGrid& grid,
                    std::vector<std::string>& warnings) {
   if (image.alpha.empty()) return;
   std::size_t count = 0;
@@ -125,7 +126,7 @@ void warn_of_missing_cells(const OccupancyGrid& grid, std::vector<std::string>& 
 
 }  // namespace
 
-LoadedMap interpret(const MapYaml& yaml, const Image& image) {
+LoadedMap interpret(const MapYaml& yaml, const MapImage& image) {
   const std::vector<Meaning> meanings = opaque_meanings(image.white, yaml);
   const bool alpha_counts = !image.alpha.empty() && yaml.mode != MapMode::raw;
   const bool keep_probability = yaml.mode != MapMode::trinary;
@@ -145,10 +146,8 @@ LoadedMap interpret(const MapYaml& yaml, const Image& image) {
     }
   }
 
-  if (yaml.mode == MapMode::trinary) {
-    warn_of_unknown_gray(yaml, image, meanings, map.warnings);
-    warn_of_alpha(yaml, image, map.grid, map.warnings);
-  }
+  if (yaml.mode != MapMode::raw) warn_of_unknown_gray(yaml, image, meanings, map.warnings);
+  if (yaml.mode == MapMode::trinary) warn_of_alpha(yaml, image, map.grid, map.warnings);
   if (yaml.mode == MapMode::raw && yaml.negate) {
     map.warnings.emplace_back("negate has no effect in raw mode");
   }

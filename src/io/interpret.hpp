@@ -9,6 +9,6 @@ namespace gridmerge {
 
 /// The map that a picture is under the YAML's rules, which load_map documents, and what is odd about it.
 /// O(pixels).
-LoadedMap interpret(const MapYaml& yaml, const Image& image);
+LoadedMap interpret(const MapYaml& yaml, const MapImage& image);
 
 }  // namespace gridmerge

@@ -41,7 +41,7 @@ auto blaming(const std::filesystem::path& path, const Parse& parse) {
   }
 }
 
-Image read_image(FileReader& file, const LoadOptions& options) {
+MapImage read_image(FileReader& file, const LoadOptions& options) {
   // What is no image, a device without end for one, is not worth reading further.
   const std::string& head = file.read_up_to(kMagicBytes);
   return decode_image(looks_like_image(head) ? file.read_all(max_image_bytes(options)) : head,
@@ -56,16 +56,32 @@ LoadedMap load_bare_image(const std::filesystem::path& path, FileReader& file, c
     MapYaml yaml;
     yaml.resolution = options.resolution;
     check_resolution(yaml.resolution);
-    return interpret(yaml, read_image(file, options));
+    LoadedMap map = interpret(yaml, read_image(file, options));
+    map.files = {path};
+    return map;
   });
+}
+
+MapYaml read_yaml(const std::filesystem::path& path, FileReader& file) {
+  return blaming(path, [&] {
+    const std::string& text = file.read_all(kMaxYamlBytes);
+    if (text.empty()) throw ParseError("the file is empty");
+    return parse_map_yaml(text);
+  });
+}
+
+std::filesystem::path image_of(const MapYaml& yaml, const std::filesystem::path& yaml_path) {
+  return yaml_path.parent_path() / yaml.image;
 }
 
 LoadedMap load_image_of(const MapYaml& yaml, const std::filesystem::path& yaml_path,
                         const LoadOptions& options) {
-  const std::filesystem::path path = yaml_path.parent_path() / yaml.image;
+  const std::filesystem::path path = image_of(yaml, yaml_path);
   try {
     FileReader file(path);
-    return blaming(path, [&] { return interpret(yaml, read_image(file, options)); });
+    LoadedMap map = blaming(path, [&] { return interpret(yaml, read_image(file, options)); });
+    map.files = {yaml_path, path};
+    return map;
   } catch (const FileError& error) {
     throw FileError(fmt::format("{} (the image of {})", error.what(), yaml_path.string()));
   }
@@ -89,12 +105,13 @@ std::vector<std::uint8_t> to_pixels(const OccupancyGrid& grid) {
 LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options) {
   FileReader file(path);
   if (looks_like_image(file.read_up_to(kMagicBytes))) return load_bare_image(path, file, options);
-  const MapYaml yaml = blaming(path, [&] {
-    const std::string& text = file.read_all(kMaxYamlBytes);
-    if (text.empty()) throw ParseError("the file is empty");
-    return parse_map_yaml(text);
-  });
-  return load_image_of(yaml, path, options);
+  return load_image_of(read_yaml(path, file), path, options);
+}
+
+std::vector<std::filesystem::path> map_files(const std::filesystem::path& path) {
+  FileReader file(path);
+  if (looks_like_image(file.read_up_to(kMagicBytes))) return {path};
+  return {path, image_of(read_yaml(path, file), path)};
 }
 
 void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path) {

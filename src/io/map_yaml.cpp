@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "gridmerge/io/map_file.hpp"
 #include "number.hpp"
 #include "parse_error.hpp"
 
@@ -18,13 +19,11 @@ namespace {
 
 // Far beyond any map, and still far from where a double stops resolving micrometres.
 constexpr double kMaxOrigin = 1e9;
-constexpr double kMinResolution = 1e-6;
-constexpr double kMaxResolution = 1e3;
 
 constexpr std::array<const char*, 3> kModeNames{"trinary", "scale", "raw"};
 
 // A value as errors show it: the whole of it may be a megabyte.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t kShown = 60;
   return text.size() <= kShown ? fmt::format("'{}'", text) : fmt::format("'{}...'", text.substr(0, kShown));
 }
@@ -60,7 +59,7 @@ YAML::Node required(const YAML::Node& map, const char* key) {
 double to_number(const YAML::Node& node, const char* key) {
   const std::string& text = scalar(node, key);
   const auto number = parse_number(text);
-  if (!number) throw ParseError(fmt::format("'{}' is {}, not a finite number", key, quoted(text)));
+  if (!number) throw ParseError(fmt::format("'{}' is {}, not a finite number", key, in_quotes(text)));
   return *number;
 }
 
@@ -98,7 +97,7 @@ bool read_negate(const YAML::Node& map) {
   const auto is_word = [&](const char* candidate) { return word == candidate; };
   if (std::ranges::any_of(std::array{"1", "true", "yes", "on", "y"}, is_word)) return true;
   if (std::ranges::any_of(std::array{"0", "false", "no", "off", "n"}, is_word)) return false;
-  throw ParseError(fmt::format("'negate' is {}, not 0, 1, true or false", quoted(text)));
+  throw ParseError(fmt::format("'negate' is {}, not 0, 1, true or false", in_quotes(text)));
 }
 
 MapMode read_mode(const YAML::Node& map) {
@@ -107,7 +106,7 @@ MapMode read_mode(const YAML::Node& map) {
   const std::string& text = scalar(node, "mode");
   const auto found = std::ranges::find(kModeNames, to_lower(text));
   if (found == kModeNames.end())
-    throw ParseError(fmt::format("'mode' is {}, not trinary, scale or raw", quoted(text)));
+    throw ParseError(fmt::format("'mode' is {}, not trinary, scale or raw", in_quotes(text)));
   return static_cast<MapMode>(found - kModeNames.begin());
 }
 

@@ -29,7 +29,7 @@ MapYaml parse_map_yaml(std::string_view text);
 /// written in YAML (it is not UTF-8).
 std::string format_map_yaml(const MapYaml& map);
 
-/// Throws ParseError unless a map of `resolution` [m/cell] is believable: within [1e-6, 1e3].
+/// Throws ParseError unless a map of `resolution` [m/cell] is within [kMinResolution, kMaxResolution].
 void check_resolution(double resolution);
 
 }  // namespace gridmerge

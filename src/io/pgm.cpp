@@ -77,7 +77,7 @@ class Scanner {
   throw ParseError(fmt::format("a pixel's value {} exceeds the header's maximum {}", value, maximum));
 }
 
-void read_plain(Scanner& scanner, Image& image, std::size_t size) {
+void read_plain(Scanner& scanner, MapImage& image, std::size_t size) {
   // A value takes a digit and a space at least: a small file cannot make us take memory for a large image.
   if (scanner.remaining() / 2 + 1 < size) throw ParseError("the image data end early");
   image.lightness.reserve(size);
@@ -88,7 +88,7 @@ void read_plain(Scanner& scanner, Image& image, std::size_t size) {
   }
 }
 
-void read_raw(Scanner& scanner, Image& image, std::size_t size) {
+void read_raw(Scanner& scanner, MapImage& image, std::size_t size) {
   const bool wide = image.white > 255;
   const std::string_view raster = scanner.raster(wide ? 2 * size : size);
   const auto byte = [&](std::size_t index) { return static_cast<std::uint8_t>(raster[index]); };
@@ -107,7 +107,7 @@ bool looks_like_pgm(std::string_view bytes) {
          (is_space(bytes[2]) || bytes[2] == '#');
 }
 
-Image decode_pgm(std::string_view bytes, std::size_t max_pixels) {
+MapImage decode_pgm(std::string_view bytes, std::size_t max_pixels) {
   if (!looks_like_pgm(bytes)) throw ParseError("not a PGM image (P2 or P5)");
   Scanner scanner(bytes.substr(2));
   const std::uint32_t width = scanner.number("width");
@@ -118,7 +118,7 @@ Image decode_pgm(std::string_view bytes, std::size_t max_pixels) {
     throw ParseError(fmt::format("its maximum value {} is not in 1..65535", maximum));
   }
 
-  Image image;
+  MapImage image;
   image.width = static_cast<int>(width);
   image.height = static_cast<int>(height);
   image.white = static_cast<std::uint16_t>(maximum);

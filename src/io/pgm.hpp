@@ -17,7 +17,7 @@ bool looks_like_pgm(std::string_view bytes);
 /// Reads a PGM, plain or raw, of any maximum from 1 to 65535, with comments. Bytes after the last pixel are
 /// ignored (the format allows further images there). Throws ParseError when the header is malformed, the
 /// image has more than `max_pixels` pixels, data is missing, or a value exceeds the maximum. O(bytes).
-Image decode_pgm(std::string_view bytes, std::size_t max_pixels);
+MapImage decode_pgm(std::string_view bytes, std::size_t max_pixels);
 
 /// The bytes of a raw 8-bit PGM of `width` x `height` values, top row first.
 std::string encode_pgm(int width, int height, std::span<const std::uint8_t> values);

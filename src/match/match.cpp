@@ -183,6 +183,10 @@ MatchResult match_in_arena(const OccupancyGrid& fixed, const OccupancyGrid& movi
 
 }  // namespace
 
+const char* name_of(Verdict verdict) {
+  return verdict == Verdict::accepted ? "accepted" : "refused";
+}
+
 MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options) {
   validate(fixed);
   validate(moving);

@@ -93,12 +93,12 @@ std::int16_t to_log_odds(double probability) {
 // What a map says of one of its cells: the cell gives the sign and the probability, where there is one, the
 // strength.
 std::int16_t cell_log_odds(const OccupancyGrid& map, std::size_t index) {
-  static const std::int16_t kOccupied = to_log_odds(0.85);
-  static const std::int16_t kFree = to_log_odds(0.35);
+  static const std::int16_t occupied = to_log_odds(0.85);
+  static const std::int16_t free = to_log_odds(0.35);
   const Cell cell = map.cells[index];
   if (cell == Cell::unknown) return 0;
   if (map.probability.empty() || std::isnan(map.probability[index]))
-    return cell == Cell::occupied ? kOccupied : kFree;
+    return cell == Cell::occupied ? occupied : free;
   const std::int16_t stated = to_log_odds(std::clamp<double>(map.probability[index], 0.12, 0.88));
   return cell == Cell::occupied ? std::max<std::int16_t>(stated, 1) : std::min<std::int16_t>(stated, -1);
 }

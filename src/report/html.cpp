@@ -10,7 +10,6 @@
 #include "base64.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/preview.hpp"
-#include "verdict.hpp"
 
 namespace gridmerge {
 

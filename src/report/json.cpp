@@ -5,8 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "verdict.hpp"
-
 namespace gridmerge {
 
 namespace {

@@ -106,7 +106,9 @@ Colour free_tint(Colour map) {
 }
 
 Canvas draw_panel(const MapPanel& panel, int text_scale) {
-  const double coarsening = std::max(1.0, std::ceil(panel.longest_side / panel.max_side));
+  // One cell less than there is room for: a coarser lattice need not begin where the maps do.
+  const int room = panel.max_side - 2 * kMargin - 1;
+  const double coarsening = std::max(1.0, std::ceil(panel.longest_side / room));
   const Lattice lattice = cover(panel.maps, panel.resolution * coarsening);
   const int zoom = std::clamp(panel.min_side / std::max(lattice.width, lattice.height), 1, kMaxZoom);
   const Canvas drawing = draw_maps(panel, lattice, zoom);

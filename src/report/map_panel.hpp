@@ -18,7 +18,7 @@ struct MapPanel {
   double longest_side = 0.0;    ///< of the maps together, in such cells; may be too large
   int min_width = 0;            ///< pixels of the whole panel, for its title
   int min_side = 0;             ///< pixels: drawings below are magnified
-  int max_side = 0;             ///< pixels: drawings above are made coarser
+  int max_side = 0;             ///< pixels: drawings above, margins included, are made coarser
 };
 
 /// The panel with its title above and a scale bar below.

@@ -26,6 +26,43 @@ constexpr const char* kPreview = "preview.png";
 constexpr const char* kReport = "report.html";
 constexpr const char* kTransforms = "transforms.json";
 
+// A directory that can be written to, made if need be with its parents. What was made is removed with this
+// object unless there is something in it by then, so that work that fails leaves no empty directory behind.
+class OutputDirectory {
+ public:
+  explicit OutputDirectory(const fs::path& directory) : missing_(missing_parts(directory)) {
+    std::error_code error;
+    fs::create_directories(directory, error);
+    if (error) {
+      remove_empty();
+      throw FileError(directory, "cannot be created: " + error.message());
+    }
+    if (::access(directory.c_str(), W_OK | X_OK) != 0) {
+      throw FileError(directory, "cannot be written to: " + std::generic_category().message(errno));
+    }
+  }
+  ~OutputDirectory() { remove_empty(); }
+  OutputDirectory(const OutputDirectory&) = delete;
+  OutputDirectory& operator=(const OutputDirectory&) = delete;
+
+ private:
+  // The innermost first.
+  static std::vector<fs::path> missing_parts(const fs::path& directory) {
+    std::vector<fs::path> missing;
+    std::error_code error;
+    for (fs::path part = directory; !part.empty() && !fs::exists(part, error); part = part.parent_path()) {
+      missing.push_back(part);
+    }
+    return missing;
+  }
+
+  void remove_empty() const {
+    for (const fs::path& part : missing_) ::rmdir(part.c_str());
+  }
+
+  std::vector<fs::path> missing_;
+};
+
 // merged.yaml, merged_<number>.yaml, and the same as .pgm.
 bool is_merged_map(const fs::path& file) {
   if (file.extension() != ".yaml" && file.extension() != ".pgm") return false;
@@ -67,38 +104,41 @@ void remove_stale_maps(const fs::path& directory, std::size_t components) {
   }
 }
 
-}  // namespace
-
-void prepare_merge_output(const fs::path& directory, const std::vector<std::string>& sources) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw FileError(directory, "cannot be created: " + error.message());
-  if (::access(directory.c_str(), W_OK | X_OK) != 0) {
-    throw FileError(directory, "cannot be written to: " + std::generic_category().message(errno));
-  }
+// No file that a map was read from may bear the name of an output, whichever way it was named itself.
+void protect(const std::vector<fs::path>& inputs, const fs::path& directory) {
   for (const fs::path& output : outputs_in(directory)) {
-    for (const std::string& source : sources) {
-      if (fs::equivalent(output, source, error)) {
-        throw FileError(source,
+    for (const fs::path& input : inputs) {
+      std::error_code absent;
+      if (fs::equivalent(output, input, absent)) {
+        throw FileError(input,
                         "is an input and would be replaced or removed: choose another output directory");
       }
     }
   }
 }
 
-void write_merge_output(const fs::path& directory, const std::vector<std::string>& sources,
-                        const std::vector<OccupancyGrid>& maps, const MergeResult& result) {
-  prepare_merge_output(directory, sources);
+}  // namespace
+
+void prepare_merge_output(const fs::path& directory, const std::vector<fs::path>& inputs) {
+  const OutputDirectory output(directory);
+  protect(inputs, directory);
+}
+
+void write_merge_output(const fs::path& directory, const std::vector<fs::path>& inputs,
+                        const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
+                        const MergeResult& result) {
+  const OutputDirectory output(directory);
+  protect(inputs, directory);
   std::vector<StagedFile> files;
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     for (StagedFile& file : stage_map(result.components[i].fused.grid, directory / component_file(i))) {
       files.push_back(std::move(file));
     }
   }
-  const std::string preview = preview_png(sources, maps, result);
+  const std::string preview = preview_png(names, maps, result);
   files.emplace_back(directory / kPreview, preview);
-  files.emplace_back(directory / kReport, report_html(sources, result, preview));
-  files.emplace_back(directory / kTransforms, transforms_json(sources, result));
+  files.emplace_back(directory / kReport, report_html(names, result, preview));
+  files.emplace_back(directory / kTransforms, transforms_json(names, result));
 
   for (StagedFile& file : files) file.commit();
   remove_stale_maps(directory, result.components.size());

@@ -17,9 +17,10 @@ namespace gridmerge {
 
 namespace {
 
-constexpr int kComponentMinSide = 1400, kComponentMaxSide = 2400;
+constexpr int kGap = 24;  // around and between the parts of the page [pixels]
+constexpr int kPageMinWidth = 1000, kPageMaxWidth = 2400;
+constexpr int kComponentMinSide = 1400, kComponentMaxSide = kPageMaxWidth - 2 * kGap;
 constexpr int kLeftOutMinSide = 280, kLeftOutMaxSide = 560;
-constexpr int kPageMinWidth = 1000;
 constexpr int kSmallText = 2, kLargeText = 3;
 constexpr std::size_t kMostLeftOutPanels = 12;
 
@@ -154,7 +155,6 @@ Colour map_colour(std::size_t map) {
 
 std::string preview_png(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
                         const MergeResult& result) {
-  constexpr int kGap = 24;
   const int text_scale = result.components.empty() ? kSmallText : kLargeText;
   std::vector<Canvas> blocks;
   int width = kPageMinWidth;

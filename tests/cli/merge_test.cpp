@@ -91,8 +91,15 @@ TEST_F(Merge, LeavesOutMapsWithNothingToGoBy) {
   const std::string dot = write_map(directory, "dot", make_grid(1, 1, 0.1, {}, Cell::occupied));
   const Outcome outcome = run({"merge", blank, left, dot, right, "-o", output, "--quiet"});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
-  EXPECT_EQ(outcome.out + outcome.err, "");
+  EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(Json::parse(read_file(output + "/transforms.json")).at("left_out"), Json::array({blank, dot}));
+}
+
+TEST_F(Merge, QuietStillPrintsTheResult) {
+  const std::vector<std::string> arguments = {"merge", left, right, "-o", output};
+  std::vector<std::string> quiet = arguments;
+  quiet.push_back("--quiet");
+  EXPECT_EQ(run(quiet).out, run(arguments).out);
 }
 
 TEST_F(Merge, TheNumberOfThreadsChangesNoByte) {
@@ -110,8 +117,23 @@ TEST_F(Merge, OutputResolutionIsThatOfTheMergedMap) {
   EXPECT_EQ(info.at("maps").at(0).at("resolution"), 0.2);
 
   const std::string too_fine = directory.file("fine");
-  expect_error(run({"merge", left, right, "-o", too_fine, "--output-resolution", "1e-6"}), "", "cells");
-  EXPECT_EQ(files_in(too_fine), std::set<std::string>{});
+  expect_error(run({"merge", left, right, "-o", too_fine, "--output-resolution", "1e-6"}), too_fine, "cells");
+  EXPECT_FALSE(std::filesystem::exists(too_fine));
+}
+
+TEST_F(Merge, AnImageOfAnInputIsNeverReplacedOrRemoved) {
+  for (const std::string name : {"merged.pgm", "merged_2.pgm"}) {
+    directory.write("w/floor.yaml",
+                    "image: " + name +
+                        "\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\n"
+                        "free_thresh: 0.196\n");
+    const std::string before = read_file(directory.file("left.pgm"));
+    const std::string image = directory.write("w/" + name, before);
+    expect_error(run({"merge", directory.file("w/floor.yaml"), right, "-o", directory.file("w")}), image,
+                 "is an input");
+    EXPECT_EQ(read_file(image), before);
+    std::filesystem::remove(image);
+  }
 }
 
 TEST_F(Merge, ReplacesAnEarlierResult) {
@@ -134,9 +156,7 @@ TEST_F(Merge, AFullDiskLeavesNothingHalfWritten) {
     RunOptions options;
     options.file_size_limit = limit;
     expect_error(run({"merge", left, right, "-o", output}, options), output, "File too large");
-    if (std::filesystem::exists(output)) {
-      EXPECT_EQ(files_in(output), std::set<std::string>{}) << limit;
-    }
+    EXPECT_FALSE(std::filesystem::exists(output)) << limit;
   }
   // What an earlier run wrote stays whole.
   ASSERT_EQ(run({"merge", left, right, "-o", output}).exit_code, 0);

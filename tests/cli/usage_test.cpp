@@ -24,27 +24,32 @@ TEST_P(WrongUsage, IsOneLineAndExitCodeTwo) {
 using Words = std::vector<std::string>;
 INSTANTIATE_TEST_SUITE_P(
     Cli, WrongUsage,
-    testing::Values(
-        Words{}, Words{"frobnicate"}, Words{"--frobnicate"}, Words{"info"},
-        Words{"info", "a.yaml", "--frobnicate"}, Words{"match"}, Words{"match", "a.yaml"},
-        Words{"match", "a.yaml", "b.yaml", "c.yaml"}, Words{"match", "a.yaml", "b.yaml", "--threads", "-1"},
-        Words{"match", "a.yaml", "b.yaml", "--threads", "two"},
-        Words{"match", "a.yaml", "b.yaml", "--threads", "1.5"},
-        Words{"match", "a.yaml", "b.yaml", "--threads", "99999999999999999999"},
-        Words{"match", "a.yaml", "b.yaml", "--resolution", "0"},
-        Words{"match", "a.yaml", "b.yaml", "--resolution", "-1"},
-        Words{"match", "a.yaml", "b.yaml", "--resolution", "nan"},
-        Words{"match", "a.yaml", "b.yaml", "--resolution", "inf"},
-        Words{"match", "a.yaml", "b.yaml", "--resolution", "5cm"},
-        Words{"match", "a.yaml", "b.yaml", "--accept", "1.1"},
-        Words{"match", "a.yaml", "b.yaml", "--accept", "nan"},
-        Words{"match", "a.yaml", "b.yaml", "--quiet", "--verbose"}, Words{"merge", "a.yaml", "b.yaml"},
-        Words{"merge", "a.yaml", "-o", "out"}, Words{"merge", "-o", "out"},
-        Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "0"}, Words{"evaluate"},
-        Words{"evaluate", "--json", "result.json"}, Words{"evaluate", "a.tsv", "b.tsv"}));
+    testing::Values(Words{}, Words{""}, Words{"frobnicate"}, Words{"--frobnicate"}, Words{"info"},
+                    Words{"info", "a.yaml", "--frobnicate"}, Words{"match"}, Words{"match", "a.yaml"},
+                    Words{"match", "a.yaml", "b.yaml", "c.yaml"},
+                    Words{"match", "a.yaml", "b.yaml", "--threads", "-1"},
+                    Words{"match", "a.yaml", "b.yaml", "--threads", "two"},
+                    Words{"match", "a.yaml", "b.yaml", "--threads", "1.5"},
+                    Words{"match", "a.yaml", "b.yaml", "--threads", "99999999999999999999"},
+                    Words{"match", "a.yaml", "b.yaml", "--resolution", "0"},
+                    Words{"match", "a.yaml", "b.yaml", "--resolution", "-1"},
+                    Words{"match", "a.yaml", "b.yaml", "--resolution", "nan"},
+                    Words{"match", "a.yaml", "b.yaml", "--resolution", "inf"},
+                    Words{"match", "a.yaml", "b.yaml", "--resolution", "5cm"},
+                    Words{"match", "a.yaml", "b.yaml", "--accept", "1.1"},
+                    Words{"match", "a.yaml", "b.yaml", "--accept", "nan"},
+                    Words{"match", "a.yaml", "b.yaml", "--quiet", "--verbose"},
+                    Words{"merge", "a.yaml", "b.yaml"}, Words{"merge", "a.yaml", "-o", "out"},
+                    Words{"merge", "-o", "out"}, Words{"match", "a.yaml", "b.yaml", "--resolution", "1e-7"},
+                    Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "0"},
+                    Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "1e-7"},
+                    Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "1e5"},
+                    Words{"evaluate"}, Words{"evaluate", "--json", "result.json"},
+                    Words{"evaluate", "a.tsv", "b.tsv"}));
 
 TEST(Usage, AMisspeltCommandIsNamed) {
   EXPECT_NE(run({"mtach", "a.yaml", "b.yaml"}).err.find("'mtach'"), std::string::npos);
+  EXPECT_NE(run({""}).err.find("there is no command ''"), std::string::npos);
 }
 
 TEST(Usage, HelpOfTheProgramNamesEveryCommand) {
@@ -64,6 +69,14 @@ TEST(Usage, HelpOfACommandHasItsOptionsAndAnExample) {
       EXPECT_NE(outcome.out.find(text + (text.back() == ' ' ? command : "")), std::string::npos)
           << command << text;
     }
+  }
+}
+
+TEST(Usage, HelpOfEvaluateNamesTheColumnsOfItsTables) {
+  const std::string help = run({"evaluate", "--help"}).out;
+  for (const char* columns : {"fixed moving x y theta tolerance, and optionally tier and overlap",
+                              "fixed moving\n", "set map x y theta tolerance\n"}) {
+    EXPECT_NE(help.find(columns), std::string::npos) << columns;
   }
 }
 

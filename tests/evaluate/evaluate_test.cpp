@@ -73,6 +73,22 @@ TEST_F(Evaluate, NamesAMapThatCannotBeRead) {
   }
 }
 
+TEST_F(Evaluate, ItsInputsAreEveryMapAndItsImageOnce) {
+  Truth truth;
+  truth.pairs = {{map("left"), map("right"), T_left_right_, 0.2, "A"}};
+  truth.negatives = {{map("left"), map("other")}};
+  truth.sets = {{"s", {{map("left"), {}, 0.2}, {map("third"), {}, 0.2}}}};
+  write_map(directory_, "third", make_grid(2, 2, 0.1, {}, Cell::free));
+  std::vector<std::filesystem::path> expected;
+  for (const char* name : {"left", "other", "right", "third"}) {
+    expected.push_back(directory_.file(name + std::string(".pgm")));
+    expected.push_back(directory_.file(name + std::string(".yaml")));
+  }
+  EXPECT_EQ(input_files(truth), expected);
+  truth.negatives[0].moving = map("missing");
+  EXPECT_THROW(input_files(truth), FileError);
+}
+
 TEST_F(Evaluate, WarnsOnceOfAMap) {
   // 205 is what unknown looks like, but loads as free under this threshold.
   directory_.write("odd.pgm", std::string("P5\n2 1\n255\n\x00\xcd", 13));

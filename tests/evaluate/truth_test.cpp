@@ -140,6 +140,15 @@ TEST_F(TruthFiles, ARefusedFieldIsNamedWithItsLine) {
   EXPECT_EQ(pair("a\tb\t0\t0\t0\t1\tA\t1.5"), "truth.tsv:2: overlap must be between 0 and 1");
 }
 
+TEST_F(TruthFiles, ANameWithANulIsRefused) {
+  using namespace std::string_literals;
+  EXPECT_EQ(complaint(negatives_, "fixed\tmoving\na.yaml\tb.yaml\0.old\n"s),
+            "truth.tsv:2: moving holds a NUL character");
+  EXPECT_EQ(complaint(pairs_, kPairs + "a\0\tb\t0\t0\t0\t1\tA\t0\n"s),
+            "truth.tsv:2: fixed holds a NUL character");
+  EXPECT_EQ(complaint(sets_, kSets + "s\t\0a\t0\t0\t0\t1\n"s), "truth.tsv:2: map holds a NUL character");
+}
+
 TEST_F(TruthFiles, ASetOfOneMapIsRefused) {
   EXPECT_EQ(
       complaint(sets_, std::string(kSets) + "s\ta\t0\t0\t0\t1\ns\tb\t0\t0\t0\t1\nlone\tc\t0\t0\t0\t1\n"),

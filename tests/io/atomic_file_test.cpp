@@ -115,6 +115,15 @@ TEST(AtomicFile, ReplacesWhatALinkLeadsTo) {
   EXPECT_EQ(read_file(directory.file("elsewhere/a")), "new");
 }
 
+TEST(AtomicFile, ReplacesALinkThatLeadsToNothing) {
+  const TemporaryDirectory directory;
+  std::filesystem::create_symlink("elsewhere", directory.file("link"));
+  write_file_atomically(directory.file("link"), "new");
+  EXPECT_FALSE(std::filesystem::is_symlink(directory.file("link")));
+  EXPECT_EQ(read_file(directory.file("link")), "new");
+  EXPECT_EQ(directory.names(), Names{"link"});
+}
+
 TEST(AtomicFile, RefusesWhatIsNoRegularFile) {
   const TemporaryDirectory directory;
   ASSERT_EQ(mkfifo(directory.file("pipe").c_str(), 0600), 0);

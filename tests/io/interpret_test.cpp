@@ -26,7 +26,7 @@ MapYaml yaml_of(MapMode mode = MapMode::trinary) {
 }
 
 // One row of pixels.
-Image row_of(std::vector<std::uint16_t> lightness, std::vector<std::uint8_t> alpha = {}) {
+MapImage row_of(std::vector<std::uint16_t> lightness, std::vector<std::uint8_t> alpha = {}) {
   const int width = static_cast<int>(lightness.size());
   return {.width = width,
           .height = 1,
@@ -45,7 +45,7 @@ TEST(Interpret, TakesResolutionAndOriginFromTheYaml) {
 }
 
 TEST(Interpret, PutsTheLastRowOfThePictureAtTheBottom) {
-  const Image image{
+  const MapImage image{
       .width = 2, .height = 3, .white = 255, .lightness = {0, 0, 205, 205, 254, 0}, .alpha = {}};
   EXPECT_EQ(interpret(yaml_of(), image).grid.cells,
             (Cells{kFree, kOccupied, kUnknown, kUnknown, kOccupied, kOccupied}));
@@ -58,7 +58,7 @@ TEST(Trinary, ComparesStrictlyWithTheThresholds) {
   yaml.occupied_thresh = 0.75;
   yaml.free_thresh = 0.25;
   // Of 100: occupancies 0.76, 0.75, 0.74 and 0.26, 0.25, 0.24 (0.75 and 0.25 are exact).
-  const Image image{
+  const MapImage image{
       .width = 6, .height = 1, .white = 100, .lightness = {24, 25, 26, 74, 75, 76}, .alpha = {}};
   EXPECT_EQ(interpret(yaml, image).grid.cells,
             (Cells{kOccupied, kUnknown, kUnknown, kUnknown, kUnknown, kFree}));
@@ -106,11 +106,12 @@ TEST(Trinary, WarnsOfUnknownThatLoadsAsOccupied) {
 TEST(Trinary, FindsUnknownGrayOnOtherScalesToo) {
   MapYaml yaml = yaml_of();
   yaml.free_thresh = 0.25;
-  const Image deep{.width = 3, .height = 1, .white = 65535, .lightness = {0, 205 * 257, 65535}, .alpha = {}};
+  const MapImage deep{
+      .width = 3, .height = 1, .white = 65535, .lightness = {0, 205 * 257, 65535}, .alpha = {}};
   EXPECT_EQ(interpret(yaml, deep).warnings.size(), 1u);
-  const Image color{.width = 3, .height = 1, .white = 765, .lightness = {0, 615, 765}, .alpha = {}};
+  const MapImage color{.width = 3, .height = 1, .white = 765, .lightness = {0, 615, 765}, .alpha = {}};
   EXPECT_EQ(interpret(yaml, color).warnings.size(), 1u);
-  const Image percent{.width = 3, .height = 1, .white = 100, .lightness = {0, 80, 100}, .alpha = {}};
+  const MapImage percent{.width = 3, .height = 1, .white = 100, .lightness = {0, 80, 100}, .alpha = {}};
   EXPECT_EQ(interpret(yaml, percent).warnings.size(), 0u);
 }
 
@@ -125,7 +126,7 @@ TEST(Trinary, WarnsWhereNav2WouldAverageAlpha) {
   EXPECT_EQ(map.grid.cells, (Cells{kOccupied, kFree, kUnknown, kUnknown, kUnknown}));
   ASSERT_EQ(map.warnings.size(), 1u);
   EXPECT_TRUE(contains(map.warnings[0], "2 pixels load otherwise in nav2"));
-  const Image two_rows{.width = 1, .height = 2, .white = 255, .lightness = {0, 254}, .alpha = {255, 255}};
+  const MapImage two_rows{.width = 1, .height = 2, .white = 255, .lightness = {0, 254}, .alpha = {255, 255}};
   EXPECT_EQ(interpret(yaml_of(), two_rows).warnings, Warnings{});
 }
 
@@ -133,7 +134,8 @@ TEST(Scale, StretchesOccupancyBetweenTheThresholds) {
   MapYaml yaml = yaml_of(MapMode::scale);
   yaml.occupied_thresh = 0.75;
   yaml.free_thresh = 0.25;
-  const Image image{.width = 6, .height = 1, .white = 100, .lightness = {0, 24, 25, 50, 75, 76}, .alpha = {}};
+  const MapImage image{
+      .width = 6, .height = 1, .white = 100, .lightness = {0, 24, 25, 50, 75, 76}, .alpha = {}};
   const OccupancyGrid grid = interpret(yaml, image).grid;
   EXPECT_EQ(grid.cells, (Cells{kOccupied, kOccupied, kUnknown, kUnknown, kUnknown, kFree}));
   EXPECT_EQ(grid.probability, (std::vector<float>{1.0f, 1.0f, 1.0f, 0.5f, 0.0f, 0.0f}));
@@ -149,14 +151,18 @@ TEST(Scale, WhatIsNotOpaqueIsUnknown) {
 TEST(Scale, EqualThresholdsLeaveAHalf) {
   MapYaml yaml = yaml_of(MapMode::scale);
   yaml.occupied_thresh = yaml.free_thresh = 0.5;
-  const Image image{.width = 3, .height = 1, .white = 2, .lightness = {0, 1, 2}, .alpha = {}};
+  const MapImage image{.width = 3, .height = 1, .white = 2, .lightness = {0, 1, 2}, .alpha = {}};
   EXPECT_EQ(interpret(yaml, image).grid.probability, (std::vector<float>{1.0f, 0.5f, 0.0f}));
 }
 
-TEST(Scale, TakesLightness205ForAProbability) {
+TEST(Scale, WarnsOfUnknownThatLoadsAsFree) {
   MapYaml yaml = yaml_of(MapMode::scale);
+  EXPECT_EQ(interpret(yaml, row_of({0, 205, 254})).warnings, Warnings{});
   yaml.free_thresh = 0.25;
-  EXPECT_EQ(interpret(yaml, row_of({0, 205})).warnings, Warnings{});
+  const LoadedMap map = interpret(yaml, row_of({0, 205, 254}));
+  ASSERT_EQ(map.warnings.size(), 1u);
+  EXPECT_TRUE(contains(map.warnings[0], "1 pixels of lightness 205"));
+  EXPECT_TRUE(contains(map.warnings[0], "load as free with free_thresh 0.25"));
 }
 
 TEST(Raw, ValuesArePercents) {
@@ -193,7 +199,7 @@ TEST(Interpret, WarnsOfMissingCells) {
 
 RC_GTEST_PROP(Interpret, NegateIsTheSameAsAnInvertedPicture, ()) {
   MapYaml yaml = yaml_of(*rc::gen::element(MapMode::trinary, MapMode::scale));
-  Image image =
+  MapImage image =
       row_of(*rc::gen::container<std::vector<std::uint16_t>>(50, rc::gen::inRange<std::uint16_t>(0, 256)));
   const OccupancyGrid grid = interpret(yaml, image).grid;
   for (std::uint16_t& value : image.lightness) value = static_cast<std::uint16_t>(255 - value);

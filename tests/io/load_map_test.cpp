@@ -156,5 +156,23 @@ TEST(LoadMap, DoesNotDependOnTheLocale) {
   EXPECT_EQ(loaded.origin, grid.origin);
 }
 
+TEST(LoadMap, TellsWhichFilesItRead) {
+  const TemporaryDirectory directory;
+  const std::string image = directory.write("maps/images/a.pgm", kPgm);
+  const std::string yaml = directory.write("maps/a.yaml", yaml_with_image("images/a.pgm"));
+  EXPECT_EQ(load_map(yaml).files, (std::vector<std::filesystem::path>{yaml, image}));
+  EXPECT_EQ(map_files(yaml), load_map(yaml).files);
+  EXPECT_EQ(load_map(image, {.resolution = 0.1}).files, std::vector<std::filesystem::path>{image});
+  EXPECT_EQ(map_files(image), std::vector<std::filesystem::path>{image});
+}
+
+TEST(MapFiles, NeedNoImageButAYaml) {
+  const TemporaryDirectory directory;
+  const std::string yaml = directory.write("a.yaml", yaml_with_image("lost.pgm"));
+  EXPECT_EQ(map_files(yaml).at(1), directory.file("lost.pgm"));
+  EXPECT_THROW(map_files(directory.file("lost.yaml")), FileError);
+  EXPECT_THROW(map_files(directory.write("b.yaml", "no map")), FileError);
+}
+
 }  // namespace
 }  // namespace gridmerge

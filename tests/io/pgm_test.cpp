@@ -21,7 +21,7 @@ using Values = std::vector<std::uint16_t>;
 
 constexpr std::size_t kLimit = 1000;
 
-Image decode(const std::string& text) {
+MapImage decode(const std::string& text) {
   return decode_pgm(text, kLimit);
 }
 std::string error_of(const std::string& text) {
@@ -29,7 +29,7 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(Pgm, ReadsPlain) {
-  const Image image = decode("P2\n3 2\n9\n0 1 2\n7 8 9\n");
+  const MapImage image = decode("P2\n3 2\n9\n0 1 2\n7 8 9\n");
   EXPECT_EQ(image.width, 3);
   EXPECT_EQ(image.height, 2);
   EXPECT_EQ(image.white, 9);
@@ -38,13 +38,13 @@ TEST(Pgm, ReadsPlain) {
 }
 
 TEST(Pgm, ReadsRaw) {
-  const Image image = decode("P5 2 2 255\n" + bytes({0, 10, 205, 255}));
+  const MapImage image = decode("P5 2 2 255\n" + bytes({0, 10, 205, 255}));
   EXPECT_EQ(image.white, 255);
   EXPECT_EQ(image.lightness, (Values{0, 10, 205, 255}));  // 10 is a pixel, not a line's end
 }
 
 TEST(Pgm, ReadsRawOf16BitsBigEndian) {
-  const Image image = decode("P5 2 1 65535 " + bytes({0x12, 0x34, 0xff, 0xff}));
+  const MapImage image = decode("P5 2 1 65535 " + bytes({0x12, 0x34, 0xff, 0xff}));
   EXPECT_EQ(image.white, 65535);
   EXPECT_EQ(image.lightness, (Values{0x1234, 0xffff}));
 }
@@ -152,7 +152,7 @@ RC_GTEST_PROP(Pgm, ReadsWhatItWrites, ()) {
   const int width = *rc::gen::inRange(1, 20), height = *rc::gen::inRange(1, 20);
   const auto values = *rc::gen::container<std::vector<std::uint8_t>>(static_cast<std::size_t>(width * height),
                                                                      rc::gen::arbitrary<std::uint8_t>());
-  const Image image = decode_pgm(encode_pgm(width, height, values), values.size());
+  const MapImage image = decode_pgm(encode_pgm(width, height, values), values.size());
   RC_ASSERT(image.width == width);
   RC_ASSERT(image.height == height);
   RC_ASSERT(image.white == 255);

@@ -24,7 +24,7 @@ using Values = std::vector<std::uint16_t>;
 
 constexpr std::size_t kLimit = 1000;
 
-Image decode(const PngBuilder& builder) {
+MapImage decode(const PngBuilder& builder) {
   return decode_image(builder.build(), kLimit);
 }
 std::string error_of(const std::string& png) {
@@ -45,7 +45,7 @@ TEST(Png, ReadsGray) {
 }
 
 TEST(Png, GrayBecomesLightness) {
-  const Image image = decode(two_by_two());
+  const MapImage image = decode(two_by_two());
   EXPECT_EQ(image.white, 255);
   EXPECT_EQ(image.lightness, (Values{0, 100, 205, 255}));
   EXPECT_TRUE(image.alpha.empty());
@@ -61,41 +61,42 @@ TEST(Png, GrayOfFewBitsSpansBlackToWhite) {
 }
 
 TEST(Png, Gray16KeepsAllBits) {
-  const Image image = decode({.width = 2, .bit_depth = 16, .rows = bytes({0x12, 0x34, 0xff, 0xff})});
+  const MapImage image = decode({.width = 2, .bit_depth = 16, .rows = bytes({0x12, 0x34, 0xff, 0xff})});
   EXPECT_EQ(image.white, 65535);
   EXPECT_EQ(image.lightness, (Values{0x1234, 0xffff}));
 }
 
 TEST(Png, ColorsAreAveraged) {
-  const Image image = decode({.width = 2, .color = PngColor::rgb, .rows = bytes({255, 0, 0, 205, 205, 205})});
+  const MapImage image =
+      decode({.width = 2, .color = PngColor::rgb, .rows = bytes({255, 0, 0, 205, 205, 205})});
   EXPECT_EQ(image.white, 765);
   EXPECT_EQ(image.lightness, (Values{255, 615}));  // a third, and 205 of 255
 }
 
 TEST(Png, ColorsOf16BitsAreAveragedWithoutOverflow) {
-  const Image image = decode({.width = 2,
-                              .bit_depth = 16,
-                              .color = PngColor::rgb,
-                              .rows = bytes({255, 255, 255, 255, 255, 255, 0, 1, 0, 2, 0, 5})});
+  const MapImage image = decode({.width = 2,
+                                 .bit_depth = 16,
+                                 .color = PngColor::rgb,
+                                 .rows = bytes({255, 255, 255, 255, 255, 255, 0, 1, 0, 2, 0, 5})});
   EXPECT_EQ(image.white, 65535);
   EXPECT_EQ(image.lightness, (Values{65535, 3}));  // 8/3, rounded
 }
 
 TEST(Png, GrayAlphaAndRgbaKeepAlphaApart) {
-  const Image gray = decode({.width = 2, .color = PngColor::gray_alpha, .rows = bytes({10, 255, 20, 7})});
+  const MapImage gray = decode({.width = 2, .color = PngColor::gray_alpha, .rows = bytes({10, 255, 20, 7})});
   EXPECT_EQ(gray.lightness, (Values{10, 20}));
   EXPECT_EQ(gray.alpha, (Samples{255, 7}));
-  const Image color =
+  const MapImage color =
       decode({.width = 2, .color = PngColor::rgba, .rows = bytes({1, 2, 3, 255, 4, 5, 6, 0})});
   EXPECT_EQ(color.lightness, (Values{6, 15}));
   EXPECT_EQ(color.alpha, (Samples{255, 0}));
 }
 
 TEST(Png, Alpha16IsOpaqueOnlyWhenFull) {
-  const Image image = decode({.width = 2,
-                              .bit_depth = 16,
-                              .color = PngColor::gray_alpha,
-                              .rows = bytes({0, 9, 255, 255, 0, 9, 255, 254})});
+  const MapImage image = decode({.width = 2,
+                                 .bit_depth = 16,
+                                 .color = PngColor::gray_alpha,
+                                 .rows = bytes({0, 9, 255, 255, 0, 9, 255, 254})});
   EXPECT_EQ(image.lightness, (Values{9, 9}));
   EXPECT_EQ(image.alpha, (Samples{255, 254}));
 }
@@ -127,7 +128,7 @@ TEST(Png, GammaChangesNothing) {
 }
 
 TEST(Png, ReadsInterlaced) {
-  const Image image = decode_image(test::read_file(GRIDMERGE_TEST_DATA "/interlaced.png"), kLimit);
+  const MapImage image = decode_image(test::read_file(GRIDMERGE_TEST_DATA "/interlaced.png"), kLimit);
   ASSERT_EQ(image.width, 9);
   ASSERT_EQ(image.height, 7);
   for (int row = 0; row < 7; ++row) {

@@ -23,9 +23,11 @@ using test::message_of;
 using test::read_file;
 using test::TemporaryDirectory;
 using Names = std::vector<std::string>;
+using Paths = std::vector<std::filesystem::path>;
 
 const std::vector<OccupancyGrid> kMaps(4, map_from({"#..", ".##"}, 0.05));
-const Names kSources{"a.yaml", "b.yaml", "c.yaml", "d.yaml"};
+const Names kNames{"a.yaml", "b.yaml", "c.yaml", "d.yaml"};
+const Paths kInputs(kNames.begin(), kNames.end());
 
 MergeResult one_component() {
   return test::merged(kMaps, {{{0, {}}, {1, {0.05, 0.1, 0.0}}}});
@@ -37,7 +39,7 @@ MergeResult two_components() {
 TEST(MergeOutput, WritesOneComponent) {
   const TemporaryDirectory directory;
   const MergeResult result = one_component();
-  write_merge_output(directory.path(), kSources, kMaps, result);
+  write_merge_output(directory.path(), kInputs, kNames, kMaps, result);
   EXPECT_EQ(directory.names(),
             (Names{"merged.pgm", "merged.yaml", "preview.png", "report.html", "transforms.json"}));
   const OccupancyGrid merged = load_map(directory.file("merged.yaml")).grid;
@@ -52,13 +54,13 @@ TEST(MergeOutput, WritesOneComponent) {
 TEST(MergeOutput, WritesEveryComponent) {
   const TemporaryDirectory directory;
   const MergeResult result = two_components();
-  write_merge_output(directory.path(), kSources, kMaps, result);
+  write_merge_output(directory.path(), kInputs, kNames, kMaps, result);
   EXPECT_EQ(load_map(directory.file("merged_2.yaml")).grid.cells, result.components[1].fused.grid.cells);
 }
 
 TEST(MergeOutput, WithoutAComponentThereIsNoMergedMap) {
   const TemporaryDirectory directory;
-  write_merge_output(directory.path(), kSources, kMaps, test::merged(kMaps, {}));
+  write_merge_output(directory.path(), kInputs, kNames, kMaps, test::merged(kMaps, {}));
   EXPECT_EQ(directory.names(), (Names{"preview.png", "report.html", "transforms.json"}));
   const auto json = nlohmann::json::parse(read_file(directory.file("transforms.json")));
   EXPECT_TRUE(json["components"].empty());
@@ -67,7 +69,7 @@ TEST(MergeOutput, WithoutAComponentThereIsNoMergedMap) {
 
 TEST(MergeOutput, MakesTheDirectory) {
   const TemporaryDirectory directory;
-  write_merge_output(directory.path() / "new" / "newer", kSources, kMaps, one_component());
+  write_merge_output(directory.path() / "new" / "newer", kInputs, kNames, kMaps, one_component());
   EXPECT_TRUE(std::filesystem::exists(directory.path() / "new" / "newer" / "transforms.json"));
 }
 
@@ -78,13 +80,13 @@ TEST(MergeOutput, RemovesTheMapsOfAnEarlierRunAndNothingElse) {
   for (const std::string& name : others) directory.write(name, "mine");
   directory.write("merged_17.yaml", "of an earlier run");
   directory.write("merged_18.yaml/notes", "mine");
-  write_merge_output(directory.path(), kSources, kMaps, two_components());
-  write_merge_output(directory.path(), kSources, kMaps, one_component());
+  write_merge_output(directory.path(), kInputs, kNames, kMaps, two_components());
+  write_merge_output(directory.path(), kInputs, kNames, kMaps, one_component());
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged_2.yaml")));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged_2.pgm")));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged_17.yaml")));
   EXPECT_TRUE(std::filesystem::exists(directory.file("merged.yaml")));
-  write_merge_output(directory.path(), kSources, kMaps, test::merged(kMaps, {}));
+  write_merge_output(directory.path(), kInputs, kNames, kMaps, test::merged(kMaps, {}));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged.yaml")));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged.pgm")));
   EXPECT_EQ(read_file(directory.file("merged_18.yaml/notes")), "mine");
@@ -96,7 +98,7 @@ TEST(MergeOutput, NeverReplacesAnInput) {
   for (const std::string name : {"merged.yaml", "merged_3.yaml", "merged.pgm", "preview.png"}) {
     const std::string input = directory.write(name, "mine");
     const auto write = [&] {
-      write_merge_output(directory.path(), {input, "b", "c", "d"}, kMaps, one_component());
+      write_merge_output(directory.path(), {"a", "b", input}, kNames, kMaps, one_component());
     };
     EXPECT_TRUE(contains(message_of<FileError>(write), name + ": is an input"));
     EXPECT_EQ(directory.names(), Names{name});
@@ -113,6 +115,33 @@ TEST(MergeOutput, NeverReplacesAnInputByAnotherName) {
   EXPECT_THROW(prepare_merge_output(directory.path(), {"elsewhere.yaml", indirect}), FileError);
   directory.write("other/merged.yaml", "mine");
   EXPECT_NO_THROW(prepare_merge_output(directory.path(), {directory.file("other/merged.yaml")}));
+}
+
+TEST(MergeOutput, NeverReplacesTheImageOfAnInput) {
+  const TemporaryDirectory directory;
+  for (const std::string name : {"merged.pgm", "merged_2.pgm", "preview.png"}) {
+    save_map(kMaps[0], directory.file("floor.yaml"));
+    const std::string yaml = read_file(directory.file("floor.yaml"));
+    directory.write("floor.yaml", "image: " + name + yaml.substr(yaml.find('\n')));
+    std::filesystem::rename(directory.file("floor.pgm"), directory.file(name));
+    const Paths inputs = load_map(directory.file("floor.yaml")).files;
+    const auto prepare = [&] { prepare_merge_output(directory.path(), inputs); };
+    EXPECT_TRUE(contains(message_of<FileError>(prepare), name + ": is an input"));
+    std::filesystem::remove(directory.file(name));
+  }
+}
+
+TEST(MergeOutput, PreparingMakesNothingToStay) {
+  const TemporaryDirectory directory;
+  prepare_merge_output(directory.path() / "new" / "newer", {});
+  EXPECT_EQ(directory.names(), Names{});
+  directory.write("old/file", "mine");
+  std::filesystem::create_directory(directory.path() / "empty");
+  prepare_merge_output(directory.path() / "old" / "new" / "", {});
+  prepare_merge_output(directory.path() / "empty", {});
+  EXPECT_EQ(directory.names(), (Names{"empty", "old"}));
+  EXPECT_FALSE(std::filesystem::exists(directory.path() / "old" / "new"));
+  EXPECT_EQ(read_file(directory.file("old/file")), "mine");
 }
 
 TEST(MergeOutput, SaysWhatIsNoDirectory) {
@@ -134,17 +163,23 @@ TEST(MergeOutput, SaysWhereItMayNotWrite) {
 
 TEST(MergeOutput, AFullDiskLeavesTheDirectoryAsItWas) {
   const TemporaryDirectory directory;
-  write_merge_output(directory.path(), kSources, kMaps, two_components());
+  write_merge_output(directory.path(), kInputs, kNames, kMaps, two_components());
   const Names names = directory.names();
   Names before;
   for (const std::string& name : names) before.push_back(read_file(directory.file(name)));
   // Enough for the map's files, not for the picture.
   const std::string message = test::with_file_size_limit(
-      400, [&] { write_merge_output(directory.path(), kSources, kMaps, one_component()); });
+      400, [&] { write_merge_output(directory.path(), kInputs, kNames, kMaps, one_component()); });
   EXPECT_TRUE(contains(message, "preview.png: cannot be written"));
   EXPECT_EQ(directory.names(), names);
   for (std::size_t i = 0; i < names.size(); ++i)
     EXPECT_EQ(read_file(directory.file(names[i])), before[i]) << names[i];
+
+  const auto write_to_new = [&] {
+    write_merge_output(directory.path() / "new" / "newer", kInputs, kNames, kMaps, one_component());
+  };
+  EXPECT_TRUE(contains(test::with_file_size_limit(400, write_to_new), "cannot be written"));
+  EXPECT_EQ(directory.names(), names) << "no empty directory is left behind";
 }
 
 }  // namespace

@@ -2,9 +2,12 @@
 #include "gridmerge/search/parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
+#include <atomic>
+#include <chrono>
 #include <cstddef>
-#include <mutex>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -47,16 +50,33 @@ TEST(WithThreads, OneThreadIsTheCallersOwn) {
   EXPECT_EQ(seen, std::set<std::thread::id>{std::this_thread::get_id()});
 }
 
-TEST(WithThreads, UsesNoMoreThanItWasGiven) {
-  std::set<std::thread::id> seen;
-  std::mutex guard;
-  with_threads(2, [&] {
-    parallel_for(10000, [&](std::size_t) {
-      const std::lock_guard<std::mutex> lock(guard);
-      seen.insert(std::this_thread::get_id());
-    });
+// How many of the calls of one parallel_for() were under way at the same time. Each takes a while, so that
+// every thread that may help comes to do so.
+int most_calls_at_once() {
+  std::atomic<int> under_way{0};
+  std::atomic<int> most{0};
+  parallel_for(200, [&](std::size_t) {
+    const int now = ++under_way;
+    int before = most;
+    while (before < now && !most.compare_exchange_weak(before, now)) {
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    --under_way;
   });
-  EXPECT_LE(seen.size(), 2u);
+  return most;
+}
+
+TEST(WithThreads, UsesNoMoreThanItWasGiven) {
+  // oneTBB itself would stop at the number of cores, which may be what was given. In an arena of eight
+  // threads that there may be, only with_threads() can be what keeps them out.
+  const tbb::global_control eight(tbb::global_control::max_allowed_parallelism, 8);
+  tbb::task_arena(8).execute([] {
+    for (const int threads : {1, 2, 3}) {
+      int most = 0;
+      with_threads(threads, [&] { most = most_calls_at_once(); });
+      EXPECT_LE(most, threads);
+    }
+  });
 }
 
 }  // namespace

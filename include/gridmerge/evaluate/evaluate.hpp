@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -63,6 +64,10 @@ struct Evaluation {
   std::vector<MatchOutcome> matches;  ///< the pairs, then the negatives, each in file order
   std::vector<SetOutcome> sets;       ///< in file order
 };
+
+/// The files that evaluate() reads: each map of `truth` and its image (see map_files()), once each. Throws
+/// FileError when a map's YAML cannot be read.
+std::vector<std::filesystem::path> input_files(const Truth& truth);
 
 /// Matches every pair and negative and merges every set, one after the other, reading maps as it goes.
 /// Throws FileError when a map cannot be read, and std::runtime_error naming the maps when they cannot be

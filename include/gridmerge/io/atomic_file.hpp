@@ -14,9 +14,9 @@ namespace gridmerge {
 /// leaves none of them.
 ///
 /// An existing file is replaced as a whole (of a symbolic link, the file that it leads to); readers see the
-/// old bytes or the new ones. Anything else that exists, a device or a pipe for example, is an error.
-/// Permissions are those of any new file: 0666 less the umask. A process over its file size limit gets a
-/// FileError only if it ignores SIGXFSZ.
+/// old bytes or the new ones. A link that leads to nothing is itself replaced by the file. Anything else that
+/// exists, a device or a pipe for example, is an error. Permissions are those of any new file: 0666 less the
+/// umask. A process over its file size limit gets a FileError only if it ignores SIGXFSZ.
 class StagedFile {
  public:
   /// Throws FileError; then nothing is left behind.

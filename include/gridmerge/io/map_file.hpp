@@ -12,6 +12,10 @@
 
 namespace gridmerge {
 
+/// Resolutions [m/cell] beyond these are no map's: a file that has one is damaged or hostile.
+inline constexpr double kMinResolution = 1e-6;
+inline constexpr double kMaxResolution = 1e3;
+
 struct LoadOptions {
   double resolution = 0.0;           ///< [m/cell] of a bare image; 0 = a bare image is an error
   std::size_t max_cells = 1u << 28;  ///< larger maps are refused before memory is taken for them
@@ -21,6 +25,7 @@ struct LoadedMap {
   OccupancyGrid grid;
   std::vector<std::string>
       warnings;  ///< what the file says that its author may not have meant, a sentence each
+  std::vector<std::filesystem::path> files;  ///< what it was read from, as map_files() tells
 };
 
 /// Reads a map_server YAML with its image (PGM or PNG, told apart by content), or a bare image with
@@ -39,11 +44,15 @@ struct LoadedMap {
 /// alpha never counts as colour. (nav2 averages it into the lightness in `trinary`; a warning says where that
 /// makes a difference.)
 ///
-/// Refused: resolutions outside [1e-6, 1e3] m, origins that are not finite or beyond 1e9 m, thresholds
-/// outside [0, 1] or crossed, YAML above 1 MiB, images with less data than their header promises (more is
-/// tolerated). Throws FileError. O(pixels); peak memory is the file, its decoded pixels and 3 to 8 bytes a
-/// cell.
+/// Refused: resolutions outside [kMinResolution, kMaxResolution], origins that are not finite or beyond 1e9
+/// m, thresholds outside [0, 1] or crossed, YAML above 1 MiB, images with less data than their header
+/// promises (more is tolerated). Throws FileError. O(pixels); peak memory is the file, its decoded pixels and
+/// 3 to 8 bytes a cell.
 LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options = {});
+
+/// The files that load_map(path) reads: the YAML and its image, or a bare image alone. The image is not
+/// opened, and need not be there. Throws FileError for a YAML that load_map refuses. O(bytes of the YAML).
+std::vector<std::filesystem::path> map_files(const std::filesystem::path& path);
 
 /// Writes the map for map_server: the YAML, and beside it the image, of the same name but for its ending
 /// `.pgm` (trinary: occupied 0, free 254, unknown 205; thresholds 0.65 and 0.196). `yaml_path` must end in

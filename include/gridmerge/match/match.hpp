@@ -11,6 +11,9 @@ namespace gridmerge {
 
 enum class Verdict { refused, accepted };
 
+/// The verdict's one word in every output: "refused" or "accepted".
+const char* name_of(Verdict verdict);
+
 /// One way in which the moving map may lie on the fixed one.
 struct Hypothesis {
   SE2 T_fixed_moving;  ///< between the map frames

@@ -10,21 +10,25 @@
 
 namespace gridmerge {
 
-/// Makes sure, before long work, that a merge of `sources` (the paths of its inputs) can be written to
-/// `directory`: creates it (and its parents) and throws FileError when it is not a directory that can be
-/// written to, or when one of the sources lies there under a name that write_merge_output() would replace or
-/// remove.
-void prepare_merge_output(const std::filesystem::path& directory, const std::vector<std::string>& sources);
+/// Makes sure, before long work, that a merge can be written to `directory`: throws FileError when it is not
+/// a directory, and cannot be made one, that can be written to, or when one of `inputs` (all files that the
+/// maps were read from, images too: LoadedMap::files) lies there under a name that write_merge_output() would
+/// replace or remove. Leaves everything as it was: a directory that is made to try is removed again.
+void prepare_merge_output(const std::filesystem::path& directory,
+                          const std::vector<std::filesystem::path>& inputs);
 
-/// Writes what a merge gives to `directory`, after prepare_merge_output(): `merged.yaml` with `merged.pgm`
-/// for the first component, `merged_2.yaml` and so on for further ones, `preview.png`, `report.html`, and,
-/// last, `transforms.json`. `sources[i]` is the path of map i, as it is to be called in them.
+/// Writes what a merge gives to `directory`, which is made if need be, with its parents: `merged.yaml` with
+/// `merged.pgm` for the first component, `merged_2.yaml` and so on for further ones, `preview.png`,
+/// `report.html`, and, last, `transforms.json`. `inputs` as in prepare_merge_output(), which is called first;
+/// `names[i]` is what to call map i in them.
 ///
 /// All files are complete on the disk before the first takes its place: when the disk is full, the directory
-/// stays as it was. Every other `merged.yaml`, `merged_<number>.yaml` and `.pgm` in the directory is then
-/// removed, so that no map of an earlier run looks like one of this run; without a component there is no
-/// `merged.yaml`. Throws FileError.
-void write_merge_output(const std::filesystem::path& directory, const std::vector<std::string>& sources,
-                        const std::vector<OccupancyGrid>& maps, const MergeResult& result);
+/// stays as it was, or is not made. Every other `merged.yaml`, `merged_<number>.yaml` and `.pgm` in the
+/// directory is then removed, so that no map of an earlier run looks like one of this run; without a
+/// component there is no `merged.yaml`. Throws FileError.
+void write_merge_output(const std::filesystem::path& directory,
+                        const std::vector<std::filesystem::path>& inputs,
+                        const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
+                        const MergeResult& result);
 
 }  // namespace gridmerge

@@ -33,9 +33,10 @@ Colour map_colour(std::size_t map);
 
 /// A PNG that shows a merge: each component with its maps in their own colours, what they share and where
 /// they disagree, a scale bar in metres, and the colours' meaning; below, the maps that were left out, each
-/// by itself in its own frame. Small maps are magnified, large ones drawn at a coarser resolution; a
-/// component is at most 2400 pixels wide and high. `names[i]` is what to call map i; `maps` and `result` as
-/// given to and returned by merge(). Throws std::out_of_range when there are fewer names than maps.
+/// by itself in its own frame. Small maps are magnified, large ones drawn at a coarser resolution: the
+/// picture is at most 2400 pixels wide, and no map in it higher. `names[i]` is what to call map i; `maps` and
+/// `result` as given to and returned by merge(). Throws std::out_of_range when there are fewer names than
+/// maps.
 std::string preview_png(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
                         const MergeResult& result);
 
