@@ -37,7 +37,8 @@ TEST(StartPoses, AreTheRotationsTimesTheShiftsOfTheCentre) {
     const Point2 centre = starts[i].T_fixed_moving * centre_of(moving);
     EXPECT_NEAR(centre.x - fixed_centre.x, step * (static_cast<int>(i % 3) - 1), 1e-9);
     EXPECT_NEAR(centre.y - fixed_centre.y, step * (static_cast<int>(i / 3 % 3) - 1), 1e-9);
-    const double turn = starts[i].T_fixed_moving.theta - 5.0 * std::numbers::pi / 180.0 * static_cast<double>(i / 9);
+    const double turn =
+        starts[i].T_fixed_moving.theta - 5.0 * std::numbers::pi / 180.0 * static_cast<double>(i / 9);
     EXPECT_NEAR(std::remainder(turn, 2.0 * std::numbers::pi), 0.0, 1e-9);
     EXPECT_EQ(starts[i].similarity.psi(), measure_similarity(fixed, moving, starts[i].T_fixed_moving).psi());
   }
@@ -46,7 +47,8 @@ TEST(StartPoses, AreTheRotationsTimesTheShiftsOfTheCentre) {
 TEST(StartPoses, DoNotDependOnThreads) {
   const OccupancyGrid fixed = test::random_grid(1, 40, 30);
   std::vector<std::vector<MeasuredPose>> runs;
-  for (const int threads : {1, 2}) with_threads(threads, [&] { runs.push_back(measure_start_poses(fixed, fixed)); });
+  for (const int threads : {1, 2})
+    with_threads(threads, [&] { runs.push_back(measure_start_poses(fixed, fixed)); });
   for (std::size_t i = 0; i < runs[0].size(); ++i)
     EXPECT_EQ(runs[0][i].similarity.delta(2.0), runs[1][i].similarity.delta(2.0));
 }
@@ -94,7 +96,8 @@ TEST(RandomWalk, ASeedReproducesItBitForBit) {
   EXPECT_EQ(one.proposals, again.proposals);
   ASSERT_EQ(one.trace.size(), again.trace.size());
   options.seed = 6;
-  EXPECT_FALSE(random_walk(pair.fixed, pair.moving, pair.start, options).T_fixed_moving == one.T_fixed_moving);
+  EXPECT_FALSE(random_walk(pair.fixed, pair.moving, pair.start, options).T_fixed_moving ==
+               one.T_fixed_moving);
 }
 
 TEST(RandomWalk, TheTraceTellsTheWalk) {
@@ -111,7 +114,7 @@ TEST(RandomWalk, TheTraceTellsTheWalk) {
   double least = result.trace.front().delta;
   for (std::size_t i = 0; i < result.trace.size(); ++i) {
     const WalkSample& sample = result.trace[i];
-    if (i > 0) EXPECT_GT(sample.step, result.trace[i - 1].step);
+    EXPECT_TRUE(i == 0 || sample.step > result.trace[i - 1].step);
     EXPECT_DOUBLE_EQ(sample.delta,
                      sample.psi + 0.5 * static_cast<double>(sample.disagreement - sample.agreement));
     least = std::min(least, sample.delta);
@@ -126,7 +129,8 @@ TEST(RandomWalk, HillClimbingNeverGoesBack) {
   options.patience = 300;
   options.record_trace = true;
   const RandomWalkResult result = random_walk(pair.fixed, pair.moving, pair.start, options);
-  for (std::size_t i = 1; i < result.trace.size(); ++i) EXPECT_LT(result.trace[i].delta, result.trace[i - 1].delta);
+  for (std::size_t i = 1; i < result.trace.size(); ++i)
+    EXPECT_LT(result.trace[i].delta, result.trace[i - 1].delta);
 }
 
 TEST(RandomWalk, StopsWhenItsPatienceOrItsProposalsRunOut) {

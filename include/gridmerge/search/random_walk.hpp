@@ -25,10 +25,10 @@ struct MeasuredPose {
 };
 
 struct RandomWalkOptions {
-  double c_lock = 0.0;         ///< weight of (dis - agr) in Delta; not negative
-  std::size_t memory = 50;     ///< M: accepted samples whose steps set the mean and covariance of proposals
-  double first_step = 10.0;    ///< standard deviation of proposals before anything is accepted [cells]
-  double smallest_step = 0.5;  ///< bounds of a proposal's standard deviation in any direction [cells]
+  double c_lock = 0.0;          ///< weight of (dis - agr) in Delta; not negative
+  std::size_t memory = 10;      ///< M: accepted samples whose steps set the mean and covariance of proposals
+  double first_step = 10.0;     ///< standard deviation of proposals before anything is accepted [cells]
+  double smallest_step = 0.25;  ///< bounds of a proposal's standard deviation in any direction [cells]
   double largest_step = 40.0;
   /// A sample worse by d is accepted with probability exp(-d / temperature). 0 never accepts one: hill
   /// climbing.
