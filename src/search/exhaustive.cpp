@@ -24,7 +24,7 @@ constexpr std::size_t kPeaksPerRotation = 96;
 constexpr int kPeakFloor = 4;  // peaks below the best of their rotation by this factor are dropped
 constexpr int kApart = 2;      // candidates nearer than this in x, y and rotation are one
 /// Shifts at which fewer than this share of the samples could lie on the fixed map are not looked at.
-constexpr double kLeastMet = 0.04;
+constexpr double kLeastMet = 0.08;
 static_assert(kMaxSearchSamples * kMaxCorrelated < 32767);
 
 /// A local maximum of the score, in steps of the search.

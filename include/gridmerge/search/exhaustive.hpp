@@ -26,7 +26,7 @@ struct ExhaustiveSearchOptions {
 /// Keeps the 16-bit sums of the search from overflowing.
 inline constexpr std::size_t kMaxSearchSamples = 240;
 
-/// Scores the moving map's wall points at every rotation and every translation at which at least 4 % of them
+/// Scores the moving map's wall points at every rotation and every translation at which at least 8 % of them
 /// can lie on the fixed map, and returns the best local maxima, best first. A score is the sum over the
 /// sampled walls of the evidence (evidence_table) in the fixed map, averaged over the coarse cell in which
 /// the wall falls, in whole sixths of a nat and at most 15 of them: the result is the same bits on every
