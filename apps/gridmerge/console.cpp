@@ -84,6 +84,16 @@ void Console::clear() {
   std::fflush(stderr);
 }
 
+void try_output_file(const std::string& path, const std::vector<std::filesystem::path>& inputs) {
+  const StagedFile trial(path, {});
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return;
+  for (const std::filesystem::path& input : inputs) {
+    if (std::filesystem::equivalent(path, input, error))
+      throw FileError(path, "is an input and would be replaced: choose another file for the result");
+  }
+}
+
 LoadedMap load(const std::string& path, double resolution, Console& console) {
   LoadOptions options;
   options.resolution = resolution;

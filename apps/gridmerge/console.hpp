@@ -2,7 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "gridmerge/io/map_file.hpp"
 #include "options.hpp"
@@ -46,6 +48,10 @@ class Console {
   bool bar_shown_ = false;
   Clock::time_point next_draw_;
 };
+
+/// For a file that is to be written when the work is done: throws FileError now if it cannot be, or if it
+/// would take the place of one of the `inputs`.
+void try_output_file(const std::string& path, const std::vector<std::filesystem::path>& inputs);
 
 /// load_map() that passes its warnings on to `console`.
 LoadedMap load(const std::string& path, double resolution, Console& console);

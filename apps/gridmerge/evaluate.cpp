@@ -4,13 +4,13 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "commands.hpp"
 #include "console.hpp"
 #include "gridmerge/evaluate/tables.hpp"
 #include "gridmerge/io/atomic_file.hpp"
+#include "search_options.hpp"
 
 namespace gridmerge::cli {
 
@@ -22,7 +22,7 @@ struct EvaluateCommandOptions {
   std::string negatives;
   std::string sets;
   std::string json;
-  double accept_probability = MatchOptions{}.accept_probability;
+  SearchOptions search;
 
   bool writes_json_file() const { return !json.empty() && json != "-"; }
 };
@@ -35,26 +35,14 @@ Truth read_truth(const EvaluateCommandOptions& options) {
   return truth;
 }
 
-// Known before the work: a result that cannot be written, or that would take the place of what it is made of.
-void try_json_file(const EvaluateCommandOptions& options, const Truth& truth) {
-  const StagedFile trial(options.json, {});
-  std::error_code error;
-  if (!std::filesystem::exists(options.json, error)) return;
-  std::vector<std::filesystem::path> inputs = input_files(truth);
-  inputs.insert(inputs.end(), {options.pairs, options.negatives, options.sets});
-  for (const std::filesystem::path& input : inputs) {
-    if (std::filesystem::equivalent(options.json, input, error)) {
-      throw FileError(options.json, "is an input and would be replaced: choose another file for the result");
-    }
-  }
-}
-
 Evaluation evaluate_files(const EvaluateCommandOptions& options) {
   Console console(options.common);
   const Truth truth = read_truth(options);
-  if (options.writes_json_file()) try_json_file(options, truth);
+  std::vector<std::filesystem::path> inputs = input_files(truth);
+  inputs.insert(inputs.end(), {options.pairs, options.negatives, options.sets});
+  if (options.writes_json_file()) try_output_file(options.json, inputs);
   EvaluateOptions engine;
-  engine.match = match_options(options.common, options.accept_probability);
+  engine.matcher = PairMatcher(options.common, options.search);
   engine.progress = [&](std::size_t done, std::size_t total) {
     console.progress(static_cast<double>(done) / static_cast<double>(total));
   };
@@ -70,7 +58,7 @@ int run_evaluate(const EvaluateCommandOptions& options) {
   }
   // Before the file: should the disk be full by now, the result is not lost.
   if (options.common.verbose) print(case_table(evaluation) + "\n");
-  print(summary_table(evaluation, options.accept_probability));
+  print(summary_table(evaluation, options.search.accept_from()));
   if (options.writes_json_file()) write_file_atomically(options.json, evaluation_json(evaluation));
   return kDone;
 }
@@ -88,7 +76,7 @@ void add_evaluate(CLI::App& app, Action& action) {
       ->type_name("FILE");
   command->add_option("--json", options->json, "Write JSON to this file; - prints it instead of the summary")
       ->type_name("FILE");
-  add_accept_option(*command, options->accept_probability);
+  add_search_options(*command, options->search);
   add_common_options(*command, options->common);
   command->footer(
       "At least one of the three tables is needed; maps are named relative to the table. Tables are\n"

@@ -3,14 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "console.hpp"
 #include "gridmerge/report/json.hpp"
+#include "search_options.hpp"
 
 namespace gridmerge::cli {
 
@@ -21,11 +24,15 @@ struct MatchCommandOptions {
   std::string fixed;
   std::string moving;
   double resolution = 0.0;
-  double accept_probability = MatchOptions{}.accept_probability;
+  SearchOptions search;
   bool json = false;
 };
 
-std::string describe_verdict(const MatchResult& result) {
+std::string describe_verdict(const MatchResult& result, const SearchOptions& search) {
+  if (search.random_walk() && !result.hypotheses.empty()) {
+    return fmt::format("{}: the acceptance index is {:.4f}, and {} is asked for", name_of(result.verdict),
+                       result.acceptance_index, search.accept_from());
+  }
   if (result.verdict == Verdict::accepted) {
     return fmt::format("accepted: the maps show one place, with probability {:.4f}", result.probability);
   }
@@ -34,8 +41,8 @@ std::string describe_verdict(const MatchResult& result) {
                      result.probability);
 }
 
-std::string describe(const MatchResult& result, bool verbose) {
-  std::string text = describe_verdict(result) + "\n";
+std::string describe(const MatchResult& result, const MatchCommandOptions& options) {
+  std::string text = describe_verdict(result, options.search) + "\n";
   const auto line = [&](const std::string& name, const std::string& value) {
     fmt::format_to(std::back_inserter(text), "  {:<14}{}\n", name, value);
   };
@@ -44,11 +51,11 @@ std::string describe(const MatchResult& result, bool verbose) {
                                 result.disagreement, result.acceptance_index));
   line("overlap", fmt::format(" {:.1f} % of the smaller map", 100.0 * result.overlap));
   line("time", fmt::format(" {:.3f} s", result.seconds));
-  if (!verbose) return text;
+  if (!options.common.verbose) return text;
   for (std::size_t i = 0; i < result.hypotheses.size(); ++i) {
     const Hypothesis& hypothesis = result.hypotheses[i];
     line(fmt::format("hypothesis {}", i + 1),
-         fmt::format(" {}, score {:.1f}, probability {:.4f}", describe_pose(hypothesis.T_fixed_moving),
+         fmt::format(" {}, score {:.4g}, probability {:.4f}", describe_pose(hypothesis.T_fixed_moving),
                      hypothesis.score, hypothesis.probability));
   }
   return text;
@@ -56,12 +63,18 @@ std::string describe(const MatchResult& result, bool verbose) {
 
 MatchResult match_files(const MatchCommandOptions& options) {
   Console console(options.common);
-  const OccupancyGrid fixed = load(options.fixed, options.resolution, console).grid;
-  const OccupancyGrid moving = load(options.moving, options.resolution, console).grid;
-  MatchOptions engine = match_options(options.common, options.accept_probability);
-  engine.progress = [&](double share) { console.progress(share); };
+  const LoadedMap fixed = load(options.fixed, options.resolution, console);
+  const LoadedMap moving = load(options.moving, options.resolution, console);
+  if (!options.search.trace.empty()) {
+    std::vector<std::filesystem::path> inputs = fixed.files;
+    inputs.insert(inputs.end(), moving.files.begin(), moving.files.end());
+    try_output_file(options.search.trace, inputs);
+  }
+  PairMatcher matcher(options.common, options.search, [&](double share) { console.progress(share); });
   try {
-    return match(fixed, moving, engine);
+    const MatchResult result = matcher(fixed.grid, moving.grid);
+    matcher.write_trace();
+    return result;
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(options.fixed + " and " + options.moving + ": " + error.what());
   }
@@ -69,8 +82,7 @@ MatchResult match_files(const MatchCommandOptions& options) {
 
 int run_match(const MatchCommandOptions& options) {
   const MatchResult result = match_files(options);
-  print(options.json ? match_json(options.fixed, options.moving, result)
-                     : describe(result, options.common.verbose));
+  print(options.json ? match_json(options.fixed, options.moving, result) : describe(result, options));
   return result.verdict == Verdict::accepted ? kDone : kRefused;
 }
 
@@ -85,7 +97,8 @@ void add_match(CLI::App& app, Action& action) {
       ->required();
   command->add_option("MOVING", options->moving, "The map to lay on it")->type_name("FILE")->required();
   command->add_flag("--json", options->json, "Print JSON");
-  add_accept_option(*command, options->accept_probability);
+  add_search_options(*command, options->search);
+  add_trace_option(*command, options->search);
   add_resolution_option(*command, options->resolution);
   add_common_options(*command, options->common);
   command->footer(

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 #include "console.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"
+#include "search_options.hpp"
 
 namespace gridmerge::cli {
 
@@ -26,7 +28,7 @@ struct MergeCommandOptions {
   std::string output;
   double resolution = 0.0;
   double output_resolution = 0.0;
-  double accept_probability = MatchOptions{}.accept_probability;
+  SearchOptions search;
 };
 
 struct Inputs {
@@ -47,13 +49,15 @@ Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
 MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeCommandOptions& options,
                        Console& console) {
   MergeOptions engine;
-  engine.match = match_options(options.common, options.accept_probability);
   engine.resolution = options.output_resolution;
   engine.progress = [&](std::size_t done, std::size_t total) {
     console.progress(static_cast<double>(done) / static_cast<double>(total));
   };
   try {
-    return merge(maps, engine);
+    PairMatcher matcher(options.common, options.search);
+    const MergeResult result = merge(maps, engine, std::ref(matcher));
+    matcher.write_trace();
+    return result;
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one
     throw FileError(options.output, error.what());
   }
@@ -90,6 +94,7 @@ int run_merge(const MergeCommandOptions& options) {
   Console console(options.common);
   const Inputs inputs = load_inputs(options, console);
   prepare_merge_output(options.output, inputs.files);
+  if (!options.search.trace.empty()) try_output_file(options.search.trace, inputs.files);
   const MergeResult result = merge_maps(inputs.maps, options, console);
   console.clear();
   write_merge_output(options.output, inputs.files, options.maps, inputs.maps, result);
@@ -116,7 +121,8 @@ void add_merge(CLI::App& app, Action& action) {
                    "Metres a cell of the merged map; without it the finest of the maps'")
       ->type_name("METRES")
       ->check(kMetresPerCell);
-  add_accept_option(*command, options->accept_probability);
+  add_search_options(*command, options->search);
+  add_trace_option(*command, options->search);
   add_resolution_option(*command, options->resolution);
   add_common_options(*command, options->common);
   command->footer(

@@ -19,6 +19,8 @@ std::optional<double> parse_finite(const std::string& text) {
   return value;
 }
 
+}  // namespace
+
 const CLI::Validator kProbability(
     [](std::string& text) {
       const auto value = parse_finite(text);
@@ -27,7 +29,19 @@ const CLI::Validator kProbability(
     },
     "");
 
-}  // namespace
+const CLI::Validator kWholeNumber(
+    [](std::string& text) {
+      const bool whole = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+      return whole ? std::string() : "'" + text + "' is not a whole number of 0 or more";
+    },
+    "");
+
+const CLI::Validator kNotNegative(
+    [](std::string& text) {
+      const auto value = parse_finite(text);
+      return value && *value >= 0.0 ? std::string() : "'" + text + "' is not a number of 0 or more";
+    },
+    "");
 
 const CLI::Validator kMetresPerCell(
     [](std::string& text) {
@@ -53,20 +67,6 @@ void add_resolution_option(CLI::App& command, double& resolution) {
   command.add_option("--resolution", resolution, "Metres a cell of maps that are images without a YAML")
       ->type_name("METRES")
       ->check(kMetresPerCell);
-}
-
-void add_accept_option(CLI::App& command, double& probability) {
-  command.add_option("--accept", probability, "Accept from this probability on")
-      ->type_name("P")
-      ->check(kProbability)
-      ->capture_default_str();
-}
-
-MatchOptions match_options(const CommonOptions& common, double accept_probability) {
-  MatchOptions options;
-  options.threads = common.threads;
-  options.accept_probability = accept_probability;
-  return options;
 }
 
 }  // namespace gridmerge::cli

@@ -3,8 +3,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "gridmerge/match/match.hpp"
-
 namespace gridmerge::cli {
 
 /// Options that every subcommand has.
@@ -19,12 +17,16 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 /// --resolution: of maps that are bare images.
 void add_resolution_option(CLI::App& command, double& resolution);
 
-/// --accept: from which probability on a pair is accepted.
-void add_accept_option(CLI::App& command, double& probability);
+/// A number in [0, 1].
+extern const CLI::Validator kProbability;
+
+/// Digits alone.
+extern const CLI::Validator kWholeNumber;
+
+/// A finite number, 0 or more.
+extern const CLI::Validator kNotNegative;
 
 /// A resolution that a map can have.
 extern const CLI::Validator kMetresPerCell;
-
-MatchOptions match_options(const CommonOptions& common, double accept_probability);
 
 }  // namespace gridmerge::cli

@@ -7,7 +7,6 @@
 
 #include "gridmerge/evaluate/count.hpp"
 #include "gridmerge/io/map_file.hpp"
-#include "gridmerge/merge/merge.hpp"
 #include "map_cache.hpp"
 
 namespace gridmerge {
@@ -20,7 +19,11 @@ class Evaluator {
       : options_(options),
         maps_(options.cache_bytes, options.warn),
         total_(truth.pairs.size() + truth.negatives.size() + truth.sets.size()) {
-    options_.match.progress = nullptr;
+    if (!options_.matcher) {
+      options_.matcher = [](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+        return match(fixed, moving);
+      };
+    }
   }
 
   MatchOutcome evaluate_pair(const TruePair& pair) {
@@ -50,10 +53,8 @@ class Evaluator {
       grids.push_back(std::move(map.grid));
       moments.push_back(map.moments);
     }
-    MergeOptions merge_options;
-    merge_options.match = options_.match;
     try {
-      return judge_set(set, moments, merge(grids, merge_options));
+      return judge_set(set, moments, merge(grids, {}, options_.matcher));
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error("set " + set.name + ": " + error.what());
     }
@@ -68,7 +69,7 @@ class Evaluator {
   MatchResult match_named(const TruthMap& fixed, const EvaluatedMap& fixed_map, const TruthMap& moving,
                           const EvaluatedMap& moving_map) const {
     try {
-      return match(fixed_map.grid, moving_map.grid, options_.match);
+      return options_.matcher(fixed_map.grid, moving_map.grid);
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(fixed.path.string() + " and " + moving.path.string() + ": " + error.what());
     }

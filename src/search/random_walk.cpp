@@ -93,15 +93,29 @@ class Poses {
 class Proposals {
  public:
   explicit Proposals(const RandomWalkOptions& options)
-      : options_(options), shape_(Eigen::Matrix3d::Identity() * options.first_step) {}
+      : options_(options),
+        shape_(Eigen::Matrix3d::Identity() * options.first_step),
+        largest_deviation_(options.first_step) {}
 
   Step draw(std::mt19937_64& random) {
     Step standard;
     for (double& value : standard) value = normal_(random);
-    return mean_ + shape_ * standard;
+    return mean_ + scale_ * (shape_ * standard);
+  }
+
+  /// Samples that are refused again and again come from steps that are too large; when the steps cannot
+  /// become smaller, they may as well be too small.
+  void learn_refusal() {
+    constexpr int kPatience = 100;
+    if (++refused_ % kPatience != 0) return;
+    scale_ *= 0.5;
+    mean_.setZero();
+    if (scale_ * largest_deviation_ < options_.smallest_step) scale_ = 1.0;
   }
 
   void learn(const Step& accepted) {
+    refused_ = 0;
+    scale_ = 1.0;
     steps_.push_back(accepted);
     if (steps_.size() > options_.memory) steps_.pop_front();
     constexpr std::size_t kEnough = 4;  // for a covariance of three numbers
@@ -118,6 +132,7 @@ class Proposals {
                                  options_.largest_step);
     }
     shape_ = eigen.eigenvectors() * deviations.asDiagonal();
+    largest_deviation_ = deviations.maxCoeff();
   }
 
  private:
@@ -125,6 +140,9 @@ class Proposals {
   std::deque<Step> steps_;
   Step mean_ = Step::Zero();
   Eigen::Matrix3d shape_;  // a square root of the covariance
+  double largest_deviation_;
+  double scale_ = 1.0;  // of the steps, since the last accepted one
+  int refused_ = 0;     // since then
   std::normal_distribution<double> normal_;
 };
 
@@ -226,7 +244,10 @@ RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& mo
     temperature *= options.cooling;
     if (!poses.may_touch(T)) continue;
     const Sample proposed = measure(T);
-    if (!select(proposed.delta - current.delta, temperature, random)) continue;
+    if (!select(proposed.delta - current.delta, temperature, random)) {
+      proposals.learn_refusal();
+      continue;
+    }
     proposals.learn(poses.between(current.T_fixed_moving, T));
     current = proposed;
     ++result.accepted;

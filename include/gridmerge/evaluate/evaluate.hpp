@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gridmerge/evaluate/truth.hpp"
-#include "gridmerge/match/match.hpp"
+#include "gridmerge/merge/merge.hpp"
 
 namespace gridmerge {
 
@@ -21,7 +21,8 @@ struct Truth {
 };
 
 struct EvaluateOptions {
-  MatchOptions match;  ///< how each pair is matched; its progress callback is not used
+  /// How two maps are compared, by themselves and in sets; match() as it is, if empty.
+  Matcher matcher;
   /// How much of the maps of pairs and negatives is kept in memory, those used last first [bytes].
   std::size_t cache_bytes = std::size_t{96} << 20;
   /// Called with the number of finished and of all pairs, negatives and sets.

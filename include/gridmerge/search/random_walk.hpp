@@ -70,9 +70,10 @@ std::vector<MeasuredPose> measure_start_poses(const OccupancyGrid& fixed, const 
 /// The adaptive random walk of Birk & Carpin 2006 (algorithm 1) from one pose. It minimises Delta = psi +
 /// c_lock * (dis - agr). Proposals are normal; their mean and covariance are those of the steps between the
 /// last `memory` accepted samples, with the covariance's eigenvalues held between smallest_step^2 and
-/// largest_step^2. A rotation counts as the way that it moves a cell at the moving map's root mean square
-/// radius. A proposal that takes the maps' known rectangles off each other for certain is refused without
-/// being measured.
+/// largest_step^2. After every 100 refusals in a row steps are halved, and they are back at their size when
+/// they would fall below smallest_step. A rotation counts as the way that it moves a cell at the moving map's
+/// root mean square radius. A proposal that takes the maps' known rectangles off each other for certain is
+/// refused without being measured.
 ///
 /// The same seed gives the same walk on the same machine. Throws std::invalid_argument for invalid grids,
 /// options or start. O(proposals) measurements.

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gridmerge/match/random_walk_match.hpp"
+#include "gridmerge/merge/merge.hpp"
+#include "options.hpp"
+
+namespace gridmerge::cli {
+
+/// How pairs of maps are matched, and what is accepted.
+struct SearchOptions {
+  std::string method = "exhaustive";
+  std::optional<double> accept;  // probability, or acceptance index of the random walk
+  std::vector<double> c_locks{0.0};
+  int restarts = 1;
+  std::uint64_t seed = 1;
+  std::string trace;
+
+  bool random_walk() const { return method == "random-walk"; }
+  double accept_from() const;
+};
+
+/// --search and what belongs to it. Options of the random walk without it are a usage error.
+void add_search_options(CLI::App& command, SearchOptions& options);
+
+/// --trace: needs add_search_options() of the same command.
+void add_trace_option(CLI::App& command, SearchOptions& options);
+
+/// Matches pairs as the options say, and keeps the walks' traces if they are asked for.
+class PairMatcher {
+ public:
+  /// `progress` is told how much of a match is done, in [0, 1].
+  PairMatcher(const CommonOptions& common, const SearchOptions& options,
+              std::function<void(double)> progress = {});
+
+  MatchResult operator()(const OccupancyGrid& fixed, const OccupancyGrid& moving);
+
+  /// Writes the trace file if there is to be one. Throws FileError.
+  void write_trace() const;
+
+ private:
+  void record(double c_lock, int walk, const RandomWalkResult& result);
+
+  CommonOptions common_;
+  SearchOptions options_;
+  std::function<void(double)> progress_;
+  int matches_ = 0;
+  std::string trace_;
+};
+
+}  // namespace gridmerge::cli

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "fixture.hpp"
+#include "gridmerge/grid/resample.hpp"
+
+namespace gridmerge::test {
+namespace {
+
+class RandomWalk : public CliTest {
+ protected:
+  RandomWalk()
+      : whole(write_map(directory, "whole", downsample(draw_building(1), 2))),
+        seen_again(write_map(directory, "again",
+                             transform_grid(downsample(draw_building(1), 2), T_again_building, 0.1))) {}
+
+  static std::vector<std::string> lines_of(const std::string& path) {
+    std::ifstream file(path);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(file, line);) lines.push_back(line);
+    return lines;
+  }
+
+  const SE2 T_again_building{2.0, 1.0, 0.5};
+  const std::string whole;
+  const std::string seen_again;
+};
+
+TEST_F(RandomWalk, AcceptsOneMapSeenTwice) {
+  const Outcome outcome = run({"match", whole, seen_again, "--search", "random-walk", "--restarts", "2",
+                               "--accept", "0.95", "--json"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(json.at("verdict"), "accepted");
+  EXPECT_EQ(json.at("probability"), json.at("acceptance_index"));
+  expect_near(json.at("transform"), inverse(T_again_building), 0.3, 0.02);
+}
+
+TEST_F(RandomWalk, RefusesAnotherBuilding) {
+  const Outcome outcome = run({"match", whole, other, "--search", "random-walk"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_EQ(outcome.out.rfind("refused: the acceptance index is ", 0), 0U) << outcome.out;
+}
+
+TEST_F(RandomWalk, ASeedGivesTheSameWhateverTheThreads) {
+  const auto transform = [&](const char* threads, const char* seed) {
+    return Json::parse(run({"match", whole, other, "--search", "random-walk", "--restarts", "2", "--seed",
+                            seed, "--threads", threads, "--json"})
+                           .out)
+        .at("transform");
+  };
+  EXPECT_EQ(transform("1", "7"), transform("2", "7"));
+  EXPECT_NE(transform("1", "7"), transform("1", "8"));
+}
+
+TEST_F(RandomWalk, WritesItsTrace) {
+  const std::string trace = (directory.path() / "trace.csv").string();
+  run({"match", whole, seen_again, "--search", "random-walk", "--restarts", "2", "--c-lock", "0,7.5",
+       "--trace", trace});
+  const std::vector<std::string> lines = lines_of(trace);
+  ASSERT_GT(lines.size(), 3U);
+  EXPECT_EQ(lines[0], "match,walk,c_lock,step,delta,psi,agr,dis,x,y,theta");
+  EXPECT_EQ(lines[1].rfind("1,1,0,0,", 0), 0U) << lines[1];
+  for (const std::string& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 10) << line;
+  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(),
+                          [](const auto& line) { return line.rfind("1,2,7.5,0,", 0) == 0; }));
+}
+
+TEST_F(RandomWalk, ATraceThatCannotBeWrittenFailsFirst) {
+  const std::string nowhere = (directory.path() / "nowhere" / "trace.csv").string();
+  const Outcome outcome = run({"match", whole, other, "--search", "random-walk", "--trace", nowhere});
+  expect_error(outcome, nowhere, "");
+  expect_error(run({"match", whole, other, "--search", "random-walk", "--trace", other}), other,
+               "is an input");
+}
+
+TEST_F(RandomWalk, MergesUpTheTree) {
+  const std::string output = (directory.path() / "merged").string();
+  const Outcome outcome = run({"merge", whole, seen_again, other, "-o", output, "--search", "random-walk",
+                               "--restarts", "2", "--accept", "0.95"});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.out;
+  std::ifstream file(std::filesystem::path(output) / "transforms.json");
+  const Json json = Json::parse(file);
+  EXPECT_EQ(json.at("components").at(0).at("members").size(), 2U);
+  EXPECT_EQ(json.at("left_out"), Json::array({other}));
+}
+
+TEST_F(RandomWalk, MapsWithNothingToCompareAreRefused) {
+  const std::string empty = write_map(directory, "empty", make_grid(20, 20, 0.1, {}, Cell::free));
+  for (const auto& [a, b] : {std::pair{whole, empty}, std::pair{empty, whole}, std::pair{empty, empty}}) {
+    const Outcome outcome = run({"match", a, b, "--search", "random-walk", "--quiet", "--json"});
+    EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 3) << outcome.err;
+    EXPECT_TRUE(Json::accept(outcome.out));
+  }
+}
+
+class WrongWalk : public testing::TestWithParam<std::vector<std::string>> {};
+
+TEST_P(WrongWalk, IsAUsageError) {
+  std::vector<std::string> words{"match", "a.yaml", "b.yaml"};
+  words.insert(words.end(), GetParam().begin(), GetParam().end());
+  const Outcome outcome = run(words);
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+  EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+}
+
+using Words = std::vector<std::string>;
+INSTANTIATE_TEST_SUITE_P(Cli, WrongWalk,
+                         testing::Values(Words{"--search", "random"},
+                                         Words{"--search", "random-walk", "--c-lock", "-1"},
+                                         Words{"--search", "random-walk", "--c-lock", "nan"},
+                                         Words{"--search", "random-walk", "--c-lock", "0,-2"},
+                                         Words{"--search", "random-walk", "--restarts", "0"},
+                                         Words{"--search", "random-walk", "--restarts", "1.5"},
+                                         Words{"--search", "random-walk", "--seed", "-1"},
+                                         Words{"--search", "random-walk", "--accept", "1.01"},
+                                         Words{"--c-lock", "7.5"}, Words{"--restarts", "2"},
+                                         Words{"--seed", "3"}, Words{"--trace", "trace.csv"}));
+
+}  // namespace
+}  // namespace gridmerge::test

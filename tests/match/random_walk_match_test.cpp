@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/match/random_walk_match.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gridmerge/grid/resample.hpp"
+#include "support/building.hpp"
+
+namespace gridmerge {
+namespace {
+
+const OccupancyGrid& building() {
+  static const OccupancyGrid map = downsample(test::draw_building(3), 2);
+  return map;
+}
+
+RandomWalkMatchOptions quick() {
+  RandomWalkMatchOptions options;
+  options.walk.patience = 400;
+  options.accept_acceptance_index = 0.95;
+  return options;
+}
+
+TEST(MatchByRandomWalk, FindsAnEasyPairFromNineOfTenSeeds) {
+  const SE2 T_moving_fixed{4.0, -2.0, 0.8};
+  const OccupancyGrid moving = transform_grid(building(), T_moving_fixed, building().resolution);
+  int right = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    RandomWalkMatchOptions options = quick();
+    options.walk.patience = 2000;
+    options.walk.seed = seed;
+    const MatchResult result = match_by_random_walk(building(), moving, options);
+    const Point2 middle{9.0, 6.5};
+    const Point2 back = result.T_fixed_moving * (T_moving_fixed * middle);
+    right += std::hypot(back.x - middle.x, back.y - middle.y) < 0.3 ? 1 : 0;
+  }
+  EXPECT_GE(right, 9);
+}
+
+TEST(MatchByRandomWalk, AcceptsByTheAcceptanceIndexAlone) {
+  RandomWalkMatchOptions options = quick();
+  const MatchResult same = match_by_random_walk(building(), building(), options);
+  EXPECT_EQ(same.verdict, Verdict::accepted);
+  EXPECT_EQ(same.acceptance_index, 1.0);  // the centres on each other are a start pose
+  EXPECT_EQ(same.probability, 1.0);
+  EXPECT_NEAR(same.overlap, 1.0, 1e-12);
+
+  const MatchResult other = match_by_random_walk(building(), downsample(test::draw_building(4), 2), options);
+  EXPECT_EQ(other.verdict, Verdict::refused);
+  EXPECT_EQ(other.probability, other.acceptance_index);
+  options.accept_acceptance_index = other.acceptance_index;
+  EXPECT_EQ(match_by_random_walk(building(), downsample(test::draw_building(4), 2), options).verdict,
+            Verdict::accepted);
+}
+
+TEST(MatchByRandomWalk, KeepsTheBestOfItsWalks) {
+  const OccupancyGrid other = downsample(test::draw_building(4), 2);
+  RandomWalkMatchOptions options = quick();
+  options.restarts = 4;
+  options.c_locks = {0.0, 0.01};
+  std::vector<double> c_locks;
+  double best = 0.0;
+  options.on_walk = [&](int walk, double c_lock, const RandomWalkResult& result) {
+    EXPECT_EQ(walk, static_cast<int>(c_locks.size()));
+    c_locks.push_back(c_lock);
+    best = std::max(best, result.similarity.acceptance_index());
+  };
+  const MatchResult result = match_by_random_walk(building(), other, options);
+  EXPECT_EQ(c_locks, (std::vector<double>{0.0, 0.01, 0.0, 0.01}));
+  EXPECT_EQ(result.acceptance_index, best);
+  for (std::size_t i = 1; i < result.hypotheses.size(); ++i)
+    EXPECT_LE(result.hypotheses[i].score, result.hypotheses[i - 1].score);
+}
+
+TEST(MatchByRandomWalk, MapsWithNothingKnownHaveNoHypothesis) {
+  const OccupancyGrid unknown = make_grid(30, 20, 0.1);
+  EXPECT_TRUE(match_by_random_walk(building(), unknown, quick()).hypotheses.empty());
+  EXPECT_EQ(match_by_random_walk(unknown, unknown, quick()).verdict, Verdict::refused);
+}
+
+TEST(MatchByRandomWalk, RefusesOptionsThatMakeNoSense) {
+  const auto refused = [&](auto change) {
+    RandomWalkMatchOptions options = quick();
+    change(options);
+    EXPECT_THROW(match_by_random_walk(building(), building(), options), std::invalid_argument);
+  };
+  refused([](auto& o) { o.restarts = 0; });
+  refused([](auto& o) { o.threads = -1; });
+  refused([](auto& o) { o.c_locks.clear(); });
+  refused([](auto& o) { o.c_locks = {0.0, -1.0}; });
+  refused([](auto& o) { o.c_locks = {std::nan("")}; });
+  refused([](auto& o) { o.accept_acceptance_index = 1.5; });
+  refused([](auto& o) { o.accept_acceptance_index = std::nan(""); });
+  refused([](auto& o) { o.walk.patience = 0; });
+}
+
+}  // namespace
+}  // namespace gridmerge
