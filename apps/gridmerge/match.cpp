@@ -72,7 +72,7 @@ MatchResult match_files(const MatchCommandOptions& options) {
   }
   PairMatcher matcher(options.common, options.search, [&](double share) { console.progress(share); });
   try {
-    const MatchResult result = matcher(fixed.grid, moving.grid);
+    MatchResult result = matcher(fixed.grid, moving.grid);
     matcher.write_trace();
     return result;
   } catch (const std::invalid_argument& error) {

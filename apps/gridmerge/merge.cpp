@@ -55,7 +55,7 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeComman
   };
   try {
     PairMatcher matcher(options.common, options.search);
-    const MergeResult result = merge(maps, engine, std::ref(matcher));
+    MergeResult result = merge(maps, engine, std::ref(matcher));
     matcher.write_trace();
     return result;
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one

@@ -105,6 +105,7 @@ MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid
   std::vector<RandomWalkResult> walks;
   with_threads(options.threads, [&] { walks = run_walks(fixed, moving, options); });
   std::vector<const RandomWalkResult*> ranked;
+  ranked.reserve(walks.size());
   for (const RandomWalkResult& walk : walks) ranked.push_back(&walk);
   std::stable_sort(ranked.begin(), ranked.end(), [](const auto* a, const auto* b) {
     return a->similarity.acceptance_index() > b->similarity.acceptance_index();

@@ -42,11 +42,11 @@ inline __attribute__((always_inline)) void relax_column(Column& nearest, std::ui
 inline __attribute__((always_inline)) void transpose(Eight (&rows)[kTile]) {
   for (int round = 0; round < 3; ++round) {
     Eight mixed[kTile];
-    for (int i = 0; i < kTile / 2; ++i) {
+    for (std::size_t i = 0; i < kTile / 2; ++i) {
       mixed[2 * i] = __builtin_shufflevector(rows[i], rows[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
       mixed[2 * i + 1] = __builtin_shufflevector(rows[i], rows[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
     }
-    for (int i = 0; i < kTile; ++i) rows[i] = mixed[i];
+    for (std::size_t i = 0; i < kTile; ++i) rows[i] = mixed[i];
   }
 }
 
@@ -113,7 +113,7 @@ std::uint64_t sum_where(const std::uint16_t* distances, const std::uint8_t* cell
   std::size_t i = 0;
   while (i + kStripRows <= count) {
     // The bytes of the distances are added up apart, each in 16 bits for as long as they fit.
-    constexpr std::size_t kBlock = 256 * kStripRows;
+    constexpr std::size_t kBlock = std::size_t{256} * kStripRows;
     const std::size_t last = std::min(i + kBlock, count - (count - i) % kStripRows);
     Column low{};
     Column high{};
