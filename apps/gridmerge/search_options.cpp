@@ -68,9 +68,9 @@ void add_trace_option(CLI::App& command, SearchOptions& options) {
       ->type_name("FILE");
 }
 
-PairMatcher::PairMatcher(const CommonOptions& common, const SearchOptions& options,
+PairMatcher::PairMatcher(const CommonOptions& common, SearchOptions options,
                          std::function<void(double)> progress)
-    : common_(common), options_(options), progress_(std::move(progress)), trace_(kTraceHead) {}
+    : common_(common), options_(std::move(options)), progress_(std::move(progress)), trace_(kTraceHead) {}
 
 MatchResult PairMatcher::operator()(const OccupancyGrid& fixed, const OccupancyGrid& moving) {
   ++matches_;

@@ -37,8 +37,7 @@ void add_trace_option(CLI::App& command, SearchOptions& options);
 class PairMatcher {
  public:
   /// `progress` is told how much of a match is done, in [0, 1].
-  PairMatcher(const CommonOptions& common, const SearchOptions& options,
-              std::function<void(double)> progress = {});
+  PairMatcher(const CommonOptions& common, SearchOptions options, std::function<void(double)> progress = {});
 
   MatchResult operator()(const OccupancyGrid& fixed, const OccupancyGrid& moving);
 

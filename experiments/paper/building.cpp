@@ -54,8 +54,8 @@ double Dice::roll() {  // SplitMix64 (Steele, Lea & Flood 2014)
 Building::Building(std::uint64_t seed) {
   Dice dice(seed);
   floors_.push_back({kHallLeft, kHallBottom, kHallRight, kHallTop});
-  const Floor west{4.0, 46.0, kHallLeft, 50.0}, east{kHallRight, 44.0, 96.0, 47.5};
-  const Floor north{47.0, kHallTop, 51.0, 96.0}, south{54.0, 4.0, 57.0, kHallBottom};
+  const Floor west{4.0, 46.0, kHallLeft, 50.0}, east{kHallRight, 38.0, 96.0, 41.5};
+  const Floor north{56.0, kHallTop, 60.0, 96.0}, south{40.0, 4.0, 43.0, kHallBottom};
   for (const Floor& corridor : {west, east, north, south}) floors_.push_back(corridor);
   add_rooms(dice, true, west.bottom, west.top, west.left, west.right - 1.0);
   add_rooms(dice, true, east.bottom, east.top, east.left + 1.0, east.right);

@@ -15,12 +15,16 @@ std::vector<RobotMap> make_maps(int side) {
   constexpr double kRange = 20.0;    // [m]
   const Building building(20060701);
   const std::vector<std::vector<Point2>> paths{
-      {{20.0, 48.0}, {38.0, 48.0}, {45.0, 55.0}, {74.0, 45.5}},  // hall, and both corridors' beginnings
-      {{30.0, 48.0}, {45.0, 40.0}, {62.0, 46.0}, {84.0, 45.5}},  // the same, more to the east
-      {{8.0, 48.0}, {28.0, 48.0}},                               // west corridor, looking into the hall
-      {{55.5, 8.0}, {55.5, 34.0}, {46.0, 50.0}},                 // south corridor and hall
-      {{49.0, 90.0}, {49.0, 58.0}, {60.0, 50.0}},                // north corridor and hall
-      {{92.0, 45.5}, {64.0, 45.5}, {55.5, 30.0}, {55.5, 10.0}},  // east and south corridors
+      {{20.0, 48.0}, {38.0, 48.0}, {45.0, 55.0}, {64.0, 40.0}, {74.0, 39.7}},  // hall, and two corridors
+      {{30.0, 48.0}, {45.0, 40.0}, {62.0, 42.0}, {84.0, 39.7}},                // the same, more to the east
+      {{8.0, 48.0}, {28.0, 48.0}},                 // west corridor, looking into the hall
+      {{41.5, 8.0}, {41.5, 34.0}, {46.0, 50.0}},   // south corridor and hall
+      {{58.0, 90.0}, {58.0, 58.0}, {50.0, 50.0}},  // north corridor and hall
+      {{92.0, 39.7},
+       {64.0, 39.7},
+       {44.0, 40.0},
+       {41.5, 34.0},
+       {41.5, 10.0}},  // east and south corridors, hall
   };
   std::vector<RobotMap> maps;
   for (std::size_t i = 0; i < paths.size(); ++i)

@@ -42,16 +42,23 @@ double error_of(const Pair& pair, const SE2& T_fixed_moving) {
   return rms_displacement(pair.moving->map, T_fixed_moving, pair.truth());
 }
 
-Run walk(const Pair& pair, double c_lock, std::uint64_t seed) {
+/// How often walks are made, and under which c_lock.
+struct Walks {
+  double c_lock;
+  int restarts;
+};
+
+Run walk(const Pair& pair, const Walks& walks, std::uint64_t seed) {
   Run run;
   RandomWalkMatchOptions options;
   options.walk.seed = seed;
-  options.c_locks = {c_lock};
+  options.c_locks = {walks.c_lock};
+  options.restarts = walks.restarts;
   options.accept_acceptance_index = kAcceptanceIndex;
   options.threads = 1;
   options.on_walk = [&](int, double, const RandomWalkResult& walked) {
-    run.steps = walked.proposals;
-    run.accepted_steps = walked.accepted;
+    run.steps += walked.proposals;
+    run.accepted_steps += walked.accepted;
   };
   const MatchResult result = match_by_random_walk(pair.fixed->map, pair.moving->map, options);
   run.acceptance_index = result.acceptance_index;
@@ -84,6 +91,7 @@ double median(std::vector<double> values) {
 template <typename Value>
 double median_of(const std::vector<Run>& runs, Value Run::*value) {
   std::vector<double> values;
+  values.reserve(runs.size());
   for (const Run& run : runs) values.push_back(static_cast<double>(run.*value));
   return median(values);
 }
@@ -112,18 +120,23 @@ constexpr const char* kHead =
 
 std::string compare(const Pair& pair, int seeds, const std::filesystem::path& folder) {
   std::string table;
-  for (const double c_lock : {0.0, 7.5}) {
+  std::vector<Walks> settings{{0.0, 1}, {7.5, 1}};
+  if (pair.fixed->map.width <= 400) settings.push_back({7.5, 4});  // on large maps this takes minutes
+  for (const Walks& walks : settings) {
+    const std::string method =
+        fmt::format("walk, c_lock {}{}", walks.c_lock,
+                    walks.restarts > 1 ? fmt::format(", {} restarts", walks.restarts) : "");
     std::vector<Run> runs;
     for (int seed = 1; seed <= seeds; ++seed) {
-      runs.push_back(walk(pair, c_lock, static_cast<std::uint64_t>(seed)));
-      std::fprintf(stderr, "  %s, c_lock %.1f, seed %d of %d: %.1f s\n", pair.name.c_str(), c_lock, seed,
-                   seeds, runs.back().seconds);
+      runs.push_back(walk(pair, walks, static_cast<std::uint64_t>(seed)));
+      fmt::print(stderr, "  {}, {}, seed {} of {}: {:.1f} s\n", pair.name, method, seed, seeds,
+                 runs.back().seconds);
     }
-    table += row(pair.name, fmt::format("walk, c_lock {}", c_lock), runs);
+    table += row(pair.name, method, runs);
     const auto best = std::max_element(runs.begin(), runs.end(), [](const Run& a, const Run& b) {
       return a.acceptance_index < b.acceptance_index;
     });
-    write_file_atomically(folder / fmt::format("{}_walk_{}.png", pair.name, c_lock),
+    write_file_atomically(folder / fmt::format("{}_walk_{}_{}.png", pair.name, walks.c_lock, walks.restarts),
                           draw_merged(pair, best->T_fixed_moving));
   }
   const Run exhaustive = search(pair);
@@ -152,6 +165,7 @@ std::string describe_merge(const std::vector<RobotMap>& maps, const std::string&
 
 std::string merge_all(const std::vector<RobotMap>& robots) {
   std::vector<OccupancyGrid> maps;
+  maps.reserve(robots.size());
   for (const RobotMap& robot : robots) maps.push_back(robot.map);
   std::string table =
       "| method | components | maps placed | of them right | seconds |\n|---|---|---|---|---|\n";

@@ -83,7 +83,8 @@ class LineTaker {
       }
     }
     if (best_angle < 0) return 0;
-    const float middle = (static_cast<float>(best_offset - offsets_ / 2) + 0.5F) * kOffsetBin;
+    const int from_origin = best_offset - offsets_ / 2;
+    const float middle = (static_cast<float>(from_origin) + 0.5F) * kOffsetBin;
     return std::erase_if(points, [&](const MetPoint& point) {
       return turn_between(point.angle, best_angle, kAngles) <= kTakenAngles &&
              std::abs(distance(point, best_angle) - middle) <= kTakenOffset;
