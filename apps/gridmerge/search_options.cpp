@@ -36,15 +36,14 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
           "index on, 0.98 if not given")
       ->type_name("P")
       ->check(kProbability);
-  CLI::Option* c_lock =
-      command
-          .add_option(
-              "--c-lock", options.c_locks,
-              "Random walk: weight of disagreement less agreement; several, with commas, are used in turn")
-          ->type_name("C,...")
-          ->delimiter(',')
-          ->check(kNotNegative)
-          ->capture_default_str();
+  CLI::Option* c_lock = command
+                            .add_option("--c-lock", options.c_locks,
+                                        "Random walk: weight of disagreement less agreement, 0 if not given; "
+                                        "several, with commas, are used "
+                                        "in turn")
+                            ->type_name("C,...")
+                            ->delimiter(',')
+                            ->check(kNotNegative);
   CLI::Option* restarts =
       command.add_option("--restarts", options.restarts, "Random walk: how many walks; the best is kept")
           ->type_name("N")

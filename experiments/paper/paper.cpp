@@ -196,11 +196,18 @@ std::string merge_all(const std::vector<RobotMap>& robots) {
   return table;
 }
 
-std::string describe_shared(const Pair& pair) {
+std::string describe(const Pair& pair) {
   const auto shared = measure_shared(pair);
+  const ImageSimilarity truth = measure_similarity(pair.fixed->map, pair.moving->map, pair.truth());
+  double least = truth.psi();
+  for (const MeasuredPose& start : measure_start_poses(pair.fixed->map, pair.moving->map))
+    least = std::min(least, start.similarity.psi());
   return fmt::format(
-      "- {}: {:.2f} % of the fixed map's known cells and {:.2f} % of the moving map's are known in both\n",
-      pair.name, 100.0 * shared.of_fixed, 100.0 * shared.of_moving);
+      "- {}: {:.2f} % of the fixed map's known cells and {:.2f} % of the moving map's are known in both; at "
+      "the truth psi "
+      "is {:.1f} and ai {:.4f}; the least psi there and at the start poses is {:.1f}\n",
+      pair.name, 100.0 * shared.of_fixed, 100.0 * shared.of_moving, truth.psi(), truth.acceptance_index(),
+      least);
 }
 
 void run(const std::filesystem::path& folder) {
@@ -213,7 +220,7 @@ void run(const std::filesystem::path& folder) {
                                                       {{"m3_m4", &small[2], &small[3]}, 10},
                                                       {{"m1_m2_1000", &large[0], &large[1]}, 3}};
   std::string report = "# The paper's experiments, made again\n\n";
-  for (const auto& [pair, seeds] : experiments) report += describe_shared(pair);
+  for (const auto& [pair, seeds] : experiments) report += describe(pair);
   report += std::string("\n") + kHead;
   for (const auto& [pair, seeds] : experiments) report += compare(pair, seeds, folder);
   report += "\nSix maps of 400 x 400 cells up the binary tree:\n\n" + merge_all(small);
