@@ -30,6 +30,8 @@ struct MatchCommandOptions {
 
 std::string describe_verdict(const MatchResult& result, const SearchOptions& search) {
   if (search.random_walk() && !result.hypotheses.empty()) {
+    if (result.verdict == Verdict::refused && result.acceptance_index >= search.accept_from())
+      return "refused: a map has no free or no occupied cells there, so the acceptance index says nothing";
     return fmt::format("{}: the acceptance index is {:.4f}, and {} is asked for", name_of(result.verdict),
                        result.acceptance_index, search.accept_from());
   }

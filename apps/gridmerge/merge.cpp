@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <functional>
 #include <iterator>
 #include <memory>
 #include <stdexcept>
@@ -53,9 +52,16 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeComman
   engine.progress = [&](std::size_t done, std::size_t total) {
     console.progress(static_cast<double>(done) / static_cast<double>(total));
   };
+  PairMatcher matcher(options.common, options.search);
+  const auto match_named = [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+    try {
+      return matcher(fixed, moving);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(fmt::format("{}: {}", fmt::join(options.maps, ", "), error.what()));
+    }
+  };
   try {
-    PairMatcher matcher(options.common, options.search);
-    MergeResult result = merge(maps, engine, std::ref(matcher));
+    MergeResult result = merge(maps, engine, match_named);
     matcher.write_trace();
     return result;
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one

@@ -45,17 +45,30 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
                             ->delimiter(',')
                             ->check(kNotNegative);
   CLI::Option* restarts =
-      command.add_option("--restarts", options.restarts, "Random walk: how many walks; the best is kept")
+      command
+          .add_option("--restarts", options.restarts,
+                      "Random walk: how many walks, the best is kept; one for each c_lock if not given")
           ->type_name("N")
-          ->check(CLI::Range(1, 1000).description(""))
-          ->capture_default_str();
+          ->check(CLI::Range(1, 1000).description(""));
+  CLI::Option* temperature = command
+                                 .add_option("--temperature", options.temperature,
+                                             "Random walk: a sample whose Delta is worse by d is accepted "
+                                             "with probability exp(-d/T); 0 climbs")
+                                 ->type_name("T")
+                                 ->check(kNotNegative)
+                                 ->capture_default_str();
   CLI::Option* seed = command.add_option("--seed", options.seed, "Random walk: of the first walk")
                           ->type_name("N")
                           ->check(kWholeNumber)
                           ->capture_default_str();
-  command.parse_complete_callback([&options, c_lock, restarts, seed] {
-    if (options.random_walk()) return;
-    for (const CLI::Option* option : {c_lock, restarts, seed}) {
+  command.parse_complete_callback([&options, c_lock, restarts, temperature, seed] {
+    if (options.random_walk()) {
+      if (options.restarts && static_cast<std::size_t>(*options.restarts) < options.c_locks.size())
+        throw CLI::ValidationError("--restarts",
+                                   "is less than the number of --c-lock, which are used in turn");
+      return;
+    }
+    for (const CLI::Option* option : {c_lock, restarts, temperature, seed}) {
       if (option->count() > 0) throw CLI::ValidationError(option->get_name(), "needs --search random-walk");
     }
     if (!options.trace.empty()) throw CLI::ValidationError("--trace", "needs --search random-walk");
@@ -84,7 +97,8 @@ MatchResult PairMatcher::operator()(const OccupancyGrid& fixed, const OccupancyG
   engine.walk.seed = options_.seed;
   engine.walk.record_trace = !options_.trace.empty();
   engine.c_locks = options_.c_locks;
-  engine.restarts = options_.restarts;
+  engine.restarts = options_.restarts.value_or(static_cast<int>(options_.c_locks.size()));
+  engine.walk.temperature = options_.temperature;
   engine.accept_acceptance_index = options_.accept_from();
   engine.threads = common_.threads;
   if (progress_) engine.progress = [&](int done, int all) { progress_(static_cast<double>(done) / all); };

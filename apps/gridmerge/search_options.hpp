@@ -19,7 +19,8 @@ struct SearchOptions {
   std::string method = "exhaustive";
   std::optional<double> accept;  // probability, or acceptance index of the random walk
   std::vector<double> c_locks{0.0};
-  int restarts = 1;
+  std::optional<int> restarts;  // one for each c_lock if not given
+  double temperature = 0.0;
   std::uint64_t seed = 1;
   std::string trace;
 

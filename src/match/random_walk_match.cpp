@@ -39,7 +39,7 @@ SE2 choose_start(const std::vector<MeasuredPose>& starts, double c_lock, std::si
   std::vector<std::size_t> order(starts.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return starts[a].similarity.delta(c_lock) < starts[b].similarity.delta(c_lock);
+    return is_better(starts[a].similarity, starts[b].similarity, c_lock);
   });
   return starts[order[rank % order.size()]].T_fixed_moving;
 }
@@ -120,7 +120,9 @@ MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid
   result.disagreement = best.similarity.disagreement;
   // The counts are in cells of the fixed map.
   result.overlap = measure_overlap(moving, fixed, {result.agreement, result.disagreement});
-  const bool accepted = result.agreement > 0 && result.acceptance_index >= options.accept_acceptance_index;
+  // Without free or without occupied cells in both maps every pose at which they touch has a perfect index.
+  const bool comparable = result.agreement > 0 && best.similarity.undefined_terms() == 0;
+  const bool accepted = comparable && result.acceptance_index >= options.accept_acceptance_index;
   result.verdict = accepted ? Verdict::accepted : Verdict::refused;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (options.on_walk) {

@@ -89,18 +89,20 @@ class Poses {
   double cell_;  // [m]
 };
 
+/// So many steps make a covariance of three numbers.
+constexpr std::size_t kLeastMemory = 4;
+
 /// Normal proposals, learnt from the last accepted steps.
 class Proposals {
  public:
   explicit Proposals(const RandomWalkOptions& options)
-      : options_(options),
-        shape_(Eigen::Matrix3d::Identity() * options.first_step),
-        largest_deviation_(options.first_step) {}
+      : options_(options), deviations_(Step::Constant(options.first_step)) {}
 
   Step draw(std::mt19937_64& random) {
-    Step standard;
-    for (double& value : standard) value = normal_(random);
-    return mean_ + scale_ * (shape_ * standard);
+    Step step;
+    for (int i = 0; i < 3; ++i)
+      step[i] = std::max(scale_ * deviations_[i], options_.smallest_step) * normal_(random);
+    return mean_ + axes_ * step;
   }
 
   /// Samples that are refused again and again come from steps that are too large; when the steps cannot
@@ -110,7 +112,7 @@ class Proposals {
     if (++refused_ % kPatience != 0) return;
     scale_ *= 0.5;
     mean_.setZero();
-    if (scale_ * largest_deviation_ < options_.smallest_step) scale_ = 1.0;
+    if (scale_ * deviations_.maxCoeff() < options_.smallest_step) scale_ = 1.0;
   }
 
   void learn(const Step& accepted) {
@@ -118,31 +120,28 @@ class Proposals {
     scale_ = 1.0;
     steps_.push_back(accepted);
     if (steps_.size() > options_.memory) steps_.pop_front();
-    constexpr std::size_t kEnough = 4;  // for a covariance of three numbers
-    if (steps_.size() < kEnough) return;
+    if (steps_.size() < kLeastMemory) return;
     const double count = static_cast<double>(steps_.size());
     mean_.setZero();
     for (const Step& step : steps_) mean_ += step / count;
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     for (const Step& step : steps_) covariance += (step - mean_) * (step - mean_).transpose() / (count - 1.0);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
-    Step deviations;
+    axes_ = eigen.eigenvectors();
     for (int i = 0; i < 3; ++i) {
-      deviations[i] = std::clamp(std::sqrt(std::max(0.0, eigen.eigenvalues()[i])), options_.smallest_step,
-                                 options_.largest_step);
+      deviations_[i] = std::clamp(std::sqrt(std::max(0.0, eigen.eigenvalues()[i])), options_.smallest_step,
+                                  options_.largest_step);
     }
-    shape_ = eigen.eigenvectors() * deviations.asDiagonal();
-    largest_deviation_ = deviations.maxCoeff();
   }
 
  private:
   const RandomWalkOptions& options_;
   std::deque<Step> steps_;
   Step mean_ = Step::Zero();
-  Eigen::Matrix3d shape_;  // a square root of the covariance
-  double largest_deviation_;
-  double scale_ = 1.0;  // of the steps, since the last accepted one
-  int refused_ = 0;     // since then
+  Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  // of the covariance
+  Step deviations_;                                     // along them
+  double scale_ = 1.0;                                  // of the steps, since the last accepted one
+  int refused_ = 0;                                     // since then
   std::normal_distribution<double> normal_;
 };
 
@@ -160,9 +159,12 @@ struct Sample {
 };
 
 /// The random selector of the paper: decides whether the walk goes to a sample.
-bool select(double worse_by, double temperature, std::mt19937_64& random) {
-  if (worse_by < 0.0) return true;
-  if (temperature <= 0.0) return false;
+bool select(const Sample& proposed, const Sample& current, const RandomWalkOptions& options,
+            double temperature, std::mt19937_64& random) {
+  if (is_better(proposed.similarity, current.similarity, options.c_lock)) return true;
+  const bool comparable = proposed.similarity.undefined_terms() == current.similarity.undefined_terms();
+  if (temperature <= 0.0 || !comparable) return false;
+  const double worse_by = proposed.delta - current.delta;
   return std::uniform_real_distribution<double>()(random) < std::exp(-worse_by / temperature);
 }
 
@@ -193,10 +195,12 @@ void validate(const RandomWalkOptions& options) {
   const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
   if (!(options.c_lock >= 0.0 && std::isfinite(options.c_lock)))
     throw std::invalid_argument("c_lock must be a number, and not negative");
-  if (options.memory < 2) throw std::invalid_argument("the walk must remember at least two samples");
-  if (!positive(options.first_step) || !positive(options.smallest_step) ||
-      !(options.largest_step >= options.smallest_step && std::isfinite(options.largest_step)))
-    throw std::invalid_argument("the walk's steps must be positive, and the largest not below the smallest");
+  if (options.memory < kLeastMemory)
+    throw std::invalid_argument("the walk must remember at least four samples");
+  if (!positive(options.smallest_step) || !positive(options.largest_step) ||
+      !(options.first_step >= options.smallest_step && options.first_step <= options.largest_step))
+    throw std::invalid_argument(
+        "the walk's steps must be positive, and the first one between the smallest and the largest");
   if (!(options.temperature >= 0.0 && std::isfinite(options.temperature)))
     throw std::invalid_argument("the temperature must not be negative");
   if (!(options.cooling > 0.0 && options.cooling <= 1.0))
@@ -242,9 +246,12 @@ RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& mo
     const SE2 T = poses.moved(current.T_fixed_moving, proposals.draw(random));
     ++result.proposals;
     temperature *= options.cooling;
-    if (!poses.may_touch(T)) continue;
+    if (!poses.may_touch(T)) {
+      proposals.learn_refusal();
+      continue;
+    }
     const Sample proposed = measure(T);
-    if (!select(proposed.delta - current.delta, temperature, random)) {
+    if (!select(proposed, current, options, temperature, random)) {
       proposals.learn_refusal();
       continue;
     }
@@ -252,7 +259,7 @@ RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& mo
     current = proposed;
     ++result.accepted;
     if (options.record_trace) result.trace.push_back(describe(result.proposals, current));
-    if (current.delta >= best.delta) continue;
+    if (!is_better(current.similarity, best.similarity, options.c_lock)) continue;
     best = current;
     last_improvement = result.proposals;
   }

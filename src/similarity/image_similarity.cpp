@@ -18,6 +18,15 @@ namespace {
 constexpr std::uint8_t kFree = static_cast<std::uint8_t>(Cell::free);
 constexpr std::uint8_t kOccupied = static_cast<std::uint8_t>(Cell::occupied);
 
+constexpr double kMaxRatio =
+    100.0;  // of resolutions: keeps cells of either map within fixed-point arithmetic
+
+void check_resolutions(const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+  const double ratio = fixed.resolution / moving.resolution;
+  if (!(ratio <= kMaxRatio && ratio >= 1.0 / kMaxRatio))
+    throw std::invalid_argument("the maps' resolutions differ by more than 100 times");
+}
+
 int round_up(int value, int multiple) {
   return (value + multiple - 1) / multiple * multiple;
 }
@@ -34,10 +43,11 @@ struct SimilarityMeter::Maps {
 
   Maps(const OccupancyGrid& fixed_map, const OccupancyGrid& moving_map)
       : fixed(crop_to_known(fixed_map)), moving(crop_to_known(moving_map)) {
-    // A turned map is at most sqrt(2) times as wide; two of them must fit.
-    if (fixed.width + fixed.height + 2 * (moving.width + moving.height) > kMaxDistanceMapSides) {
+    // A turned map is at most sqrt(2) times as wide, and need only touch the other one.
+    const double moving_sides = (moving.width + moving.height) * moving.resolution / fixed.resolution;
+    if (fixed.width + fixed.height + 3.0 * moving_sides > kMaxDistanceMapSides) {
       throw std::invalid_argument("the maps are too large for the image similarity: it takes about " +
-                                  std::to_string(kMaxDistanceMapSides / 6) + " cells a side");
+                                  std::to_string(kMaxDistanceMapSides / 8) + " cells a side");
     }
     const auto* cells = reinterpret_cast<const std::uint8_t*>(fixed.cells.data());
     for (const std::uint8_t value : {kFree, kOccupied}) {
@@ -207,6 +217,7 @@ SimilarityMeter::SimilarityMeter(const OccupancyGrid& fixed, const OccupancyGrid
     : scratch_(std::make_unique<Scratch>()) {
   validate(fixed);
   validate(moving);
+  check_resolutions(fixed, moving);
   maps_ = std::make_shared<Maps>(fixed, moving);
 }
 
@@ -227,7 +238,7 @@ ImageSimilarity SimilarityMeter::operator()(const SE2& T_fixed_moving) {
       kMaxDistanceMapSides) {
     throw std::invalid_argument("the transform puts the maps too far apart");
   }
-  draw_nearest_cells(maps.moving, T_fixedgrid_movinggrid, resolution, kStripRows, moving);
+  draw_nearest_cells(maps.moving, T_fixedgrid_movinggrid, resolution, box, kStripRows, moving);
 
   ImageSimilarity result;
   const CommonCells common = compare_cells(moving, maps.fixed);
@@ -247,6 +258,11 @@ ImageSimilarity SimilarityMeter::operator()(const SE2& T_fixed_moving) {
   return result;
 }
 
+bool is_better(const ImageSimilarity& a, const ImageSimilarity& b, double c_lock) {
+  if (a.undefined_terms() != b.undefined_terms()) return a.undefined_terms() < b.undefined_terms();
+  return a.delta(c_lock) < b.delta(c_lock);
+}
+
 ImageSimilarity measure_similarity(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                    const SE2& T_fixed_moving) {
   return SimilarityMeter(fixed, moving)(T_fixed_moving);
@@ -257,9 +273,12 @@ std::int64_t count_equal_cells(const OccupancyGrid& fixed, const OccupancyGrid& 
   validate(fixed);
   validate(moving);
   check_finite(T_fixed_moving);
+  check_resolutions(fixed, moving);
+  const SE2 T_fixedgrid_movinggrid = between_grids(fixed, moving, T_fixed_moving);
+  const CellBox all{0, 0, fixed.width, fixed.height};
+  const CellBox box = intersect(box_on_lattice(moving, T_fixedgrid_movinggrid, fixed.resolution), all);
   CellsOnLattice drawn;
-  draw_nearest_cells(moving, between_grids(fixed, moving, T_fixed_moving), fixed.resolution, 1, drawn);
-  const CellBox& box = drawn.box;
+  draw_nearest_cells(moving, T_fixedgrid_movinggrid, fixed.resolution, box, 1, drawn);
   std::int64_t equal = 0;
   for (int row = 0; row < fixed.height; ++row) {
     for (int column = 0; column < fixed.width; ++column) {

@@ -57,10 +57,17 @@ CellBox box_on_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, dou
           static_cast<int>(std::floor(right)) + 1, static_cast<int>(std::floor(top)) + 1};
 }
 
+CellBox intersect(const CellBox& a, const CellBox& b) {
+  CellBox common{std::max(a.left, b.left), std::max(a.bottom, b.bottom), std::min(a.right, b.right),
+                 std::min(a.top, b.top)};
+  common.right = std::max(common.left, common.right);
+  common.top = std::max(common.bottom, common.top);
+  return common;
+}
+
 void draw_nearest_cells(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution,
-                        std::size_t stride_multiple, CellsOnLattice& result) {
-  result.box = box_on_lattice(grid, T_lattice_grid, lattice_resolution);
-  const CellBox& box = result.box;
+                        const CellBox& box, std::size_t stride_multiple, CellsOnLattice& result) {
+  result.box = box;
   result.stride =
       (static_cast<std::size_t>(box.width()) + stride_multiple - 1) / stride_multiple * stride_multiple;
   result.cells.assign(result.stride * static_cast<std::size_t>(box.height()), 0);

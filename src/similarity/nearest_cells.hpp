@@ -36,11 +36,14 @@ struct CellsOnLattice {
 /// `lattice_resolution` metres. Throws std::invalid_argument if coordinates exceed a million cells. O(1).
 CellBox box_on_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution);
 
-/// Gives every cell of the lattice the value of the cell of `grid` under its centre. `stride` of the
-/// result is a multiple of `stride_multiple`. Fixed-point arithmetic with 40 fractional bits of a cell: no
-/// rounding to and from floating point inside, and the same bits on every machine. Reuses the result's
-/// memory. O(cells of the box).
+/// The cells of both boxes; empty, but not negative in size, if there are none.
+CellBox intersect(const CellBox& a, const CellBox& b);
+
+/// Gives every cell of `box` on the lattice the value of the cell of `grid` under its centre. `stride` of the
+/// result is a multiple of `stride_multiple`. Fixed-point arithmetic with 40 fractional bits of a cell, so
+/// the box must lie within the grid's own (box_on_lattice), which must be within 2^22 cells of the grid.
+/// Reuses the result's memory. O(cells of the box).
 void draw_nearest_cells(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution,
-                        std::size_t stride_multiple, CellsOnLattice& result);
+                        const CellBox& box, std::size_t stride_multiple, CellsOnLattice& result);
 
 }  // namespace gridmerge

@@ -89,12 +89,24 @@ TEST_F(RandomWalk, MergesUpTheTree) {
 }
 
 TEST_F(RandomWalk, MapsWithNothingToCompareAreRefused) {
-  const std::string empty = write_map(directory, "empty", make_grid(20, 20, 0.1, {}, Cell::free));
-  for (const auto& [a, b] : {std::pair{whole, empty}, std::pair{empty, whole}, std::pair{empty, empty}}) {
+  const std::string all_free = write_map(directory, "free", make_grid(20, 20, 0.1, {}, Cell::free));
+  const std::string a_cell = write_map(directory, "cell", make_grid(1, 1, 0.1, {}, Cell::occupied));
+  for (const auto& [a, b] :
+       {std::pair{whole, all_free}, std::pair{all_free, whole}, std::pair{all_free, all_free},
+        std::pair{whole, a_cell}, std::pair{a_cell, a_cell}}) {
     const Outcome outcome = run({"match", a, b, "--search", "random-walk", "--quiet", "--json"});
-    EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 3) << outcome.err;
+    EXPECT_EQ(outcome.exit_code, 3) << a << " " << b << outcome.err;
     EXPECT_TRUE(Json::accept(outcome.out));
   }
+}
+
+TEST_F(RandomWalk, ResolutionsTooFarApartAreAnErrorThatNamesTheMaps) {
+  OccupancyGrid map = make_grid(20, 20, 0.0001, {}, Cell::free);
+  map.at(3, 3) = Cell::occupied;
+  const std::string fine = write_map(directory, "fine", map);
+  expect_error(run({"match", whole, fine, "--search", "random-walk"}), fine, "resolutions");
+  const std::string output = (directory.path() / "out").string();
+  expect_error(run({"merge", whole, fine, "-o", output, "--search", "random-walk"}), fine, "resolutions");
 }
 
 class WrongWalk : public testing::TestWithParam<std::vector<std::string>> {};

@@ -95,6 +95,10 @@ TEST(RandomWalk, ASeedReproducesItBitForBit) {
   EXPECT_EQ(one.delta, again.delta);
   EXPECT_EQ(one.proposals, again.proposals);
   ASSERT_EQ(one.trace.size(), again.trace.size());
+  for (std::size_t i = 0; i < one.trace.size(); ++i) {
+    EXPECT_EQ(one.trace[i].T_fixed_moving, again.trace[i].T_fixed_moving);
+    EXPECT_EQ(one.trace[i].delta, again.trace[i].delta);
+  }
   options.seed = 6;
   EXPECT_FALSE(random_walk(pair.fixed, pair.moving, pair.start, options).T_fixed_moving ==
                one.T_fixed_moving);
@@ -133,6 +137,34 @@ TEST(RandomWalk, HillClimbingNeverGoesBack) {
     EXPECT_LT(result.trace[i].delta, result.trace[i - 1].delta);
 }
 
+TEST(RandomWalk, TemperatureAcceptsWorseSamplesAndCoolingEndsIt) {
+  const EasyPair pair;
+  RandomWalkOptions options;
+  options.patience = 400;
+  options.record_trace = true;
+  options.temperature = 2.0;
+  const auto count_worse = [&](std::size_t from_step) {
+    const RandomWalkResult result = random_walk(pair.fixed, pair.moving, pair.start, options);
+    int worse = 0;
+    for (std::size_t i = 1; i < result.trace.size(); ++i)
+      worse += result.trace[i].step > from_step && result.trace[i].delta >= result.trace[i - 1].delta ? 1 : 0;
+    return worse;
+  };
+  EXPECT_GT(count_worse(0), 10);
+  options.cooling = 0.9;
+  EXPECT_EQ(count_worse(200), 0);  // 2 * 0.9^200 is nothing
+}
+
+TEST(RandomWalk, AMapIsNotLostBetweenTheCellsOfACoarseOne) {
+  // A moving map of half a cell can be drawn nowhere; that must not pass for a perfect fit.
+  OccupancyGrid fixed = test::random_grid(1, 20, 20);
+  fixed.resolution = 5.0;
+  OccupancyGrid moving = test::random_grid(2, 30, 30);
+  moving.resolution = 0.1;
+  const RandomWalkResult result = random_walk(fixed, moving, {50.0, 50.0, 0.3});
+  EXPECT_GT(result.similarity.agreement + result.similarity.disagreement, 0);
+}
+
 TEST(RandomWalk, StopsWhenItsPatienceOrItsProposalsRunOut) {
   const OccupancyGrid map = test::random_grid(1, 30, 30);
   RandomWalkOptions options;
@@ -161,8 +193,9 @@ TEST(RandomWalk, RefusesOptionsThatMakeNoSense) {
   };
   refused([](auto& o) { o.c_lock = -1.0; });
   refused([](auto& o) { o.c_lock = std::nan(""); });
-  refused([](auto& o) { o.memory = 1; });
+  refused([](auto& o) { o.memory = 3; });
   refused([](auto& o) { o.first_step = 0.0; });
+  refused([](auto& o) { o.first_step = 50.0; });
   refused([](auto& o) { o.smallest_step = 50.0; });
   refused([](auto& o) { o.temperature = -1.0; });
   refused([](auto& o) { o.cooling = 1.5; });

@@ -101,6 +101,34 @@ TEST(ImageSimilarity, EqualsTheLiteralOneUnderAnyTransform) {
   }
 }
 
+TEST(ImageSimilarity, EqualsTheLiteralOneOnMapsLargerThanAnyBlockOfTheKernels) {
+  std::mt19937 random(8);
+  for (const double resolution : {0.1, 0.073}) {
+    OccupancyGrid fixed = random_map(random, 430, 310);
+    OccupancyGrid moving = random_map(random, 360, 405, resolution);
+    for (OccupancyGrid* map :
+         {&fixed, &moving}) {  // nearly all of one class, so that sums and counts are large
+      for (std::size_t i = 0; i < map->cells.size(); ++i)
+        map->cells[i] = i % 997 == 0 ? Cell::occupied : Cell::free;
+    }
+    expect_literal(fixed, moving, {3.0, -7.0, 0.6}, 300);
+    expect_literal(fixed, moving, {31.0, 12.0, -2.0}, 500);
+  }
+}
+
+TEST(ImageSimilarity, FewerUndefinedDistancesAreBetterWhateverDelta) {
+  ImageSimilarity whole;
+  whole.fixed_to_moving_free = whole.moving_to_fixed_free = {100, 1};
+  whole.fixed_to_moving_occupied = whole.moving_to_fixed_occupied = {100, 1};
+  const ImageSimilarity lost;
+  EXPECT_TRUE(is_better(whole, lost, 0.0));
+  EXPECT_FALSE(is_better(lost, whole, 0.0));
+  ImageSimilarity better = whole;
+  better.agreement = 1;
+  EXPECT_TRUE(is_better(better, whole, 1.0));
+  EXPECT_FALSE(is_better(better, whole, 0.0));
+}
+
 TEST(ImageSimilarity, EqualsTheLiteralOneForPlainShiftsAndQuarterTurns) {
   std::mt19937 random(3);
   for (int run = 0; run < 60; ++run) {
@@ -194,6 +222,10 @@ TEST(ImageSimilarity, RefusesWhatItCannotMeasure) {
   EXPECT_THROW(measure_similarity(map, map, {std::nan(""), 0.0, 0.0}), std::invalid_argument);
   EXPECT_THROW(measure_similarity(map, map, {1e4, 0.0, 0.0}), std::invalid_argument);
   EXPECT_THROW(measure_similarity(map, map, {1e300, 0.0, 0.0}), std::invalid_argument);
+  const OccupancyGrid fine = make_grid(6, 4, 0.0009, {}, Cell::free);
+  EXPECT_THROW(measure_similarity(map, fine, {}), std::invalid_argument);
+  EXPECT_THROW(measure_similarity(fine, map, {}), std::invalid_argument);
+  EXPECT_THROW(count_equal_cells(fine, map, {}), std::invalid_argument);
   const OccupancyGrid long_map = make_grid(kMaxDistanceMapSides, 1, 0.1, {}, Cell::free);
   EXPECT_THROW(measure_similarity(map, long_map, {}), std::invalid_argument);
   EXPECT_THROW(count_equal_cells(map, map, {0.0, 0.0, std::nan("")}), std::invalid_argument);

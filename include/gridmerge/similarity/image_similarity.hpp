@@ -16,12 +16,12 @@ namespace gridmerge {
 //
 // They compare cells of one lattice. Here that is the fixed map's, continued without end: each of its cells
 // takes the value of the moving cell in which its centre falls (nearest cell), and is unknown where there is
-// none. Centres are computed with 32 fractional bits of a cell; one that falls on the edge between two cells
-// to that precision may go to either.
+// none. A centre that falls on the edge between two cells, to about a millionth of a cell, may go to
+// either.
 
 /// omega (eq. 2): cells of the fixed map that have the same value, unknown included, as the moving map's
 /// there. Symmetric for maps of one size and origin under the identity. Throws std::invalid_argument for
-/// invalid grids. O(cells of both).
+/// invalid grids, and for resolutions that differ by more than 100 times. O(cells of the fixed map).
 std::int64_t count_equal_cells(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                const SE2& T_fixed_moving);
 
@@ -69,6 +69,10 @@ struct ImageSimilarity {
   }
 };
 
+/// Whether `a` is the better pose of the two: fewer undefined distances (which count nothing, and would
+/// reward a pose at which a class is lost), then the smaller Delta.
+bool is_better(const ImageSimilarity& a, const ImageSimilarity& b, double c_lock);
+
 /// Measures poses of one pair of maps. The fixed map's distance maps are made once; a pose then costs the
 /// moving map's turning, its two distance maps and the sums, in memory that is kept from pose to pose. Only
 /// the rectangle of known cells of either map is touched, which changes nothing in the results.
@@ -76,8 +80,9 @@ struct ImageSimilarity {
 /// Copies share what belongs to the maps and have memory of their own: one copy a thread.
 class SimilarityMeter {
  public:
-  /// Copies what it needs of the maps. Throws std::invalid_argument for an invalid grid, or one of width +
-  /// height > kMaxDistanceMapSides / 4. O(cells).
+  /// Copies what it needs of the maps. Throws std::invalid_argument for an invalid grid, for resolutions that
+  /// differ by more than 100 times, and unless width + height of the fixed map's known rectangle and twice
+  /// that of the moving map's, in cells of the fixed one, are kMaxDistanceMapSides at most. O(cells).
   SimilarityMeter(const OccupancyGrid& fixed, const OccupancyGrid& moving);
   SimilarityMeter(const SimilarityMeter& other);
   SimilarityMeter& operator=(const SimilarityMeter&) = delete;
