@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "../grid/multiversion.hpp"
+#include "gridmerge/similarity/distance_map.hpp"
 
 namespace gridmerge {
 
@@ -53,8 +54,25 @@ inline __attribute__((always_inline)) void transpose(Eight (&rows)[kTile]) {
 }  // namespace
 
 GRIDMERGE_MULTIVERSION
-void mark_value(const std::uint8_t* cells, std::size_t count, std::uint8_t value, std::uint16_t* distances) {
-  for (std::size_t i = 0; i < count; ++i) distances[i] = cells[i] == value ? 0 : kFarDistance;
+void pass_row(const std::uint8_t* cells, std::size_t count, std::uint8_t value,
+              const std::uint16_t* neighbour, std::uint16_t* distances) {
+  std::size_t i = 0;
+  for (; i + kStripRows <= count; i += kStripRows) {
+    StripBytes bytes;
+    Column next;
+    load(cells + i, bytes);
+    load(neighbour + i, next);
+    const Column cell = __builtin_convertvector(bytes, Column);
+    next = (next + 1) & static_cast<Column>(cell != static_cast<std::uint16_t>(value));
+    store(next, distances + i);
+  }
+  for (; i < count; ++i) distances[i] = cells[i] == value ? 0 : static_cast<std::uint16_t>(neighbour[i] + 1);
+}
+
+GRIDMERGE_MULTIVERSION
+void pass_rows_without(int rows, std::size_t count, const std::uint16_t* neighbour,
+                       std::uint16_t* distances) {
+  for (std::size_t i = 0; i < count; ++i) distances[i] = static_cast<std::uint16_t>(neighbour[i] + rows);
 }
 
 GRIDMERGE_MULTIVERSION
@@ -106,28 +124,77 @@ void sweep_left(std::uint16_t* strip, int columns) {
     relax_column(nearest, strip + static_cast<std::size_t>(x) * kStripRows);
 }
 
+namespace {
+
+/// Adds up distances, the bytes of each apart, in 16 bits a lane: 256 columns at most.
+struct ColumnSum {
+  static constexpr int kMost = 256;
+
+  inline __attribute__((always_inline)) void add(const Column& distance, const std::uint8_t* cells,
+                                                 std::uint8_t value) {
+    StripBytes bytes;
+    load(cells, bytes);
+    const Column cell = __builtin_convertvector(bytes, Column);
+    const Column counted = distance & static_cast<Column>(cell == static_cast<std::uint16_t>(value));
+    low += counted & 0xff;
+    high += counted >> 8;
+  }
+
+  inline __attribute__((always_inline)) std::uint64_t total() const {
+    std::uint16_t lows[kStripRows];
+    std::uint16_t highs[kStripRows];
+    store(low, lows);
+    store(high, highs);
+    std::uint32_t sum = 0;  // below 2^29
+    for (int lane = 0; lane < kStripRows; ++lane) sum += lows[lane] + std::uint32_t{256} * highs[lane];
+    return sum;
+  }
+
+  Column low{};
+  Column high{};
+};
+
+}  // namespace
+
+GRIDMERGE_MULTIVERSION
+std::uint64_t sweep_left_and_sum(const std::uint16_t* strip, int columns, int first, int count,
+                                 const std::uint8_t* cells, std::uint8_t value) {
+  Column nearest = Column{} + kNoDistance - 1;
+  const auto sweep_to = [&](int x) __attribute__((always_inline)) {
+    Column here;
+    load(strip + static_cast<std::size_t>(x) * kStripRows, here);
+    nearest += 1;
+    nearest = nearest < here ? nearest : here;
+  };
+  int x = columns - 1;
+  for (; x >= first + count; --x) sweep_to(x);
+  std::uint64_t sum = 0;
+  while (x >= first) {
+    ColumnSum block;
+    for (const int last = std::max(first, x + 1 - ColumnSum::kMost); x >= last; --x) {
+      sweep_to(x);
+      block.add(nearest, cells + static_cast<std::size_t>(x - first) * kStripRows, value);
+    }
+    sum += block.total();
+  }
+  return sum;
+}
+
 GRIDMERGE_MULTIVERSION
 std::uint64_t sum_where(const std::uint16_t* distances, const std::uint8_t* cells, std::size_t count,
                         std::uint8_t value) {
   std::uint64_t sum = 0;
   std::size_t i = 0;
   while (i + kStripRows <= count) {
-    // The bytes of the distances are added up apart, each in 16 bits for as long as they fit.
-    constexpr std::size_t kBlock = std::size_t{256} * kStripRows;
+    constexpr std::size_t kBlock = std::size_t{ColumnSum::kMost} * kStripRows;
     const std::size_t last = std::min(i + kBlock, count - (count - i) % kStripRows);
-    Column low{};
-    Column high{};
+    ColumnSum block;
     for (; i < last; i += kStripRows) {
       Column distance;
-      StripBytes bytes;
       load(distances + i, distance);
-      load(cells + i, bytes);
-      const Column cell = __builtin_convertvector(bytes, Column);
-      const Column counted = distance & static_cast<Column>(cell == static_cast<std::uint16_t>(value));
-      low += counted & 0xff;
-      high += counted >> 8;
+      block.add(distance, cells + i, value);
     }
-    for (int lane = 0; lane < kStripRows; ++lane) sum += low[lane] + std::uint64_t{256} * high[lane];
+    sum += block.total();
   }
   for (; i < count; ++i) sum += cells[i] == value ? distances[i] : 0;
   return sum;

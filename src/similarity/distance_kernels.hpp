@@ -17,8 +17,13 @@ inline constexpr std::uint16_t kFarDistance = 0x7fff;
 inline constexpr int kStripRows = 16;
 inline constexpr int kTile = 8;  // columns of a strip are made in blocks of this many
 
-/// distances[i] = 0 where cells[i] is `value`, else kFarDistance.
-void mark_value(const std::uint8_t* cells, std::size_t count, std::uint8_t value, std::uint16_t* distances);
+/// The pass along the columns, one row: distances[i] = 0 where cells[i] is `value`, else neighbour[i] + 1.
+/// `neighbour` may be `distances` itself.
+void pass_row(const std::uint8_t* cells, std::size_t count, std::uint8_t value,
+              const std::uint16_t* neighbour, std::uint16_t* distances);
+
+/// The same for `rows` rows without the value: distances[i] = neighbour[i] + rows.
+void pass_rows_without(int rows, std::size_t count, const std::uint16_t* neighbour, std::uint16_t* distances);
 
 /// row[i] = min(row[i], neighbour[i] + 1).
 void relax_row(std::uint16_t* row, const std::uint16_t* neighbour, std::size_t count);
@@ -35,6 +40,11 @@ void sweep_right(std::uint16_t* strip, int columns);
 
 /// Relaxes each column of the strip from the one after it, the last one excepted.
 void sweep_left(std::uint16_t* strip, int columns);
+
+/// The sum of the distances that sweep_left would leave in the `count` columns from `first` on, where `cells`
+/// (a strip of those columns alone) is `value`. The strip stays as it is.
+std::uint64_t sweep_left_and_sum(const std::uint16_t* strip, int columns, int first, int count,
+                                 const std::uint8_t* cells, std::uint8_t value);
 
 /// The sum of the distances at those of `count` places where the cell is `value`.
 std::uint64_t sum_where(const std::uint16_t* distances, const std::uint8_t* cells, std::size_t count,

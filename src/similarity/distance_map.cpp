@@ -25,10 +25,10 @@ DistanceMap make_distance_map(const OccupancyGrid& grid, Cell value) {
   std::vector<std::uint16_t> rows(stride * kStripRows * static_cast<std::size_t>(strips), kFarDistance);
   const auto* cells = reinterpret_cast<const std::uint8_t*>(grid.cells.data());
   const auto row_at = [&](int row) { return rows.data() + static_cast<std::size_t>(row) * stride; };
+  const std::vector<std::uint16_t> below(stride, kFarDistance);  // the first row
   for (int row = 0; row < grid.height; ++row) {
-    mark_value(cells + grid.index(0, row), static_cast<std::size_t>(grid.width),
-               static_cast<std::uint8_t>(value), row_at(row));
-    if (row > 0) relax_row(row_at(row), row_at(row - 1), stride);
+    pass_row(cells + grid.index(0, row), static_cast<std::size_t>(grid.width),
+             static_cast<std::uint8_t>(value), row > 0 ? row_at(row - 1) : below.data(), row_at(row));
   }
   for (int row = grid.height - 2; row >= 0; --row) relax_row(row_at(row), row_at(row + 1), stride);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -55,6 +56,8 @@ struct SimilarityMeter::Maps {
       of_value.count = count_where(cells, fixed.cells.size(), value);
       of_value.distance = make_distance_map(fixed, static_cast<Cell>(value));
     }
+    ramp.resize(static_cast<std::size_t>(moving_sides) + 3);  // no turned box is wider
+    std::iota(ramp.begin(), ramp.end(), std::uint16_t{0});
     const int strips = round_up(fixed.height, kStripRows) / kStripRows;
     strip_cells.assign(static_cast<std::size_t>(strips) * fixed.width * kStripRows, 0);
     for (int row = 0; row < fixed.height; ++row) {
@@ -73,129 +76,143 @@ struct SimilarityMeter::Maps {
   OccupancyGrid moving;  // the known rectangle
   std::array<FixedClass, 2> classes;
   std::vector<std::uint8_t> strip_cells;  // the fixed map's cells in strips of kStripRows rows
+  std::vector<std::uint16_t> ramp;        // 0, 1, 2, ...
 };
 
 /// Memory that is kept from pose to pose.
 struct SimilarityMeter::Scratch {
   CellsOnLattice moving;
-  std::vector<std::uint16_t>
-      rows;  // distances to the moving map's cells of one value, after the columns' passes
-  std::vector<std::uint16_t> strip;  // the same of kStripRows rows
+  std::vector<std::uint16_t> rows;   // distances to the moving map's cells of one value, along columns
+  std::vector<std::uint16_t> strip;  // of kStripRows rows, along rows as well
 };
 
 namespace {
 
 /// The sum over the fixed map's cells of one value of the distance to the nearest such cell of the moving
-/// map, which must have one.
+/// map, which must have one. Distances are made where the fixed map is, and no farther: what lies below,
+/// above, left or right of it counts by the one row or column that the passes carry in.
 class FixedToMoving {
  public:
   FixedToMoving(const CellsOnLattice& moving, int fixed_width, int fixed_height,
                 std::vector<std::uint16_t>& rows, std::vector<std::uint16_t>& strip)
       : moving_(moving),
         fixed_width_(fixed_width),
-        fixed_height_(fixed_height),
-        hull_{std::min(0, moving.box.left), std::min(0, moving.box.bottom),
-              std::max(fixed_width, moving.box.right),
-              std::max(round_up(fixed_height, kStripRows), moving.box.top)},
+        fixed_rows_(round_up(fixed_height, kStripRows)),
+        left_(std::min(0, moving.box.left)),
+        right_(std::max(fixed_width, moving.box.right)),
         rows_(rows),
         strip_(strip) {}
 
   std::int64_t sum(const std::vector<std::uint8_t>& strip_cells, std::uint8_t value) {
     pass_columns(value);
-    std::int64_t sum = 0;
+    std::uint64_t sum = 0;
     const std::size_t strip_size = static_cast<std::size_t>(fixed_width_) * kStripRows;
-    for (int row = 0; row < fixed_height_; row += kStripRows) {
-      pass_rows(row);
-      sum += static_cast<std::int64_t>(sum_where(
-          strip_.data() + static_cast<std::size_t>(-hull_.left) * kStripRows,
-          strip_cells.data() + static_cast<std::size_t>(row / kStripRows) * strip_size, strip_size, value));
+    for (int row = 0; row < fixed_rows_; row += kStripRows) {
+      make_strip(row);
+      sweep_right(strip_.data(), fixed_width_ - left_);
+      sum += sweep_left_and_sum(strip_.data(), right_ - left_, -left_, fixed_width_,
+                                strip_cells.data() + static_cast<std::size_t>(row / kStripRows) * strip_size,
+                                value);
     }
-    return sum;
+    return static_cast<std::int64_t>(sum);
   }
 
  private:
-  std::uint16_t* row_at(int row) {
-    return rows_.data() + static_cast<std::size_t>(row - hull_.bottom) * moving_.stride;
-  }
+  std::uint16_t* row_at(int row) { return rows_.data() + static_cast<std::size_t>(row) * moving_.stride; }
 
-  /// Distances along the columns, for the moving map's columns and all rows of the hull.
+  /// Distances along the columns, for the moving map's columns and the fixed map's rows.
   void pass_columns(std::uint8_t value) {
-    rows_.resize(moving_.stride * static_cast<std::size_t>(hull_.height()));
-    for (int row = hull_.bottom; row < hull_.top; ++row) {
-      if (row >= moving_.box.bottom && row < moving_.box.top) {
-        mark_value(moving_.row(row), moving_.stride, value, row_at(row));
+    const CellBox& box = moving_.box;
+    const std::size_t columns = moving_.stride;
+    rows_.resize(columns * static_cast<std::size_t>(fixed_rows_ + 1));
+    std::uint16_t* const carried = row_at(fixed_rows_);
+    const auto carry = [&](int row) { pass_row(moving_.row(row), columns, value, carried, carried); };
+
+    std::fill_n(carried, columns, kFarDistance);
+    for (int row = box.bottom; row < std::min(0, box.top); ++row) carry(row);
+    if (box.top < 0) pass_rows_without(-box.top, columns, carried, carried);
+    for (int row = 0; row < fixed_rows_; ++row) {
+      const std::uint16_t* const below = row == 0 ? carried : row_at(row - 1);
+      if (row >= box.bottom && row < box.top) {
+        pass_row(moving_.row(row), columns, value, below, row_at(row));
       } else {
-        std::fill_n(row_at(row), moving_.stride, kFarDistance);
+        pass_rows_without(1, columns, below, row_at(row));
       }
-      if (row > hull_.bottom) relax_row(row_at(row), row_at(row - 1), moving_.stride);
     }
-    for (int row = hull_.top - 2; row >= 0; --row) relax_row(row_at(row), row_at(row + 1), moving_.stride);
+
+    std::fill_n(carried, columns, kFarDistance);
+    for (int row = box.top - 1; row >= std::max(fixed_rows_, box.bottom); --row) carry(row);
+    if (box.bottom > fixed_rows_) pass_rows_without(box.bottom - fixed_rows_, columns, carried, carried);
+    for (int row = fixed_rows_ - 1; row >= 0; --row) relax_row(row_at(row), row_at(row + 1), columns);
   }
 
-  /// From there the distances of kStripRows rows, for all columns of the hull.
-  void pass_rows(int first) {
-    const int columns = hull_.width();
-    const std::size_t before = static_cast<std::size_t>(moving_.box.left - hull_.left) * kStripRows;
+  /// Lays kStripRows rows side by side, in the columns of both maps.
+  void make_strip(int first) {
+    const std::size_t before = static_cast<std::size_t>(moving_.box.left - left_) * kStripRows;
     const std::size_t own = moving_.stride * kStripRows;
-    const std::size_t all = std::max(static_cast<std::size_t>(columns) * kStripRows, before + own);
-    strip_.resize(all);
+    strip_.resize(std::max(static_cast<std::size_t>(right_ - left_) * kStripRows, before + own));
     std::fill_n(strip_.begin(), before, kFarDistance);
     std::fill(strip_.begin() + static_cast<std::ptrdiff_t>(before + own), strip_.end(), kFarDistance);
     rows_to_strip(row_at(first), moving_.stride, static_cast<int>(moving_.stride), strip_.data() + before);
-    sweep_right(strip_.data(), columns);
-    sweep_left(strip_.data(), columns);
   }
 
   const CellsOnLattice& moving_;
   int fixed_width_;
-  int fixed_height_;
-  CellBox hull_;  // of both maps; its rows are whole strips where the fixed map is
+  int fixed_rows_;  // whole strips
+  int left_;        // of both maps' columns
+  int right_;
   std::vector<std::uint16_t>& rows_;
   std::vector<std::uint16_t>& strip_;
 };
 
 /// The sum over the moving map's cells of one value of the distance to the nearest such cell of the fixed
-/// map. Beyond the fixed map's rectangle the distance is that of the nearest cell inside, and the way there:
-/// exact for Manhattan distances, because each coordinate has to be crossed anyway.
-std::int64_t sum_moving_to_fixed(const CellsOnLattice& moving, const DistanceMap& distance,
-                                 std::uint8_t value) {
-  const CellBox& box = moving.box;
+/// map, which must have one. Beyond the fixed map's rectangle the distance is that of the nearest cell
+/// inside, and the way there: exact for Manhattan distances, because each coordinate has to be crossed
+/// anyway. `ramp` holds 0, 1, 2, ...
+DirectedDistance measure_moving_to_fixed(const CellsOnLattice& moving, const DistanceMap& distance,
+                                         std::uint8_t value, const std::vector<std::uint16_t>& ramp) {
   const int width = distance.width;
-  const int left = std::clamp(0, box.left, box.right);  // of the columns that both have
-  const int right = std::clamp(width, left, box.right);
-  std::int64_t sum = 0;
-  for (int row = box.bottom; row < box.top; ++row) {
-    const std::uint8_t* cells = moving.row(row);
+  DirectedDistance result;
+  for (int row = moving.box.bottom; row < moving.box.top; ++row) {
+    const CellsOnLattice::Span& span = moving.span(row);
     const int inside_row = std::clamp(row, 0, distance.height - 1);
-    const std::int64_t way = std::abs(row - inside_row);
-    const std::uint16_t* distances =
+    const std::uint16_t* const distances =
         distance.distances.data() + static_cast<std::size_t>(inside_row) * static_cast<std::size_t>(width);
-    if (left < right) {
-      sum += static_cast<std::int64_t>(sum_where(distances + left, cells + (left - box.left),
-                                                 static_cast<std::size_t>(right - left), value));
+    const auto count_cells = [&](int from, int to) {
+      return count_where(moving.at(from, row), static_cast<std::size_t>(to - from), value);
+    };
+    const auto sum_cells = [&](int from, int to, const std::uint16_t* of_first) {
+      return static_cast<std::int64_t>(
+          sum_where(of_first, moving.at(from, row), static_cast<std::size_t>(to - from), value));
+    };
+    const int left = std::clamp(0, span.left, span.right);  // of the columns that both have
+    const int right = std::clamp(width, left, span.right);
+    if (left < right) result.sum += sum_cells(left, right, distances + left);
+    if (span.left < left) {  // distances[0] - column
+      result.sum +=
+          count_cells(span.left, left) * (distances[0] - span.left) - sum_cells(span.left, left, ramp.data());
     }
-    for (int x = box.left; x < left; ++x) {
-      if (cells[x - box.left] == value) sum += distances[0] - x;
+    if (right < span.right) {  // distances[width - 1] + column - (width - 1)
+      result.sum += count_cells(right, span.right) * (distances[width - 1] + right - (width - 1)) +
+                    sum_cells(right, span.right, ramp.data());
     }
-    for (int x = right; x < box.right; ++x) {
-      if (cells[x - box.left] == value) sum += distances[width - 1] + x - (width - 1);
-    }
-    if (way > 0) sum += way * count_where(cells, static_cast<std::size_t>(box.width()), value);
+    const std::int64_t count = count_cells(span.left, span.right);
+    result.sum += count * std::abs(row - inside_row);
+    result.count += count;
   }
-  return sum;
+  return result;
 }
 
 CommonCells compare_cells(const CellsOnLattice& moving, const OccupancyGrid& fixed) {
-  const CellBox& box = moving.box;
-  const int left = std::max(0, box.left);
-  const int right = std::min(fixed.width, box.right);
   CommonCells common;
-  if (left >= right) return common;
-  for (int row = std::max(0, box.bottom); row < std::min(fixed.height, box.top); ++row) {
-    const auto* fixed_row =
+  for (int row = std::max(0, moving.box.bottom); row < std::min(fixed.height, moving.box.top); ++row) {
+    const int left = std::max(0, moving.span(row).left);
+    const int right = std::min(fixed.width, moving.span(row).right);
+    if (left >= right) continue;
+    const auto* fixed_cells =
         reinterpret_cast<const std::uint8_t*>(fixed.cells.data()) + fixed.index(left, row);
     const CommonCells of_row =
-        count_common(fixed_row, moving.row(row) + (left - box.left), static_cast<std::size_t>(right - left));
+        count_common(fixed_cells, moving.at(left, row), static_cast<std::size_t>(right - left));
     common.equal += of_row.equal;
     common.different += of_row.different;
   }
@@ -248,10 +265,11 @@ ImageSimilarity SimilarityMeter::operator()(const SE2& T_fixed_moving) {
   FixedToMoving fixed_to_moving(moving, maps.fixed.width, maps.fixed.height, scratch_->rows, scratch_->strip);
   const auto measure = [&](std::uint8_t value, DirectedDistance& from_fixed, DirectedDistance& from_moving) {
     const Maps::FixedClass& fixed_class = maps.of(value);
-    const std::int64_t count = count_where(moving.cells.data(), moving.cells.size(), value);
-    if (fixed_class.count == 0 || count == 0) return;
+    if (fixed_class.count == 0) return;
+    const DirectedDistance distance = measure_moving_to_fixed(moving, fixed_class.distance, value, maps.ramp);
+    if (!distance.defined()) return;
+    from_moving = distance;
     from_fixed = {fixed_to_moving.sum(maps.strip_cells, value), fixed_class.count};
-    from_moving = {sum_moving_to_fixed(moving, fixed_class.distance, value), count};
   };
   measure(kFree, result.fixed_to_moving_free, result.moving_to_fixed_free);
   measure(kOccupied, result.fixed_to_moving_occupied, result.moving_to_fixed_occupied);

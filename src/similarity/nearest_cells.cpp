@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
+
+#include "../grid/multiversion.hpp"
 
 namespace gridmerge {
 
@@ -33,6 +36,41 @@ Interval solve(std::int64_t start, std::int64_t step, std::int64_t end, std::int
   if (step == 0) return {0, start >= 0 && start < end ? count : 0};
   if (step > 0) return {-floor_divide(start, step), -floor_divide(start - end, step)};
   return {floor_divide(start - end, -step) + 1, floor_divide(start, -step) + 1};
+}
+
+/// Points in a grid, as fixed-point numbers of cells: `x + i * step_x`, `y + i * step_y`.
+struct Line {
+  std::int64_t x, y, step_x, step_y;
+
+  Line from(std::int64_t i) const { return {x + i * step_x, y + i * step_y, step_x, step_y}; }
+};
+
+/// Columns that are drawn at a time: a turned row crosses the grid's rows, and a short piece of it comes by
+/// the same cache lines as the piece of the row before.
+constexpr int kPiece = 128;
+
+/// The cells under the first `count` points of a line, all of them in the grid: nothing to check.
+GRIDMERGE_MULTIVERSION
+void draw_piece(const Line& line, const std::uint8_t* cells, std::uint32_t width, int count,
+                std::uint8_t* out) {
+  using Four = std::uint64_t __attribute__((vector_size(32)));
+  using Halves = std::uint32_t __attribute__((vector_size(32)));
+  const auto x = static_cast<std::uint64_t>(line.x), step_x = static_cast<std::uint64_t>(line.step_x);
+  const auto y = static_cast<std::uint64_t>(line.y), step_y = static_cast<std::uint64_t>(line.step_y);
+  constexpr Four kOrder{0, 1, 2, 3};
+  Four xs = x + kOrder * step_x;
+  Four ys = y + kOrder * step_y;
+  std::uint64_t index[kPiece];
+  for (int i = 0; i < count; i += 4) {
+    const Four columns = xs >> kFractionalBits;
+    const auto rows = reinterpret_cast<Halves>(ys >> kFractionalBits);  // the upper halves are 0
+    const Four at = reinterpret_cast<Four>(rows * width) + columns;
+    std::memcpy(index + i, &at, sizeof at);
+    xs += 4 * step_x;
+    ys += 4 * step_y;
+  }
+#pragma GCC unroll 8
+  for (int i = 0; i < count; ++i) out[i] = cells[index[i]];
 }
 
 }  // namespace
@@ -78,34 +116,37 @@ void draw_nearest_cells(const OccupancyGrid& grid, const SE2& T_lattice_grid, do
   const double s = std::sin(T_grid_lattice.theta) * scale;
   const double x0 = T_grid_lattice.x / grid.resolution;
   const double y0 = T_grid_lattice.y / grid.resolution;
-  const std::int64_t step_x = to_fixed_point(c);
-  const std::int64_t step_y = to_fixed_point(s);
+  const auto columns = static_cast<std::int64_t>(box.width());
   const std::int64_t end_x = std::int64_t{grid.width} << kFractionalBits;
   const std::int64_t end_y = std::int64_t{grid.height} << kFractionalBits;
-  const auto* cells = reinterpret_cast<const std::uint8_t*>(grid.cells.data());
+  const std::int64_t step_x = to_fixed_point(c);
+  const std::int64_t step_y = to_fixed_point(s);
+  const double first_x = box.left + 0.5;
+  const double first_y = box.bottom + 0.5;
+  const std::int64_t start_x = to_fixed_point(c * first_x - s * first_y + x0);
+  const std::int64_t start_y = to_fixed_point(s * first_x + c * first_y + y0);
+  const auto line_of = [&](std::int64_t row) {
+    return Line{start_x - (row - box.bottom) * step_y, start_y + (row - box.bottom) * step_x, step_x, step_y};
+  };
+  result.spans.clear();
+  for (int row = box.bottom; row < box.top; ++row) {
+    const Line line = line_of(row);
+    const Interval in_x = solve(line.x, line.step_x, end_x, columns);
+    const Interval in_y = solve(line.y, line.step_y, end_y, columns);
+    const std::int64_t first = std::clamp(std::max(in_x.first, in_y.first), std::int64_t{0}, columns);
+    const std::int64_t last = std::clamp(std::min(in_x.last, in_y.last), first, columns);
+    result.spans.push_back({box.left + static_cast<int>(first), box.left + static_cast<int>(last)});
+  }
 
-  // In blocks of columns: a turned row crosses the grid's rows, and a short piece of it comes by the same
-  // cache lines as the piece of the row before.
-  constexpr std::int64_t kBlock = 128;
-  for (std::int64_t block = 0; block < box.width(); block += kBlock) {
+  const auto* cells = reinterpret_cast<const std::uint8_t*>(grid.cells.data());
+  for (int piece = box.left; piece < box.right; piece += kPiece) {
     for (int row = box.bottom; row < box.top; ++row) {
-      const double lattice_x = box.left + 0.5;
-      const double lattice_y = row + 0.5;
-      std::int64_t x = to_fixed_point(c * lattice_x - s * lattice_y + x0);
-      std::int64_t y = to_fixed_point(s * lattice_x + c * lattice_y + y0);
-      const Interval in_x = solve(x, step_x, end_x, box.width());
-      const Interval in_y = solve(y, step_y, end_y, box.width());
-      const std::int64_t first = std::max({in_x.first, in_y.first, block});
-      const std::int64_t last = std::min({in_x.last, in_y.last, block + kBlock, std::int64_t{box.width()}});
+      const int first = std::max(result.span(row).left, piece);
+      const int last = std::min(result.span(row).right, piece + kPiece);
       if (first >= last) continue;
-      x += first * step_x;
-      y += first * step_y;
       std::uint8_t* out = result.cells.data() + static_cast<std::size_t>(row - box.bottom) * result.stride;
-      for (std::int64_t column = first; column < last; ++column) {  // inside the grid: nothing to check
-        out[column] = cells[(y >> kFractionalBits) * grid.width + (x >> kFractionalBits)];
-        x += step_x;
-        y += step_y;
-      }
+      draw_piece(line_of(row).from(first - box.left), cells, static_cast<std::uint32_t>(grid.width),
+                 last - first, out + (first - box.left));
     }
   }
 }

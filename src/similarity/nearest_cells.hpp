@@ -22,12 +22,25 @@ struct CellBox {
 /// A grid drawn on another grid's lattice: cell (column, row) of `box` is
 /// cells[(row - box.bottom) * stride + column - box.left], unknown where the grid has no cell.
 struct CellsOnLattice {
+  /// The columns of one row at which the grid has cells: the others are unknown.
+  struct Span {
+    int left = 0;
+    int right = 0;
+  };
+
   CellBox box;  ///< in cells of the lattice
   std::size_t stride = 0;
   std::vector<std::uint8_t> cells;  ///< values of Cell
+  std::vector<Span> spans;          ///< one a row, within the box
 
   const std::uint8_t* row(int lattice_row) const {
     return cells.data() + static_cast<std::size_t>(lattice_row - box.bottom) * stride;
+  }
+  const std::uint8_t* at(int lattice_column, int lattice_row) const {
+    return row(lattice_row) + (lattice_column - box.left);
+  }
+  const Span& span(int lattice_row) const {
+    return spans[static_cast<std::size_t>(lattice_row - box.bottom)];
   }
 };
 
