@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -31,9 +32,10 @@ struct MatchCommandOptions {
 std::string describe_verdict(const MatchResult& result, const SearchOptions& search) {
   if (search.random_walk() && !result.hypotheses.empty()) {
     if (result.verdict == Verdict::refused && result.acceptance_index >= search.accept_from())
-      return "refused: a map has no free or no occupied cells there, so the acceptance index says nothing";
+      return "refused: the maps have too little in common, or one has no free or no occupied cells there";
+    // Rounded down: what falls short of a threshold must not look as if it reached it.
     return fmt::format("{}: the acceptance index is {:.4f}, and {} is asked for", name_of(result.verdict),
-                       result.acceptance_index, search.accept_from());
+                       std::floor(1e4 * result.acceptance_index) / 1e4, search.accept_from());
   }
   if (result.verdict == Verdict::accepted) {
     return fmt::format("accepted: the maps show one place, with probability {:.4f}", result.probability);
@@ -56,9 +58,12 @@ std::string describe(const MatchResult& result, const MatchCommandOptions& optio
   if (!options.common.verbose) return text;
   for (std::size_t i = 0; i < result.hypotheses.size(); ++i) {
     const Hypothesis& hypothesis = result.hypotheses[i];
+    const std::string figures =
+        options.search.random_walk()
+            ? fmt::format("acceptance index {:.4f}", hypothesis.score)
+            : fmt::format("score {:.4g}, probability {:.4f}", hypothesis.score, hypothesis.probability);
     line(fmt::format("hypothesis {}", i + 1),
-         fmt::format(" {}, score {:.4g}, probability {:.4f}", describe_pose(hypothesis.T_fixed_moving),
-                     hypothesis.score, hypothesis.probability));
+         fmt::format(" {}, {}", describe_pose(hypothesis.T_fixed_moving), figures));
   }
   return text;
 }

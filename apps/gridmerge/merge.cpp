@@ -46,13 +46,12 @@ Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
 }
 
 MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeCommandOptions& options,
-                       Console& console) {
+                       PairMatcher& matcher, Console& console) {
   MergeOptions engine;
   engine.resolution = options.output_resolution;
   engine.progress = [&](std::size_t done, std::size_t total) {
     console.progress(static_cast<double>(done) / static_cast<double>(total));
   };
-  PairMatcher matcher(options.common, options.search);
   const auto match_named = [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
     try {
       return matcher(fixed, moving);
@@ -61,19 +60,19 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeComman
     }
   };
   try {
-    MergeResult result = merge(maps, engine, match_named);
-    matcher.write_trace();
-    return result;
+    return merge(maps, engine, match_named);
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one
     throw FileError(options.output, error.what());
   }
 }
 
-std::string describe_joins(const std::vector<std::string>& names, const MergeResult& result) {
+std::string describe_joins(const MergeCommandOptions& options, const MergeResult& result) {
+  const std::vector<std::string>& names = options.maps;
+  const char* figure = options.search.random_walk() ? "acceptance index" : "probability";
   std::string text;
   for (const Join& join : result.joins) {
-    fmt::format_to(std::back_inserter(text), "{:<8} probability {:.4f}, {:.3f} s: {} and {}\n",
-                   name_of(join.match.verdict), join.match.probability, join.match.seconds,
+    fmt::format_to(std::back_inserter(text), "{:<8} {} {:.4f}, {:.3f} s: {} and {}\n",
+                   name_of(join.match.verdict), figure, join.match.probability, join.match.seconds,
                    escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
   }
   return text;
@@ -96,15 +95,29 @@ std::string describe(const std::vector<std::string>& names, const MergeResult& r
   return text;
 }
 
+/// The trace may lie beside the other outputs, whose directory need not be there yet.
+void try_trace(const MergeCommandOptions& options, const std::vector<std::filesystem::path>& inputs) {
+  const std::filesystem::path trace = options.search.trace;
+  const auto normal = [](const std::filesystem::path& path) {
+    return std::filesystem::absolute(path / "").lexically_normal();
+  };
+  const bool beside = normal(trace.parent_path()) == normal(options.output);
+  if (beside && is_merge_output(trace.filename()))
+    throw FileError(trace, "is a file that the merge itself writes: choose another name for the trace");
+  if (!beside || std::filesystem::exists(options.output)) try_output_file(options.search.trace, inputs);
+}
+
 int run_merge(const MergeCommandOptions& options) {
   Console console(options.common);
   const Inputs inputs = load_inputs(options, console);
   prepare_merge_output(options.output, inputs.files);
-  if (!options.search.trace.empty()) try_output_file(options.search.trace, inputs.files);
-  const MergeResult result = merge_maps(inputs.maps, options, console);
+  PairMatcher matcher(options.common, options.search);
+  if (!options.search.trace.empty()) try_trace(options, inputs.files);
+  const MergeResult result = merge_maps(inputs.maps, options, matcher, console);
   console.clear();
   write_merge_output(options.output, inputs.files, options.maps, inputs.maps, result);
-  if (options.common.verbose) print(describe_joins(options.maps, result));
+  matcher.write_trace();
+  if (options.common.verbose) print(describe_joins(options, result));
   print(describe(options.maps, result));
   console.remark("wrote " + options.output);
   return result.components.size() == 1 && result.left_out.empty() ? kDone : kRefused;

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "gridmerge/io/map_file.hpp"
 
@@ -31,8 +34,10 @@ const CLI::Validator kProbability(
 
 const CLI::Validator kWholeNumber(
     [](std::string& text) {
-      const bool whole = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-      return whole ? std::string() : "'" + text + "' is not a whole number of 0 or more";
+      std::uint64_t value = 0;
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      const bool whole = error == std::errc() && end == text.data() + text.size();
+      return whole ? std::string() : "'" + text + "' is not a whole number from 0 to 2^64 - 1";
     },
     "");
 

@@ -32,8 +32,9 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
   command
       .add_option(
           "--accept", options.accept,
-          "Accept from this probability on, 0.9 if not given; of the random walk from this acceptance "
-          "index on, 0.98 if not given")
+          fmt::format("Accept from this probability on, {} if not given; of the random walk from this "
+                      "acceptance index on, {} if not given",
+                      MatchOptions{}.accept_probability, RandomWalkMatchOptions{}.accept_acceptance_index))
       ->type_name("P")
       ->check(kProbability);
   CLI::Option* c_lock = command
@@ -42,6 +43,7 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
                                         "several, with commas, are used "
                                         "in turn")
                             ->type_name("C,...")
+                            ->allow_extra_args(false)  // or it would take the maps behind it
                             ->delimiter(',')
                             ->check(kNotNegative);
   CLI::Option* restarts =
@@ -57,10 +59,13 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
                                  ->type_name("T")
                                  ->check(kNotNegative)
                                  ->capture_default_str();
-  CLI::Option* seed = command.add_option("--seed", options.seed, "Random walk: of the first walk")
-                          ->type_name("N")
-                          ->check(kWholeNumber)
-                          ->capture_default_str();
+  CLI::Option* seed =
+      command
+          .add_option("--seed", options.seed,
+                      "Random walk: seed of the first walk; those of the others follow from it")
+          ->type_name("N")
+          ->check(kWholeNumber)
+          ->capture_default_str();
   command.parse_complete_callback([&options, c_lock, restarts, temperature, seed] {
     if (options.random_walk()) {
       if (options.restarts && static_cast<std::size_t>(*options.restarts) < options.c_locks.size())

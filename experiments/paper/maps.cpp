@@ -17,8 +17,8 @@ std::vector<RobotMap> make_maps(int side) {
   const std::vector<std::vector<Point2>> paths{
       {{20.0, 48.0}, {38.0, 48.0}, {45.0, 55.0}, {64.0, 40.0}, {74.0, 39.7}},  // hall, and two corridors
       {{30.0, 48.0}, {45.0, 40.0}, {62.0, 42.0}, {84.0, 39.7}},                // the same, more to the east
-      {{8.0, 48.0}, {28.0, 48.0}},                 // west corridor, looking into the hall
-      {{41.5, 8.0}, {41.5, 34.0}, {46.0, 50.0}},   // south corridor and hall
+      {{92.0, 39.7}, {68.0, 39.7}, {60.0, 46.0}, {58.0, 58.0}, {58.0, 90.0}},  // east, hall, north
+      {{41.5, 8.0}, {41.5, 28.4}},                 // south corridor, with a glance into the hall
       {{58.0, 90.0}, {58.0, 58.0}, {50.0, 50.0}},  // north corridor and hall
       {{92.0, 39.7},
        {64.0, 39.7},

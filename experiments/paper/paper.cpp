@@ -145,7 +145,8 @@ std::string compare(const Pair& pair, int seeds, const std::filesystem::path& fo
   return table + row(pair.name, "exhaustive", {exhaustive});
 }
 
-/// How many of the maps in the largest component lie where they should, relative to its first member.
+/// How many maps are placed, and how many of them lie where they should relative to their component's first
+/// one, which gives the frame.
 std::string describe_merge(const std::vector<RobotMap>& maps, const std::string& method,
                            const MergeResult& result, double seconds) {
   std::size_t right = 0;

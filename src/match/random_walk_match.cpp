@@ -2,11 +2,14 @@
 #include "gridmerge/match/random_walk_match.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <mutex>
 #include <numeric>
+#include <random>
 #include <stdexcept>
+#include <utility>
 
 #include "gridmerge/search/parallel.hpp"
 #include "gridmerge/similarity/agreement.hpp"
@@ -18,20 +21,30 @@ namespace {
 constexpr double kDistinct = 10.0;  // cells at the corners of the moving map
 
 void check(const RandomWalkMatchOptions& options) {
-  validate(options.walk);
+  RandomWalkOptions walk = options.walk;
   if (options.restarts < 1) throw std::invalid_argument("restarts must be at least 1");
   if (options.threads < 0) throw std::invalid_argument("threads must not be negative");
   if (options.c_locks.empty()) throw std::invalid_argument("at least one c_lock is needed");
   for (const double c_lock : options.c_locks) {
-    if (!(c_lock >= 0.0 && std::isfinite(c_lock)))
-      throw std::invalid_argument("c_lock must be a number, and not negative");
+    walk.c_lock = c_lock;
+    validate(walk);
   }
+  if (options.least_common_cells < 0) throw std::invalid_argument("least_common_cells must not be negative");
   if (!(options.accept_acceptance_index >= 0.0 && options.accept_acceptance_index <= 1.0))
     throw std::invalid_argument("accept_acceptance_index must lie in [0, 1]");
 }
 
 double c_lock_of(const RandomWalkMatchOptions& options, int walk) {
   return options.c_locks[static_cast<std::size_t>(walk) % options.c_locks.size()];
+}
+
+/// Seeds that have nothing to do with one another, nor with those of the next larger `seed`; that of the
+/// first walk is `seed` itself.
+std::uint64_t derive_seed(std::uint64_t seed, std::size_t walk) {
+  std::seed_seq sequence{seed & 0xffffffffU, seed >> 32, static_cast<std::uint64_t>(walk)};
+  std::array<std::uint32_t, 2> words{};
+  sequence.generate(words.begin(), words.end());
+  return walk == 0 ? seed : (std::uint64_t{words[1]} << 32) | words[0];
 }
 
 /// The `rank`-th best start pose under c_lock; from the best one again when there are not as many.
@@ -53,7 +66,7 @@ std::vector<RandomWalkResult> run_walks(const OccupancyGrid& fixed, const Occupa
   parallel_for(walks.size(), [&](std::size_t i) {
     RandomWalkOptions walk = options.walk;
     walk.c_lock = c_lock_of(options, static_cast<int>(i));
-    walk.seed += i;
+    walk.seed = derive_seed(walk.seed, i);
     walks[i] =
         random_walk(fixed, moving, choose_start(starts, walk.c_lock, i / options.c_locks.size()), walk);
     const std::lock_guard lock(reporting);
@@ -78,9 +91,11 @@ double displacement(const OccupancyGrid& moving, const SE2& a, const SE2& b) {
 }
 
 std::vector<Hypothesis> list_distinct(const std::vector<const RandomWalkResult*>& walks,
-                                      const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+                                      const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                      std::size_t most) {
   std::vector<Hypothesis> hypotheses;
   for (const RandomWalkResult* walk : walks) {
+    if (hypotheses.size() == most) break;
     const bool known = std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& hypothesis) {
       return displacement(moving, hypothesis.T_fixed_moving, walk->T_fixed_moving) <
              kDistinct * fixed.resolution;
@@ -108,11 +123,14 @@ MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid
   ranked.reserve(walks.size());
   for (const RandomWalkResult& walk : walks) ranked.push_back(&walk);
   std::stable_sort(ranked.begin(), ranked.end(), [](const auto* a, const auto* b) {
-    return a->similarity.acceptance_index() > b->similarity.acceptance_index();
+    const auto key = [](const ImageSimilarity& similarity) {
+      return std::pair(similarity.undefined_terms(), -similarity.acceptance_index());
+    };
+    return key(a->similarity) < key(b->similarity);
   });
 
   const RandomWalkResult& best = *ranked.front();
-  result.hypotheses = list_distinct(ranked, fixed, moving);
+  result.hypotheses = list_distinct(ranked, fixed, moving, options.max_hypotheses);
   result.T_fixed_moving = best.T_fixed_moving;
   result.acceptance_index = best.similarity.acceptance_index();
   result.probability = result.acceptance_index;
@@ -121,7 +139,8 @@ MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid
   // The counts are in cells of the fixed map.
   result.overlap = measure_overlap(moving, fixed, {result.agreement, result.disagreement});
   // Without free or without occupied cells in both maps every pose at which they touch has a perfect index.
-  const bool comparable = result.agreement > 0 && best.similarity.undefined_terms() == 0;
+  const bool comparable = result.agreement + result.disagreement >= options.least_common_cells &&
+                          best.similarity.undefined_terms() == 0;
   const bool accepted = comparable && result.acceptance_index >= options.accept_acceptance_index;
   result.verdict = accepted ? Verdict::accepted : Verdict::refused;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -74,15 +74,21 @@ bool is_merged_map(const fs::path& file) {
          number.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
+}  // namespace
+
+bool is_merge_output(const fs::path& name) {
+  return is_merged_map(name) || name == kPreview || name == kReport || name == kTransforms;
+}
+
+namespace {
+
 // The files in the directory whose names are those of a merge's outputs.
 std::vector<fs::path> outputs_in(const fs::path& directory) {
   std::vector<fs::path> outputs;
   std::error_code error;
   for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
     const fs::path name = entry->path().filename();
-    if (is_merged_map(name) || name == kPreview || name == kReport || name == kTransforms) {
-      outputs.push_back(directory / name);
-    }
+    if (is_merge_output(name)) outputs.push_back(directory / name);
   }
   if (error) throw FileError(directory, "cannot be read: " + error.message());
   return outputs;

@@ -76,11 +76,12 @@ class Poses {
             normalize_angle(to.theta - from.theta) * moving_.radius / cell_};
   }
 
-  /// Whether the circles around the known rectangles meet: beyond that no cells can.
-  bool may_touch(const SE2& T_fixed_moving) const {
+  /// How far apart the circles around the known rectangles are [m]. Where they do not meet, and this is
+  /// positive, no cells can.
+  double gap(const SE2& T_fixed_moving) const {
     const Point2 centre = T_fixed_moving * Point2{moving_.T_map_centre.x, moving_.T_map_centre.y};
-    return std::hypot(centre.x - fixed_.T_map_centre.x, centre.y - fixed_.T_map_centre.y) <=
-           fixed_.reach() + moving_.reach();
+    return std::hypot(centre.x - fixed_.T_map_centre.x, centre.y - fixed_.T_map_centre.y) - fixed_.reach() -
+           moving_.reach();
   }
 
  private:
@@ -105,8 +106,8 @@ class Proposals {
     return mean_ + axes_ * step;
   }
 
-  /// Samples that are refused again and again come from steps that are too large; when the steps cannot
-  /// become smaller, they may as well be too small.
+  /// Samples that are refused again and again come from steps that are too large, or lead the wrong way; when
+  /// the steps cannot become smaller, they start again at their size.
   void learn_refusal() {
     constexpr int kPatience = 100;
     if (++refused_ % kPatience != 0) return;
@@ -219,7 +220,7 @@ std::vector<MeasuredPose> measure_start_poses(const OccupancyGrid& fixed, const 
   parallel_for((starts.size() + kPerTask - 1) / kPerTask, [&](std::size_t task) {
     SimilarityMeter own(meter);
     for (std::size_t i = task * kPerTask; i < std::min(starts.size(), (task + 1) * kPerTask); ++i)
-      measured[i] = {starts[i], own(starts[i])};
+      measured[i] = {starts[i], own.can_measure(starts[i]) ? own(starts[i]) : ImageSimilarity{}};
   });
   return measured;
 }
@@ -246,7 +247,8 @@ RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& mo
     const SE2 T = poses.moved(current.T_fixed_moving, proposals.draw(random));
     ++result.proposals;
     temperature *= options.cooling;
-    if (!poses.may_touch(T)) {
+    const double gap = poses.gap(T);
+    if ((gap > 0.0 && gap > poses.gap(current.T_fixed_moving)) || !meter.can_measure(T)) {
       proposals.learn_refusal();
       continue;
     }

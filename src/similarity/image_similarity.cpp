@@ -44,11 +44,13 @@ struct SimilarityMeter::Maps {
 
   Maps(const OccupancyGrid& fixed_map, const OccupancyGrid& moving_map)
       : fixed(crop_to_known(fixed_map)), moving(crop_to_known(moving_map)) {
-    // A turned map is at most sqrt(2) times as wide, and need only touch the other one.
+    fixed.probability = {};
+    moving.probability = {};
+    // A turned map's box is at most sqrt(2) times as large, and need only touch the other map.
     const double moving_sides = (moving.width + moving.height) * moving.resolution / fixed.resolution;
-    if (fixed.width + fixed.height + 3.0 * moving_sides > kMaxDistanceMapSides) {
+    if (fixed.width + fixed.height + 1.5 * moving_sides > kMaxDistanceMapSides) {
       throw std::invalid_argument("the maps are too large for the image similarity: it takes about " +
-                                  std::to_string(kMaxDistanceMapSides / 8) + " cells a side");
+                                  std::to_string(kMaxDistanceMapSides / 5) + " cells a side");
     }
     const auto* cells = reinterpret_cast<const std::uint8_t*>(fixed.cells.data());
     for (const std::uint8_t value : {kFree, kOccupied}) {
@@ -104,10 +106,11 @@ class FixedToMoving {
         strip_(strip) {}
 
   std::int64_t sum(const std::vector<std::uint8_t>& strip_cells, std::uint8_t value) {
-    pass_columns(value);
+    pass_up(value);
     std::uint64_t sum = 0;
     const std::size_t strip_size = static_cast<std::size_t>(fixed_width_) * kStripRows;
-    for (int row = 0; row < fixed_rows_; row += kStripRows) {
+    for (int row = fixed_rows_ - kStripRows; row >= 0; row -= kStripRows) {
+      pass_down(row);
       make_strip(row);
       sweep_right(strip_.data(), fixed_width_ - left_);
       sum += sweep_left_and_sum(strip_.data(), right_ - left_, -left_, fixed_width_,
@@ -120,8 +123,9 @@ class FixedToMoving {
  private:
   std::uint16_t* row_at(int row) { return rows_.data() + static_cast<std::size_t>(row) * moving_.stride; }
 
-  /// Distances along the columns, for the moving map's columns and the fixed map's rows.
-  void pass_columns(std::uint8_t value) {
+  /// Distances to what lies below in each of the moving map's columns, for the fixed map's rows. The row
+  /// beyond them is left with the distances to what lies above.
+  void pass_up(std::uint8_t value) {
     const CellBox& box = moving_.box;
     const std::size_t columns = moving_.stride;
     rows_.resize(columns * static_cast<std::size_t>(fixed_rows_ + 1));
@@ -143,7 +147,12 @@ class FixedToMoving {
     std::fill_n(carried, columns, kFarDistance);
     for (int row = box.top - 1; row >= std::max(fixed_rows_, box.bottom); --row) carry(row);
     if (box.bottom > fixed_rows_) pass_rows_without(box.bottom - fixed_rows_, columns, carried, carried);
-    for (int row = fixed_rows_ - 1; row >= 0; --row) relax_row(row_at(row), row_at(row + 1), columns);
+  }
+
+  /// Distances either way along the columns, for kStripRows rows; those above are done.
+  void pass_down(int first) {
+    for (int row = first + kStripRows - 1; row >= first; --row)
+      relax_row(row_at(row), row_at(row + 1), moving_.stride);
   }
 
   /// Lays kStripRows rows side by side, in the columns of both maps.
@@ -219,9 +228,19 @@ CommonCells compare_cells(const CellsOnLattice& moving, const OccupancyGrid& fix
   return common;
 }
 
+bool is_finite(const SE2& T) {
+  return std::isfinite(T.x) && std::isfinite(T.y) && std::isfinite(T.theta);
+}
+
 void check_finite(const SE2& T) {
-  if (!std::isfinite(T.x) || !std::isfinite(T.y) || !std::isfinite(T.theta))
-    throw std::invalid_argument("the transform must be finite");
+  if (!is_finite(T)) throw std::invalid_argument("the transform must be finite");
+}
+
+/// Whether distances across both maps stay within 16 bits.
+bool fits(const OccupancyGrid& fixed, const CellBox& box) {
+  return std::max(fixed.width, box.right) - std::min(0, box.left) + std::max(fixed.height, box.top) -
+             std::min(0, box.bottom) <=
+         kMaxDistanceMapSides;
 }
 
 SE2 between_grids(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& T_fixed_moving) {
@@ -243,6 +262,13 @@ SimilarityMeter::SimilarityMeter(const SimilarityMeter& other)
 
 SimilarityMeter::~SimilarityMeter() = default;
 
+bool SimilarityMeter::can_measure(const SE2& T_fixed_moving) const {
+  if (!is_finite(T_fixed_moving)) return false;
+  const SE2 T_fixedgrid_movinggrid = between_grids(maps_->fixed, maps_->moving, T_fixed_moving);
+  if (!is_within_lattice(maps_->moving, T_fixedgrid_movinggrid, maps_->fixed.resolution)) return false;
+  return fits(maps_->fixed, box_on_lattice(maps_->moving, T_fixedgrid_movinggrid, maps_->fixed.resolution));
+}
+
 ImageSimilarity SimilarityMeter::operator()(const SE2& T_fixed_moving) {
   check_finite(T_fixed_moving);
   const Maps& maps = *maps_;
@@ -250,11 +276,7 @@ ImageSimilarity SimilarityMeter::operator()(const SE2& T_fixed_moving) {
   const SE2 T_fixedgrid_movinggrid = between_grids(maps.fixed, maps.moving, T_fixed_moving);
   const double resolution = maps.fixed.resolution;
   const CellBox box = box_on_lattice(maps.moving, T_fixedgrid_movinggrid, resolution);
-  if (std::max(maps.fixed.width, box.right) - std::min(0, box.left) + std::max(maps.fixed.height, box.top) -
-          std::min(0, box.bottom) >
-      kMaxDistanceMapSides) {
-    throw std::invalid_argument("the transform puts the maps too far apart");
-  }
+  if (!fits(maps.fixed, box)) throw std::invalid_argument("the transform puts the maps too far apart");
   draw_nearest_cells(maps.moving, T_fixedgrid_movinggrid, resolution, box, kStripRows, moving);
 
   ImageSimilarity result;
@@ -296,7 +318,8 @@ std::int64_t count_equal_cells(const OccupancyGrid& fixed, const OccupancyGrid& 
   const CellBox all{0, 0, fixed.width, fixed.height};
   const CellBox box = intersect(box_on_lattice(moving, T_fixedgrid_movinggrid, fixed.resolution), all);
   CellsOnLattice drawn;
-  draw_nearest_cells(moving, T_fixedgrid_movinggrid, fixed.resolution, box, 1, drawn);
+  if (box.width() > 0 && box.height() > 0)
+    draw_nearest_cells(moving, T_fixedgrid_movinggrid, fixed.resolution, box, 1, drawn);
   std::int64_t equal = 0;
   for (int row = 0; row < fixed.height; ++row) {
     for (int column = 0; column < fixed.width; ++column) {

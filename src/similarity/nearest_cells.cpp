@@ -75,21 +75,40 @@ void draw_piece(const Line& line, const std::uint8_t* cells, std::uint32_t width
 
 }  // namespace
 
-CellBox box_on_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution) {
+namespace {
+
+/// In cells of the lattice.
+std::array<Point2, 4> corners_on_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid,
+                                         double lattice_resolution) {
   const double width = grid.width * grid.resolution;
   const double height = grid.height * grid.resolution;
-  double left = kFarthest, right = -kFarthest, bottom = kFarthest, top = -kFarthest;
-  for (const Point2& corner :
-       std::array<Point2, 4>{{{0.0, 0.0}, {width, 0.0}, {0.0, height}, {width, height}}}) {
+  std::array<Point2, 4> corners{{{0.0, 0.0}, {width, 0.0}, {0.0, height}, {width, height}}};
+  for (Point2& corner : corners) {
     const Point2 at = T_lattice_grid * corner;
-    const double x = at.x / lattice_resolution;
-    const double y = at.y / lattice_resolution;
-    if (!(std::abs(x) < kFarthest && std::abs(y) < kFarthest))
-      throw std::invalid_argument("the transform puts the maps more than a million cells apart");
-    left = std::min(left, x);
-    right = std::max(right, x);
-    bottom = std::min(bottom, y);
-    top = std::max(top, y);
+    corner = {at.x / lattice_resolution, at.y / lattice_resolution};
+  }
+  return corners;
+}
+
+}  // namespace
+
+bool is_within_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution) {
+  const auto corners = corners_on_lattice(grid, T_lattice_grid, lattice_resolution);
+  return grid.width <= kFarthest && grid.height <= kFarthest &&
+         std::all_of(corners.begin(), corners.end(), [](const Point2& corner) {
+           return std::abs(corner.x) < kFarthest && std::abs(corner.y) < kFarthest;
+         });
+}
+
+CellBox box_on_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution) {
+  if (!is_within_lattice(grid, T_lattice_grid, lattice_resolution))
+    throw std::invalid_argument("the maps are more than a million cells large or apart");
+  double left = kFarthest, right = -kFarthest, bottom = kFarthest, top = -kFarthest;
+  for (const Point2& corner : corners_on_lattice(grid, T_lattice_grid, lattice_resolution)) {
+    left = std::min(left, corner.x);
+    right = std::max(right, corner.x);
+    bottom = std::min(bottom, corner.y);
+    top = std::max(top, corner.y);
   }
   return {static_cast<int>(std::floor(left)), static_cast<int>(std::floor(bottom)),
           static_cast<int>(std::floor(right)) + 1, static_cast<int>(std::floor(top)) + 1};

@@ -44,9 +44,13 @@ struct CellsOnLattice {
   }
 };
 
+/// Whether the grid has at most a million cells a side, and its corners lie within a million lattice cells of
+/// the lattice's own: beyond that numbers would leave their range. O(1).
+bool is_within_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution);
+
 /// The box of lattice cells whose centres may fall into `grid`, and perhaps a rim of others.
 /// `T_lattice_grid` is between the lower-left corners, in metres; the lattice's cells have sides of
-/// `lattice_resolution` metres. Throws std::invalid_argument if coordinates exceed a million cells. O(1).
+/// `lattice_resolution` metres. Throws std::invalid_argument unless is_within_lattice(). O(1).
 CellBox box_on_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution);
 
 /// The cells of both boxes; empty, but not negative in size, if there are none.
@@ -54,8 +58,8 @@ CellBox intersect(const CellBox& a, const CellBox& b);
 
 /// Gives every cell of `box` on the lattice the value of the cell of `grid` under its centre. `stride` of the
 /// result is a multiple of `stride_multiple`. Fixed-point arithmetic with 40 fractional bits of a cell, so
-/// the box must lie within the grid's own (box_on_lattice), which must be within 2^22 cells of the grid.
-/// Reuses the result's memory. O(cells of the box).
+/// the box must lie within the grid's own (box_on_lattice), and not be empty. Reuses the result's memory.
+/// O(cells of the box).
 void draw_nearest_cells(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution,
                         const CellBox& box, std::size_t stride_multiple, CellsOnLattice& result);
 

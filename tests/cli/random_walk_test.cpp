@@ -58,8 +58,9 @@ TEST_F(RandomWalk, ASeedGivesTheSameWhateverTheThreads) {
 
 TEST_F(RandomWalk, WritesItsTrace) {
   const std::string trace = (directory.path() / "trace.csv").string();
-  run({"match", whole, seen_again, "--search", "random-walk", "--restarts", "2", "--c-lock", "0,7.5",
-       "--trace", trace});
+  const Outcome outcome = run({"match", whole, seen_again, "--search", "random-walk", "--restarts", "2",
+                               "--c-lock", "0,7.5", "--accept", "0.9", "--trace", trace});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::vector<std::string> lines = lines_of(trace);
   ASSERT_GT(lines.size(), 3U);
   EXPECT_EQ(lines[0], "match,walk,c_lock,step,delta,psi,agr,dis,x,y,theta");
@@ -86,6 +87,29 @@ TEST_F(RandomWalk, MergesUpTheTree) {
   const Json json = Json::parse(file);
   EXPECT_EQ(json.at("components").at(0).at("members").size(), 2U);
   EXPECT_EQ(json.at("left_out"), Json::array({other}));
+}
+
+TEST_F(RandomWalk, MergeWritesItsTraceBesideItsResults) {
+  const std::string output = (directory.path() / "traced").string();
+  const std::string trace = output + "/trace.csv";
+  const Outcome outcome = run({"merge", "-o", output, "--trace", trace, "--search", "random-walk", "--c-lock",
+                               "7.5", "--accept", "0.9", whole, seen_again, other});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  const std::vector<std::string> lines = lines_of(trace);
+  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(),
+                          [](const auto& line) { return line.rfind("2,1,7.5,0,", 0) == 0; }));
+  expect_error(run({"merge", "-o", output, "--trace", output + "/report.html", "--search", "random-walk",
+                    whole, other}),
+               "report.html", "the merge itself writes");
+}
+
+TEST_F(RandomWalk, EvaluatesPairs) {
+  const std::string table = directory.write(
+      "pairs.tsv", "fixed\tmoving\tx\ty\ttheta\ttolerance\n" + whole + "\t" + whole + "\t0\t0\t0\t0.5\n");
+  const Outcome outcome =
+      run({"evaluate", "--search", "random-walk", "--c-lock", "0", table, "--json", "-", "--quiet"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(Json::parse(outcome.out).at("pairs").at("accepted_correct"), 1);
 }
 
 TEST_F(RandomWalk, MapsWithNothingToCompareAreRefused) {
@@ -120,17 +144,21 @@ TEST_P(WrongWalk, IsAUsageError) {
 }
 
 using Words = std::vector<std::string>;
-INSTANTIATE_TEST_SUITE_P(Cli, WrongWalk,
-                         testing::Values(Words{"--search", "random"},
-                                         Words{"--search", "random-walk", "--c-lock", "-1"},
-                                         Words{"--search", "random-walk", "--c-lock", "nan"},
-                                         Words{"--search", "random-walk", "--c-lock", "0,-2"},
-                                         Words{"--search", "random-walk", "--restarts", "0"},
-                                         Words{"--search", "random-walk", "--restarts", "1.5"},
-                                         Words{"--search", "random-walk", "--seed", "-1"},
-                                         Words{"--search", "random-walk", "--accept", "1.01"},
-                                         Words{"--c-lock", "7.5"}, Words{"--restarts", "2"},
-                                         Words{"--seed", "3"}, Words{"--trace", "trace.csv"}));
+INSTANTIATE_TEST_SUITE_P(
+    Cli, WrongWalk,
+    testing::Values(Words{"--search", "random"}, Words{"--search", "random-walk", "--c-lock", "-1"},
+                    Words{"--search", "random-walk", "--c-lock", "nan"},
+                    Words{"--search", "random-walk", "--c-lock", "0,-2"},
+                    Words{"--search", "random-walk", "--restarts", "0"},
+                    Words{"--search", "random-walk", "--restarts", "1.5"},
+                    Words{"--search", "random-walk", "--seed", "-1"},
+                    Words{"--search", "random-walk", "--seed", "18446744073709551616"},
+                    Words{"--search", "random-walk", "--temperature", "-1"},
+                    Words{"--search", "random-walk", "--temperature", "nan"},
+                    Words{"--search", "random-walk", "--restarts", "1", "--c-lock", "0,1"},
+                    Words{"--temperature", "1"}, Words{"--search", "random-walk", "--accept", "1.01"},
+                    Words{"--c-lock", "7.5"}, Words{"--restarts", "2"}, Words{"--seed", "3"},
+                    Words{"--trace", "trace.csv"}));
 
 }  // namespace
 }  // namespace gridmerge::test

@@ -55,6 +55,39 @@ TEST(MatchByRandomWalk, AcceptsByTheAcceptanceIndexAlone) {
             Verdict::accepted);
 }
 
+TEST(MatchByRandomWalk, AHandfulOfCellsIsNotEnough) {
+  OccupancyGrid corner = make_grid(5, 3, 0.2, {}, Cell::free);
+  for (int column = 0; column < 5; ++column) corner.at(column, 0) = Cell::occupied;
+  RandomWalkMatchOptions options = quick();
+  options.restarts = 3;
+  const MatchResult found = match_by_random_walk(building(), corner, options);
+  EXPECT_GE(found.acceptance_index, 0.95);
+  EXPECT_EQ(found.verdict, Verdict::refused);
+  options.least_common_cells = 5;
+  EXPECT_EQ(match_by_random_walk(building(), corner, options).verdict, Verdict::accepted);
+}
+
+TEST(MatchByRandomWalk, ListsDistinctHypothesesAndNoMoreThanAskedFor) {
+  const OccupancyGrid other = downsample(test::draw_building(4), 2);
+  RandomWalkMatchOptions options = quick();
+  options.walk.patience = 100;
+  options.restarts = 12;
+  const MatchResult all = match_by_random_walk(building(), other, options);
+  ASSERT_GT(all.hypotheses.size(), 1U);
+  const Point2 middle{9.0, 6.5};
+  for (std::size_t i = 0; i < all.hypotheses.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const SE2& a = all.hypotheses[i].T_fixed_moving;
+      const SE2& b = all.hypotheses[k].T_fixed_moving;
+      const Point2 at_a = a * middle, at_b = b * middle;
+      EXPECT_TRUE(std::hypot(at_a.x - at_b.x, at_a.y - at_b.y) > 0.05 ||
+                  std::abs(normalize_angle(a.theta - b.theta)) > 0.01);
+    }
+  }
+  options.max_hypotheses = 1;
+  EXPECT_EQ(match_by_random_walk(building(), other, options).hypotheses.size(), 1U);
+}
+
 TEST(MatchByRandomWalk, KeepsTheBestOfItsWalks) {
   const OccupancyGrid other = downsample(test::draw_building(4), 2);
   RandomWalkMatchOptions options = quick();
@@ -88,6 +121,7 @@ TEST(MatchByRandomWalk, RefusesOptionsThatMakeNoSense) {
   };
   refused([](auto& o) { o.restarts = 0; });
   refused([](auto& o) { o.threads = -1; });
+  refused([](auto& o) { o.least_common_cells = -1; });
   refused([](auto& o) { o.c_locks.clear(); });
   refused([](auto& o) { o.c_locks = {0.0, -1.0}; });
   refused([](auto& o) { o.c_locks = {std::nan("")}; });

@@ -165,6 +165,52 @@ TEST(RandomWalk, AMapIsNotLostBetweenTheCellsOfACoarseOne) {
   EXPECT_GT(result.similarity.agreement + result.similarity.disagreement, 0);
 }
 
+TEST(RandomWalk, AStartOffTheMapFindsBack) {
+  const OccupancyGrid map = test::random_grid(1, 40, 40);
+  RandomWalkOptions options;
+  options.patience = 500;
+  int back = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    options.seed = seed;
+    const SE2 start{120.0 * map.resolution, 0.0, 0.2};
+    const RandomWalkResult result = random_walk(map, map, start, options);
+    back += result.similarity.agreement > 0 ? 1 : 0;
+  }
+  EXPECT_GE(back, 4);
+}
+
+TEST(RandomWalk, ProposalsFollowTheAcceptedSteps) {
+  // A slope without end in one direction: the steps grow along it.
+  OccupancyGrid fixed = make_grid(2000, 12, 0.1);
+  OccupancyGrid moving = make_grid(12, 12, 0.1, {}, Cell::free);
+  fixed.at(1990, 6) = Cell::free;
+  fixed.at(1991, 6) = moving.at(6, 6) = Cell::occupied;
+  fixed.at(0, 0) = Cell::free;
+  RandomWalkOptions options;
+  options.first_step = 1.0;
+  options.patience = 300;
+  options.record_trace = true;
+  const RandomWalkResult result = random_walk(fixed, moving, {1.0, 0.0, 0.0}, options);
+  double longest = 0.0;
+  for (std::size_t i = 1; i < result.trace.size(); ++i) {
+    const double step = result.trace[i].T_fixed_moving.x - result.trace[i - 1].T_fixed_moving.x;
+    longest = std::max(longest, std::abs(step) / fixed.resolution);
+  }
+  EXPECT_GT(longest, 10.0);  // of a first step of one cell
+}
+
+TEST(StartPoses, OneThatIsTooFarToBeMeasuredIsTheWorst) {
+  const OccupancyGrid tunnel = make_grid(31990, 1, 0.1, {}, Cell::free);
+  OccupancyGrid moving = make_grid(2, 1, 0.1, {}, Cell::free);
+  moving.at(0, 0) = Cell::occupied;
+  StartPoseOptions options;
+  options.rotations = 1;
+  const std::vector<MeasuredPose> starts = measure_start_poses(tunnel, moving, options);
+  ASSERT_EQ(starts.size(), 9U);
+  EXPECT_EQ(starts[0].similarity.undefined_terms(), 4);
+  EXPECT_EQ(starts[4].similarity.undefined_terms(), 2);  // on each other; the tunnel has no wall
+}
+
 TEST(RandomWalk, StopsWhenItsPatienceOrItsProposalsRunOut) {
   const OccupancyGrid map = test::random_grid(1, 30, 30);
   RandomWalkOptions options;

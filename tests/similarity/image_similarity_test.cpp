@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
-#include "gridmerge/grid/resample.hpp"
 #include "gridmerge/similarity/distance_map.hpp"
 #include "literal_similarity.hpp"
 
@@ -90,13 +91,19 @@ TEST(ImageSimilarity, EqualsTheLiteralOneUnderAnyTransform) {
     SCOPED_TRACE(run);
     const OccupancyGrid fixed =
         random_map(random, 1 + static_cast<int>(random() % 50), 1 + static_cast<int>(random() % 50));
-    const double resolution = run % 3 == 0 ? 0.07 : 0.1;
-    const OccupancyGrid moving = random_map(random, 1 + static_cast<int>(random() % 50),
-                                            1 + static_cast<int>(random() % 50), resolution);
+    const double resolution = std::array{0.1, 0.07, 0.23}[static_cast<std::size_t>(run % 3)];
+    OccupancyGrid moving = random_map(random, 1 + static_cast<int>(random() % 50),
+                                      1 + static_cast<int>(random() % 50), resolution);
+    moving.origin.theta = run % 5 == 0 ? 0.7 : 0.0;
     const double reach = run % 4 == 0 ? 8.0 : 2.0;  // [m]: apart, or on each other
     const SE2 T{uniform(random, -reach, reach), uniform(random, -reach, reach),
                 uniform(random, -std::numbers::pi, std::numbers::pi)};
-    expect_literal(fixed, moving, T, 180);
+    expect_literal(fixed, moving, T, 240);
+    expect_literal(moving, fixed, inverse(T), 240);
+    const OccupancyGrid drawn = literal::draw_on(fixed, moving, T);
+    std::int64_t equal = 0;
+    for (std::size_t i = 0; i < drawn.cells.size(); ++i) equal += drawn.cells[i] == fixed.cells[i];
+    EXPECT_EQ(count_equal_cells(fixed, moving, T), equal);
     if (HasFailure()) break;
   }
 }
@@ -212,9 +219,40 @@ TEST(ImageSimilarity, AMeterGivesTheSameWhateverItMeasuredBefore) {
   SimilarityMeter copy(meter);
   for (const SE2& T : {SE2{0.3, 0.2, 0.4}, SE2{-3.0, 2.0, 3.0}, SE2{30.0, 0.0, -1.0}, SE2{}}) {
     const ImageSimilarity fresh = measure_similarity(fixed, moving, T);
-    EXPECT_EQ(meter(T).psi(), fresh.psi());
-    EXPECT_EQ(copy(T).psi(), fresh.psi());
+    for (const ImageSimilarity& again : {meter(T), copy(T)}) {
+      EXPECT_EQ(again.psi(), fresh.psi());
+      EXPECT_EQ(again.agreement, fresh.agreement);
+      EXPECT_EQ(again.disagreement, fresh.disagreement);
+    }
   }
+}
+
+TEST(ImageSimilarity, CountsDistancesUpToTheLimitInEveryDirection) {
+  constexpr int kFar = 29000;  // cells
+  for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{-1, 0}, std::pair{0, 1}, std::pair{0, -1}}) {
+    OccupancyGrid fixed = dx != 0 ? make_grid(2000, 1, 1.0) : make_grid(1, 2000, 1.0);
+    fixed.cells.front() = fixed.cells.back() = Cell::free;
+    const OccupancyGrid moving = make_grid(1, 1, 1.0, {}, Cell::free);
+    const ImageSimilarity found =
+        measure_similarity(fixed, moving, SE2{1.0 * dx * kFar, 1.0 * dy * kFar, 0.0});
+    // The fixed map's two cells are at 0 and 1999 along its length.
+    const bool ahead = dx + dy > 0;
+    EXPECT_EQ(found.fixed_to_moving_free.sum, kFar + (ahead ? kFar - 1999 : kFar + 1999));
+    EXPECT_EQ(found.moving_to_fixed_free.sum, ahead ? kFar - 1999 : kFar);
+    EXPECT_EQ(found.fixed_to_moving_free.count, 2);
+    SimilarityMeter meter(fixed, moving);
+    EXPECT_TRUE(meter.can_measure(SE2{1.0 * dx * kFar, 1.0 * dy * kFar, 0.0}));
+    EXPECT_FALSE(meter.can_measure(SE2{1.2 * dx * kFar, 1.2 * dy * kFar, 0.0}));
+    EXPECT_FALSE(meter.can_measure(SE2{std::nan(""), 0.0, 0.0}));
+  }
+}
+
+TEST(Omega, MapsThatLieFarApartHaveNothingEqualButTheUnknown) {
+  const OccupancyGrid fixed = make_grid(10, 10, 1.0, {}, Cell::free);
+  const OccupancyGrid fine = make_grid(10, 10, 0.02, {}, Cell::free);
+  EXPECT_EQ(count_equal_cells(fixed, fine, {-5e5, 0.0, 0.0}), 0);
+  EXPECT_EQ(count_equal_cells(make_grid(10, 10, 1.0), fine, {5e5, 7.0, 1.0}), 100);
+  EXPECT_THROW(count_equal_cells(fixed, make_grid(1000001, 1, 0.02), {}), std::invalid_argument);
 }
 
 TEST(ImageSimilarity, RefusesWhatItCannotMeasure) {

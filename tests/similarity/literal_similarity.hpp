@@ -65,12 +65,15 @@ inline OccupancyGrid draw_on(const OccupancyGrid& lattice, const OccupancyGrid& 
                              const SE2& T_lattice_map) {
   OccupancyGrid drawn =
       make_grid(lattice.width, lattice.height, lattice.resolution, lattice.origin, Cell::unknown);
-  const SE2 T_grid_lattice = inverse(T_lattice_map * map.origin);
+  // Between the lower-left corners, with sine and cosine taken once.
+  const SE2 T_grid_lattice = inverse(T_lattice_map * map.origin) * lattice.origin;
+  const double c = std::cos(T_grid_lattice.theta);
+  const double s = std::sin(T_grid_lattice.theta);
   for (int row = 0; row < drawn.height; ++row) {
     for (int column = 0; column < drawn.width; ++column) {
-      const Point2 p = T_grid_lattice * drawn.cell_center(column, row);
-      const double x = std::floor(p.x / map.resolution);
-      const double y = std::floor(p.y / map.resolution);
+      const Point2 p{(column + 0.5) * lattice.resolution, (row + 0.5) * lattice.resolution};
+      const double x = std::floor((T_grid_lattice.x + c * p.x - s * p.y) / map.resolution);
+      const double y = std::floor((T_grid_lattice.y + s * p.x + c * p.y) / map.resolution);
       if (x < 0 || y < 0 || x >= map.width || y >= map.height) continue;
       drawn.at(column, row) = map.at(static_cast<int>(x), static_cast<int>(y));
     }

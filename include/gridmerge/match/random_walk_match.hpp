@@ -12,13 +12,17 @@ namespace gridmerge {
 
 struct RandomWalkMatchOptions {
   StartPoseOptions start;
-  /// Of each walk. Its seed is the first walk's; the others' follow from it. Its c_lock is not used.
+  /// Of each walk. Its seed is the first walk's, and those of the others are derived from it; its c_lock is
+  /// replaced by those below.
   RandomWalkOptions walk;
   /// c_lock of the first, second, ... walk, from the start again when there are more walks.
   std::vector<double> c_locks{0.0};
   int restarts = 1;                       ///< how many walks there are, at least 1
-  double accept_acceptance_index = 0.98;  ///< the verdict is `accepted` from this acceptance index on
-  int threads = 0;  ///< worker threads; 0 = one a core. The result does not depend on it.
+  double accept_acceptance_index = 0.98;  ///< the verdict is `accepted` from this acceptance index on...
+  /// ...if so many cells of the fixed map's lattice are known in both: any two maps agree on a handful.
+  std::int64_t least_common_cells = 400;
+  std::size_t max_hypotheses = 10;  ///< how many distinct hypotheses the result lists
+  int threads = 0;                  ///< worker threads; 0 = one a core. The result does not depend on it.
   /// Called now and then with the number of finished walks and of all; never from two threads at once.
   std::function<void(int, int)> progress;
   /// Called at the end for every walk, in order, with its number from 0 and its c_lock.
@@ -26,8 +30,9 @@ struct RandomWalkMatchOptions {
 };
 
 /// Finds how `moving` lies on `fixed` as Birk & Carpin (2006) do: adaptive random walks from a lattice of
-/// start poses, of which the one with the best acceptance index is kept, and accepted if that is large
-/// enough.
+/// start poses, of which the one with the best acceptance index is kept (of those with the fewest undefined
+/// distances), and accepted if that is large enough, no distance is undefined and the maps have enough in
+/// common.
 ///
 /// The result is that of match() with these differences: a hypothesis's score is its acceptance index; the
 /// acceptance index also stands for the probability, for want of one (it is not one: see docs/paper.md);

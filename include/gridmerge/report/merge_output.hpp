@@ -10,6 +10,9 @@
 
 namespace gridmerge {
 
+/// Whether a file of this name in the output directory is a merge's own: written, replaced or removed by it.
+bool is_merge_output(const std::filesystem::path& name);
+
 /// Makes sure, before long work, that a merge can be written to `directory`: throws FileError when it is not
 /// a directory, and cannot be made one, that can be written to, or when one of `inputs` (all files that the
 /// maps were read from, images too: LoadedMap::files) lies there under a name that write_merge_output() would

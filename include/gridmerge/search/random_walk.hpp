@@ -26,7 +26,7 @@ struct MeasuredPose {
 
 struct RandomWalkOptions {
   double c_lock = 0.0;          ///< weight of (dis - agr) in Delta; not negative
-  std::size_t memory = 10;      ///< M: accepted samples whose steps set the mean and covariance of proposals
+  std::size_t memory = 10;      ///< M: accepted steps that set the mean and covariance of proposals, >= 4
   double first_step = 10.0;     ///< standard deviation of proposals before anything is accepted [cells]
   double smallest_step = 0.25;  ///< bounds of a proposal's standard deviation in any direction [cells]
   double largest_step = 40.0;
@@ -61,7 +61,8 @@ struct RandomWalkResult {
 };
 
 /// The start poses in the order rotation, row, column, with their measures, from which Delta follows for any
-/// c_lock. Measured in parallel in the calling TBB arena; the result does not depend on threads. Throws
+/// c_lock. One that puts the maps too far apart to be measured has all distances undefined. Measured in
+/// parallel in the calling TBB arena; the result does not depend on threads. Throws
 /// std::invalid_argument for invalid grids, maps that are too large (see SimilarityMeter), or options that
 /// make no sense. O(poses) measurements.
 std::vector<MeasuredPose> measure_start_poses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
@@ -70,10 +71,11 @@ std::vector<MeasuredPose> measure_start_poses(const OccupancyGrid& fixed, const 
 /// The adaptive random walk of Birk & Carpin 2006 (algorithm 1) from one pose. It minimises Delta = psi +
 /// c_lock * (dis - agr). Proposals are normal; their mean and covariance are those of the steps between the
 /// last `memory` accepted samples, with the covariance's eigenvalues held between smallest_step^2 and
-/// largest_step^2. After every 100 refusals in a row steps are halved, and they are back at their size when
-/// they would fall below smallest_step. A rotation counts as the way that it moves a cell at the moving map's
-/// root mean square radius. A proposal that takes the maps' known rectangles off each other for certain is
-/// refused without being measured.
+/// largest_step^2. After every 100 refusals in a row their mean becomes 0 and they are halved, and they are
+/// back at their size when they would fall below smallest_step. A rotation counts as the way that it moves a
+/// cell at the moving map's root mean square radius. A proposal that takes maps that lie apart for certain
+/// farther apart, or farther than can be measured, is refused without being measured. A sample with fewer
+/// undefined distances is better whatever its Delta (is_better()), and one with more is never accepted.
 ///
 /// The same seed gives the same walk on the same machine. Throws std::invalid_argument for invalid grids,
 /// options or start. O(proposals) measurements.

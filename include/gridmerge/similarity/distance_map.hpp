@@ -27,9 +27,9 @@ struct DistanceMap {
   }
 };
 
-/// Algorithm 2 of the paper, with its two passes split by direction: down, up, then both ways along the rows,
-/// eight of which go at a time. Throws std::invalid_argument if width + height > kMaxDistanceMapSides.
-/// O(cells); vectorised.
+/// Algorithm 2 of the paper, with its two passes split by direction: both ways along the columns, then both
+/// ways along the rows, sixteen of which go at a time. Throws std::invalid_argument if width + height >
+/// kMaxDistanceMapSides. O(cells); vectorised.
 DistanceMap make_distance_map(const OccupancyGrid& grid, Cell value);
 
 }  // namespace gridmerge

@@ -21,7 +21,8 @@ namespace gridmerge {
 
 /// omega (eq. 2): cells of the fixed map that have the same value, unknown included, as the moving map's
 /// there. Symmetric for maps of one size and origin under the identity. Throws std::invalid_argument for
-/// invalid grids, and for resolutions that differ by more than 100 times. O(cells of the fixed map).
+/// invalid grids, resolutions that differ by more than 100 times, sides of more than a million cells, and a
+/// transform that is not finite or puts the maps that far apart. O(cells of the fixed map).
 std::int64_t count_equal_cells(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                const SE2& T_fixed_moving);
 
@@ -81,15 +82,19 @@ bool is_better(const ImageSimilarity& a, const ImageSimilarity& b, double c_lock
 class SimilarityMeter {
  public:
   /// Copies what it needs of the maps. Throws std::invalid_argument for an invalid grid, for resolutions that
-  /// differ by more than 100 times, and unless width + height of the fixed map's known rectangle and twice
-  /// that of the moving map's, in cells of the fixed one, are kMaxDistanceMapSides at most. O(cells).
+  /// differ by more than 100 times, and unless width + height of the fixed map's known rectangle and one and
+  /// a half times that of the moving map's, in cells of the fixed one, are kMaxDistanceMapSides at most: a
+  /// turned map is wider by the square root of 2 at most. O(cells).
   SimilarityMeter(const OccupancyGrid& fixed, const OccupancyGrid& moving);
   SimilarityMeter(const SimilarityMeter& other);
   SimilarityMeter& operator=(const SimilarityMeter&) = delete;
   ~SimilarityMeter();
 
-  /// `T_fixed_moving` is between map frames [m, rad]. Throws std::invalid_argument if it is not finite, or
-  /// puts the maps more than about kMaxDistanceMapSides / 2 cells apart.
+  /// Whether the pose is finite, and width + height of the rectangle that holds both known rectangles is
+  /// kMaxDistanceMapSides at most. O(1).
+  bool can_measure(const SE2& T_fixed_moving) const;
+
+  /// `T_fixed_moving` is between map frames [m, rad]. Throws std::invalid_argument unless can_measure() it.
   /// O(cells of the rectangle that holds both maps' known cells).
   ImageSimilarity operator()(const SE2& T_fixed_moving);
 
