@@ -23,5 +23,6 @@ void add_info(CLI::App& app, Action& action);
 void add_match(CLI::App& app, Action& action);
 void add_merge(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
+void add_simulate(CLI::App& app, Action& action);
 
 }  // namespace gridmerge::cli

@@ -3,16 +3,9 @@
 
 #include <vector>
 
-#include "gridmerge/grid/se2.hpp"
+#include "gridmerge/simulate/draughtsman.hpp"
 
 namespace gridmerge::example {
-
-/// A straight edge that stops a laser beam. Metres, in the building's frame.
-struct Edge {
-  Point2 a;
-  Point2 b;
-  double echo = 1.0;  ///< probability that a beam which meets the edge ends there; glass lets most pass
-};
 
 using Building = std::vector<Edge>;
 

@@ -36,9 +36,10 @@ class TruthRows {
     return tolerance;
   }
 
-  void check_overlap(std::size_t row) const {
+  double overlap(std::size_t row) const {
     const double overlap = table_.number(row, "overlap");
     if (overlap < 0.0 || overlap > 1.0) table_.fail(row, "overlap must be between 0 and 1");
+    return overlap;
   }
 
  private:
@@ -53,9 +54,9 @@ std::vector<TruePair> parse_pairs(const std::filesystem::path& path, std::string
   const TextTable& table = rows.table();
   std::vector<TruePair> pairs;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    if (table.has("overlap")) rows.check_overlap(row);
     pairs.push_back({rows.map(row, "fixed"), rows.map(row, "moving"), rows.transform(row),
-                     rows.tolerance(row), table.has("tier") ? table.text(row, "tier") : std::string()});
+                     rows.tolerance(row), table.has("tier") ? table.text(row, "tier") : std::string(),
+                     table.has("overlap") ? rows.overlap(row) : 0.0});
   }
   return pairs;
 }

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <new>
+#include <stdexcept>
 #include <utility>
 
 #include "file_reader.hpp"
@@ -100,6 +103,43 @@ std::vector<std::uint8_t> to_pixels(const OccupancyGrid& grid) {
   return pixels;
 }
 
+// Occupancies in percent, top row first.
+std::vector<std::uint8_t> to_percentages(const OccupancyGrid& grid) {
+  constexpr std::uint8_t kUnknown = 255;
+  std::vector<std::uint8_t> pixels;
+  pixels.reserve(grid.cells.size());
+  for (int row = grid.height - 1; row >= 0; --row) {
+    for (int column = 0; column < grid.width; ++column) {
+      const float probability = grid.probability[grid.index(column, row)];
+      pixels.push_back(std::isnan(probability) ? kUnknown
+                                               : static_cast<std::uint8_t>(std::lround(
+                                                     100.0F * std::clamp(probability, 0.0F, 1.0F))));
+    }
+  }
+  return pixels;
+}
+
+std::vector<StagedFile> stage_files(const OccupancyGrid& grid, MapMode mode,
+                                    const std::vector<std::uint8_t>& pixels,
+                                    const std::filesystem::path& yaml_path) {
+  if (yaml_path.extension() != ".yaml" && yaml_path.extension() != ".yml") {
+    throw FileError(yaml_path, "cannot be written: a map's name must end in .yaml or .yml");
+  }
+  const std::filesystem::path image_path = std::filesystem::path(yaml_path).replace_extension(".pgm");
+  const std::string yaml_text = blaming(yaml_path, [&] {
+    MapYaml yaml;
+    yaml.image = image_path.filename().string();
+    yaml.mode = mode;
+    yaml.resolution = grid.resolution;
+    yaml.origin = grid.origin;
+    return format_map_yaml(yaml);
+  });
+  std::vector<StagedFile> files;
+  files.emplace_back(image_path, encode_pgm(grid.width, grid.height, pixels));
+  files.emplace_back(yaml_path, yaml_text);
+  return files;
+}
+
 }  // namespace
 
 LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options) {
@@ -120,21 +160,14 @@ void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path)
 
 std::vector<StagedFile> stage_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path) {
   validate(grid);
-  if (yaml_path.extension() != ".yaml" && yaml_path.extension() != ".yml") {
-    throw FileError(yaml_path, "cannot be written: a map's name must end in .yaml or .yml");
-  }
-  const std::filesystem::path image_path = std::filesystem::path(yaml_path).replace_extension(".pgm");
-  const std::string yaml_text = blaming(yaml_path, [&] {
-    MapYaml yaml;
-    yaml.image = image_path.filename().string();
-    yaml.resolution = grid.resolution;
-    yaml.origin = grid.origin;
-    return format_map_yaml(yaml);
-  });
-  std::vector<StagedFile> files;
-  files.emplace_back(image_path, encode_pgm(grid.width, grid.height, to_pixels(grid)));
-  files.emplace_back(yaml_path, yaml_text);
-  return files;
+  return stage_files(grid, MapMode::trinary, to_pixels(grid), yaml_path);
+}
+
+std::vector<StagedFile> stage_probability_map(const OccupancyGrid& grid,
+                                              const std::filesystem::path& yaml_path) {
+  validate(grid);
+  if (grid.probability.empty()) throw std::invalid_argument("the map has no probabilities");
+  return stage_files(grid, MapMode::raw, to_percentages(grid), yaml_path);
 }
 
 }  // namespace gridmerge

@@ -23,6 +23,7 @@ struct TruePair {
   double tolerance = 0.0;  ///< largest rms_displacement() of a correct estimate [m]
   std::string
       tier;  ///< how hard the pair is, in the file's own words; empty where the file has no such column
+  double overlap = 0.0;  ///< share of the smaller map that both know; 0 where the file does not say
 };
 
 /// Two maps with no common place: the only right answer is to refuse.
@@ -48,8 +49,7 @@ struct TrueSet {
 /// are read the same way under every locale and must be finite; tolerances must be positive. They throw
 /// FileError with "file:line: cause".
 
-/// Columns: fixed, moving, x, y, theta, tolerance; optional: tier, overlap (checked to be in [0, 1], not
-/// used).
+/// Columns: fixed, moving, x, y, theta, tolerance; optional: tier, overlap (in [0, 1]).
 std::vector<TruePair> read_pairs(const std::filesystem::path& path);
 
 /// Columns: fixed, moving.
@@ -57,5 +57,11 @@ std::vector<NegativePair> read_negatives(const std::filesystem::path& path);
 
 /// Columns: set, map, x, y, theta, tolerance. Sets come in the order of their first line.
 std::vector<TrueSet> read_sets(const std::filesystem::path& path);
+
+/// The text of a ground-truth file, which reads back to the same values (numbers to the bit). Names are those
+/// of the maps, not their paths; throws std::invalid_argument for one with a tab or a line break.
+std::string format_pairs(const std::vector<TruePair>& pairs);
+std::string format_negatives(const std::vector<NegativePair>& negatives);
+std::string format_sets(const std::vector<TrueSet>& sets);
 
 }  // namespace gridmerge

@@ -64,6 +64,13 @@ std::vector<std::filesystem::path> map_files(const std::filesystem::path& path);
 /// for a grid that `validate` refuses.
 void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
 
+/// The files of a map with its probabilities, staged as stage_map()'s: mode `raw`, a pixel the occupancy in
+/// percent, 255 unknown. Loading gives the probabilities, rounded to a percent, and the cells that follow
+/// from them with thresholds 0.65 and 0.196. Throws as save_map(), and std::invalid_argument for a grid
+/// without probabilities.
+std::vector<StagedFile> stage_probability_map(const OccupancyGrid& grid,
+                                              const std::filesystem::path& yaml_path);
+
 /// The files that save_map() writes, staged: the image, then the YAML. For a map that belongs to other
 /// outputs.
 std::vector<StagedFile> stage_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/simulate/simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <iterator>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "gridmerge/evaluate/dataset.hpp"
+
+namespace gridmerge::cli {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+struct SimulateCommandOptions {
+  CommonOptions common;
+  std::string output;
+  std::string kind = "office";
+  std::string size = "40x25";
+  std::vector<std::string> starts;
+  int others = 1;
+  double field_of_view = 270.0;  // [degrees]
+  double angular_step = 0.5;     // [degrees]
+  SimulateOptions simulation;
+  DatasetOptions dataset;
+};
+
+/// Two numbers with `separator` between them.
+std::optional<std::array<double, 2>> parse_two(const std::string& text, char separator) {
+  std::array<double, 2> values{};
+  const std::size_t at = text.find(separator);
+  if (at == std::string::npos) return std::nullopt;
+  const std::array<std::string_view, 2> parts{std::string_view(text).substr(0, at),
+                                              std::string_view(text).substr(at + 1)};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const char* end = parts[i].data() + parts[i].size();
+    const auto [stop, error] = std::from_chars(parts[i].data(), end, values[i]);
+    if (error != std::errc() || stop != end) return std::nullopt;
+  }
+  return values;
+}
+
+CLI::Validator two_numbers(char separator, const std::string& example) {
+  return {[separator, example](std::string& text) {
+            return parse_two(text, separator) ? std::string()
+                                              : "'" + text + "' is not two numbers such as " + example;
+          },
+          ""};
+}
+
+SimulateOptions make_options(const SimulateCommandOptions& options) {
+  SimulateOptions simulation = options.simulation;
+  simulation.kind = *building_kind(options.kind);
+  const auto size = *parse_two(options.size, 'x');
+  simulation.width = size[0];
+  simulation.height = size[1];
+  for (const std::string& text : options.starts) {
+    const auto start = *parse_two(text, ',');
+    simulation.starts.push_back({start[0], start[1]});
+  }
+  simulation.sensor.field_of_view = options.field_of_view * kDegree;
+  simulation.sensor.angular_step = options.angular_step * kDegree;
+  simulation.threads = options.common.threads;
+  return simulation;
+}
+
+/// One robot in another building of the same kind.
+SimulateOptions elsewhere_options(SimulateOptions simulation, int number) {
+  simulation.robots = 1;
+  simulation.overlap.reset();
+  simulation.starts.clear();
+  simulation.seed = simulation.seed * 1000003 + static_cast<std::uint64_t>(number) + 1;
+  return simulation;
+}
+
+std::string describe(const Simulation& simulation, const std::string& output) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  for (std::size_t i = 0; i < simulation.maps.size(); ++i) {
+    const SimulatedMap& map = simulation.maps[i];
+    const double area =
+        static_cast<double>(count_cells(map.grid).known()) * map.grid.resolution * map.grid.resolution;
+    fmt::format_to(out, "robot_{}.yaml: {} x {} cells, {:.0f} m^2 known, {} scans, bent by {:.2f} m\n", i + 1,
+                   map.grid.width, map.grid.height, area, map.path.size(), map.bend);
+  }
+  if (simulation.maps.size() > 1) {
+    fmt::format_to(out, "overlap {:.3f}; {} pairs share a place, {} share none\n", simulation.overlap,
+                   simulation.pairs.size(), simulation.strangers.size());
+  }
+  fmt::format_to(out, "the truth: {}/pairs.tsv, negatives.tsv, sets.tsv\n", output);
+  return text;
+}
+
+int run_simulate(const SimulateCommandOptions& options) {
+  Console console(options.common);
+  SimulateOptions simulation_options = make_options(options);
+  simulation_options.progress = [&](double share) { console.progress(share / (1.0 + options.others)); };
+  const Simulation simulation = simulate(simulation_options);
+  std::vector<Simulation> elsewhere;
+  for (int i = 0; i < options.others; ++i) {
+    SimulateOptions other = elsewhere_options(simulation_options, i);
+    other.progress = [&](double share) { console.progress((i + 1 + share) / (1.0 + options.others)); };
+    elsewhere.push_back(simulate(other));
+  }
+  console.clear();
+  write_dataset(options.output, simulation, elsewhere, options.dataset);
+  print(describe(simulation, options.output));
+  return kDone;
+}
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for (const BuildingKind kind : building_kinds()) names.emplace_back(name_of(kind));
+  return names;
+}
+
+void add_world_options(CLI::App& command, SimulateCommandOptions& options) {
+  SimulateOptions& simulation = options.simulation;
+  command.add_option("--kind", options.kind, "What kind of building")
+      ->type_name("KIND")
+      ->check(CLI::IsMember(kind_names()))
+      ->capture_default_str();
+  command.add_option("--size", options.size, "Of the building, in metres")
+      ->type_name("WxH")
+      ->check(two_numbers('x', "40x25"))
+      ->capture_default_str();
+  command.add_option("--robots", simulation.robots, "How many robots map it")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000).description(""))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--overlap", simulation.overlap,
+          "Wanted share of a robot's area that it has in common with another one, on average; without "
+          "it every robot goes wherever it can")
+      ->type_name("SHARE")
+      ->check(kProbability);
+  command.add_option("--start", options.starts, "Where a robot starts, in metres; once for each")
+      ->type_name("X,Y")
+      ->allow_extra_args(false)
+      ->check(two_numbers(',', "12.5,3"));
+  command
+      .add_option("--longest-way", simulation.longest_way,
+                  "Metres after which a robot stops; 0 = when it has seen all")
+      ->type_name("METRES")
+      ->check(kNotNegative)
+      ->capture_default_str();
+  command
+      .add_option("--clutter", simulation.clutter,
+                  "How much stands and walks about that differs from robot to robot")
+      ->type_name("AMOUNT")
+      ->check(kNotNegative)
+      ->capture_default_str();
+  command.add_option("--others", options.others, "How many maps of other buildings to add")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1000).description(""))
+      ->capture_default_str();
+}
+
+void add_mapping_options(CLI::App& command, SimulateCommandOptions& options) {
+  SimulateOptions& simulation = options.simulation;
+  const auto number = [&](const char* name, double& value, const char* unit, const char* what) {
+    command.add_option(name, value, what)->type_name(unit)->check(kNotNegative)->capture_default_str();
+  };
+  number("--drift", simulation.drift, "AMOUNT",
+         "How much maps bend: 0 not at all, 1 as hand-held mapping does");
+  number("--resolution", simulation.resolution, "METRES", "Metres a cell of the maps");
+  number("--range", simulation.sensor.range, "METRES", "Of the range finder");
+  number("--field-of-view", options.field_of_view, "DEGREES", "Of the range finder");
+  number("--angular-step", options.angular_step, "DEGREES", "Between its beams");
+  number("--noise", simulation.sensor.noise, "METRES", "Standard deviation of a range");
+  number("--stray", simulation.sensor.stray_share, "SHARE", "Of beams that end before what they should meet");
+  number("--missed", simulation.sensor.missed_share, "SHARE", "Of beams that come back with nothing");
+  command.add_flag("--probabilities", options.dataset.probabilities,
+                   "Write probabilities (mode raw), not only free, occupied and unknown");
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("simulate", "Make maps of an invented building, with ground truth");
+  const auto options = std::make_shared<SimulateCommandOptions>();
+  command->add_option("-o,--output", options->output, "Directory for the maps and the truth; made if need be")
+      ->type_name("DIR")
+      ->required();
+  add_world_options(*command, *options);
+  add_mapping_options(*command, *options);
+  command->add_option("--seed", options->simulation.seed, "The same seed gives the same maps")
+      ->type_name("N")
+      ->check(kWholeNumber)
+      ->capture_default_str();
+  add_common_options(*command, options->common);
+  command->footer(
+      "Robots explore the building, each from a start of its own, and draw what a range finder sees into a\n"
+      "frame of their own. Writes robot_1.yaml and so on, elsewhere_1.yaml of other buildings, "
+      "building.yaml,\n"
+      "and the truth: pairs.tsv, negatives.tsv and sets.tsv, as 'gridmerge evaluate' reads them.\n\n"
+      "Example:\n  gridmerge simulate --kind office --robots 6 --overlap 0.2 --size 40x25 --seed 7 -o "
+      "office");
+  command->callback([options, &action] { action = [options] { return run_simulate(*options); }; });
+}
+
+}  // namespace gridmerge::cli

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/simulate/draughtsman.hpp"
+
+namespace gridmerge {
+
+enum class BuildingKind {
+  office,     ///< corridors between rows of rooms, many of one width
+  hall,       ///< a large room with pillars, recesses and a few side rooms
+  warehouse,  ///< long rows of racks that look alike
+  apartment,  ///< few small rooms, much furniture
+  symmetric,  ///< two wings that are one another turned by half a turn; only what stands in them differs
+  loop,       ///< a corridor around a core, rooms outside
+  curved,     ///< a corridor along an arc, radial and slanted walls
+  outdoor,    ///< a fenced yard: houses at odd angles, trees, bushes, parked cars
+};
+
+/// All kinds, in the order above.
+std::span<const BuildingKind> building_kinds();
+const char* name_of(BuildingKind kind);
+std::optional<BuildingKind> building_kind(std::string_view name);
+
+/// What stands still: walls, windows, pillars, furniture.
+struct Building {
+  BuildingKind kind = BuildingKind::office;
+  double width = 0.0;   ///< [m], along x; the lower left corner is near the origin
+  double height = 0.0;  ///< [m], along y
+  std::vector<Edge> edges;
+};
+
+inline constexpr double kMinBuildingSide = 8.0;    ///< [m]
+inline constexpr double kMaxBuildingSide = 500.0;  ///< [m]
+
+/// An invented building of about `width` x `height` metres. The same arguments give the same building.
+/// Throws std::invalid_argument for sides outside [kMinBuildingSide, kMaxBuildingSide]. O(area).
+Building make_building(BuildingKind kind, double width, double height, std::uint64_t seed);
+
+/// The building as a map in its own frame, `resolution` metres a cell: edges occupied, floor that can be
+/// reached free, the rest unknown. Throws std::invalid_argument unless resolution is in [0.01, 1]. O(cells).
+OccupancyGrid draw_building(const Building& building, double resolution);
+
+}  // namespace gridmerge

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/simulate/building.hpp"
+#include "gridmerge/simulate/range_finder.hpp"
+
+namespace gridmerge {
+
+/// What maps are wanted. Metres and radians.
+struct SimulateOptions {
+  BuildingKind kind = BuildingKind::office;
+  double width = 40.0;   ///< of the building [m]
+  double height = 25.0;  ///< [m]
+  int robots = 2;
+  /// Wanted overlap in [0, 1]: the mean over the robots of the largest share of its known area that it has in
+  /// common with another one (of the smaller of the two). It is reached by how far robots go from where they
+  /// start. Without it each goes wherever it can.
+  std::optional<double> overlap;
+  /// Where robots start, in the building's frame, one a robot; empty spreads them over the floor.
+  std::vector<Point2> starts;
+  double longest_way = 0.0;  ///< a robot stops after so much way [m]; 0 = when it has seen all it wants
+  RangeFinder sensor;
+  double robot_radius = 0.2;  ///< [m]: where it fits through
+  double scan_every = 0.3;    ///< of way [m]
+  /// How much the maps bend: 0 not at all, 1 as hand-held mapping does, by several decimetres over a floor.
+  double drift = 0.3;
+  /// How much stands and walks about that another robot, at another time, does not meet: 0 nothing, 1 a box
+  /// or chair on every 25 square metres and a walker on every 150.
+  double clutter = 1.0;
+  double resolution = 0.05;  ///< of the maps [m/cell]
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< worker threads; 0 = one a core. The result does not depend on it.
+  /// Called now and then with the share of the work that is done, in [0, 1]; never from two threads at once.
+  std::function<void(double)> progress;
+};
+
+/// The map that one robot brought home.
+struct SimulatedMap {
+  /// In a frame of its own: origin where the robot started, turned at will. With probabilities. Cropped to
+  /// what is known.
+  OccupancyGrid grid;
+  /// The rigid transform that lays the map best on the building (least squares over what was drawn). Exact
+  /// without drift.
+  SE2 T_building_map;
+  double bend = 0.0;      ///< root mean square error that is left then [m]
+  std::vector<SE2> path;  ///< where it scanned: true poses T_building_robot
+};
+
+/// An estimate is never asked to be nearer to the truth than this [m].
+inline constexpr double kLeastTolerance = 0.5;
+
+/// Two maps that share a place.
+struct SimulatedPair {
+  std::size_t fixed = 0;
+  std::size_t moving = 0;
+  /// The rigid transform that lays the moving map best on the fixed one, over the places that both drew.
+  SE2 T_fixed_moving;
+  /// Largest rms_displacement() of a correct estimate [m]: half a metre, or more where the maps' bending
+  /// leaves the true transform that uncertain.
+  double tolerance = kLeastTolerance;
+  double overlap = 0.0;  ///< share of the smaller map's area that both have drawn
+  /// 'A': 400 cells of shared wall (of 0.05 m), 80 % of them matching; 'B': 150 and 60 %; 'C': less.
+  char tier = 'C';
+};
+
+struct Simulation {
+  Building building;
+  std::vector<SimulatedMap> maps;
+  std::vector<SimulatedPair> pairs;                            ///< by fixed, then moving; fixed < moving
+  std::vector<std::pair<std::size_t, std::size_t>> strangers;  ///< maps that have no place in common
+  double overlap = 0.0;  ///< what SimulateOptions::overlap asks for, as it came out
+};
+
+/// Invents a building, sends robots through it, and draws what each would bring home: it plans ways to what
+/// it has not seen (the nearest first), scans as it goes, believes its drifting odometry as far as its own
+/// map does not put it right, and draws by log-odds. Pairs that share some place, but hardly any, are in
+/// neither list.
+///
+/// The same options give the same result on the same machine, for any number of threads. Throws
+/// std::invalid_argument, saying what is wrong, for options out of range, a building in which no robot can
+/// stand, starts where none can, and an overlap that cannot be had. O(robots * way * beams), and some ten
+/// times the planning where an overlap is asked for.
+Simulation simulate(const SimulateOptions& options);
+
+}  // namespace gridmerge

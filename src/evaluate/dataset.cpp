@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/evaluate/dataset.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "gridmerge/evaluate/truth.hpp"
+#include "gridmerge/io/atomic_file.hpp"
+#include "gridmerge/io/map_file.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+TruthMap robot_map(std::size_t robot) {
+  return {fmt::format("robot_{}.yaml", robot + 1), {}};
+}
+
+TruthMap elsewhere_map(std::size_t map) {
+  return {fmt::format("elsewhere_{}.yaml", map + 1), {}};
+}
+
+std::vector<TruePair> true_pairs(const Simulation& simulation) {
+  std::vector<TruePair> pairs;
+  for (const SimulatedPair& pair : simulation.pairs) {
+    pairs.push_back({robot_map(pair.fixed), robot_map(pair.moving), pair.T_fixed_moving, pair.tolerance,
+                     std::string(1, pair.tier), pair.overlap});
+  }
+  return pairs;
+}
+
+std::vector<NegativePair> negatives(const Simulation& simulation, std::size_t others) {
+  std::vector<NegativePair> pairs;
+  for (const auto& [a, b] : simulation.strangers) pairs.push_back({robot_map(a), robot_map(b)});
+  for (std::size_t robot = 0; robot < simulation.maps.size(); ++robot) {
+    for (std::size_t other = 0; other < others; ++other)
+      pairs.push_back({robot_map(robot), elsewhere_map(other)});
+  }
+  return pairs;
+}
+
+/// All robots' maps, relative to the first.
+std::vector<TrueSet> sets(const Simulation& simulation) {
+  if (simulation.maps.size() < 2) return {};
+  TrueSet set{"building", {}};
+  const SimulatedMap& first = simulation.maps.front();
+  for (std::size_t robot = 0; robot < simulation.maps.size(); ++robot) {
+    const SimulatedMap& map = simulation.maps[robot];
+    set.members.push_back({robot_map(robot), inverse(first.T_building_map) * map.T_building_map,
+                           std::max(kLeastTolerance, 0.3 + 2.0 * (first.bend + map.bend))});
+  }
+  return {set};
+}
+
+}  // namespace
+
+void write_dataset(const fs::path& directory, const Simulation& simulation,
+                   const std::vector<Simulation>& elsewhere, const DatasetOptions& options) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) throw FileError(directory, "cannot be created: " + error.message());
+
+  std::vector<StagedFile> files;
+  const auto stage = [&](const OccupancyGrid& grid, const std::string& name, bool probabilities) {
+    for (StagedFile& file :
+         probabilities ? stage_probability_map(grid, directory / name) : stage_map(grid, directory / name))
+      files.push_back(std::move(file));
+  };
+  for (std::size_t i = 0; i < simulation.maps.size(); ++i)
+    stage(simulation.maps[i].grid, robot_map(i).name, options.probabilities);
+  std::size_t others = 0;
+  for (const Simulation& other : elsewhere) {
+    for (const SimulatedMap& map : other.maps)
+      stage(map.grid, elsewhere_map(others++).name, options.probabilities);
+  }
+  stage(draw_building(simulation.building, 0.05), "building.yaml", false);
+  files.emplace_back(directory / "pairs.tsv", format_pairs(true_pairs(simulation)));
+  files.emplace_back(directory / "negatives.tsv", format_negatives(negatives(simulation, others)));
+  files.emplace_back(directory / "sets.tsv", format_sets(sets(simulation)));
+  for (StagedFile& file : files) file.commit();
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+#include "gridmerge/evaluate/truth.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+const std::string& cell(const std::string& text) {
+  if (text.empty() || text.find_first_of(std::string("\t\r\n\0", 4)) != std::string::npos)
+    throw std::invalid_argument("a name in a table must not be empty or hold tabs or line breaks");
+  return text;
+}
+
+}  // namespace
+
+std::string format_pairs(const std::vector<TruePair>& pairs) {
+  std::string text = "fixed\tmoving\tx\ty\ttheta\ttolerance\ttier\toverlap\n";
+  for (const TruePair& pair : pairs) {
+    const SE2& T = pair.T_fixed_moving;
+    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", cell(pair.fixed.name),
+                   cell(pair.moving.name), T.x, T.y, T.theta, pair.tolerance, cell(pair.tier), pair.overlap);
+  }
+  return text;
+}
+
+std::string format_negatives(const std::vector<NegativePair>& negatives) {
+  std::string text = "fixed\tmoving\n";
+  for (const NegativePair& pair : negatives)
+    fmt::format_to(std::back_inserter(text), "{}\t{}\n", cell(pair.fixed.name), cell(pair.moving.name));
+  return text;
+}
+
+std::string format_sets(const std::vector<TrueSet>& sets) {
+  std::string text = "set\tmap\tx\ty\ttheta\ttolerance\n";
+  for (const TrueSet& set : sets) {
+    for (const TrueMember& member : set.members) {
+      const SE2& T = member.T_set_map;
+      fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\n", cell(set.name),
+                     cell(member.map.name), T.x, T.y, T.theta, member.tolerance);
+    }
+  }
+  return text;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/simulate/building.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "building_parts.hpp"
+#include "floor_plan.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+struct Kind {
+  BuildingKind kind;
+  const char* name;
+  void (*draw)(Draughtsman&, Random&, double, double);
+};
+
+constexpr std::array<Kind, 8> kKinds{{{BuildingKind::office, "office", draw_office},
+                                      {BuildingKind::hall, "hall", draw_hall},
+                                      {BuildingKind::warehouse, "warehouse", draw_warehouse},
+                                      {BuildingKind::apartment, "apartment", draw_apartment},
+                                      {BuildingKind::symmetric, "symmetric", draw_symmetric},
+                                      {BuildingKind::loop, "loop", draw_loop},
+                                      {BuildingKind::curved, "curved", draw_curved},
+                                      {BuildingKind::outdoor, "outdoor", draw_outdoor}}};
+
+}  // namespace
+
+std::span<const BuildingKind> building_kinds() {
+  static constexpr auto kAll = [] {
+    std::array<BuildingKind, kKinds.size()> all{};
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = kKinds[i].kind;
+    return all;
+  }();
+  return kAll;
+}
+
+const char* name_of(BuildingKind kind) {
+  return kKinds[static_cast<std::size_t>(kind)].name;
+}
+
+std::optional<BuildingKind> building_kind(std::string_view name) {
+  for (const Kind& kind : kKinds) {
+    if (name == kind.name) return kind.kind;
+  }
+  return std::nullopt;
+}
+
+Building make_building(BuildingKind kind, double width, double height, std::uint64_t seed) {
+  for (const double side : {width, height}) {
+    if (!(side >= kMinBuildingSide && side <= kMaxBuildingSide))
+      throw std::invalid_argument("a building's sides must be between 8 and 500 metres");
+  }
+  Random random(seed);
+  Draughtsman pen;
+  kKinds[static_cast<std::size_t>(kind)].draw(pen, random, width, height);
+  return {kind, width, height, std::move(pen.edges)};
+}
+
+OccupancyGrid draw_building(const Building& building, double resolution) {
+  if (!(resolution >= 0.01 && resolution <= 1.0))
+    throw std::invalid_argument("the resolution must be between 0.01 and 1 metres a cell");
+  const FloorPlan plan(building.edges, 0.5 * FloorPlan::kCell);
+  constexpr double kMargin = 1.0;  // [m]
+  const auto cells = [&](double side) {
+    return static_cast<int>(std::ceil((side + 2.0 * kMargin) / resolution));
+  };
+  OccupancyGrid grid =
+      make_grid(cells(building.width), cells(building.height), resolution, {-kMargin, -kMargin, 0.0});
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      const int cell = plan.cell_at(grid.cell_center(column, row));
+      if (cell >= 0 && plan.is_free(cell)) grid.at(column, row) = Cell::free;
+    }
+  }
+  for (const Edge& edge : building.edges) {
+    const double length = std::hypot(edge.b.x - edge.a.x, edge.b.y - edge.a.y);
+    const int pieces = std::max(1, static_cast<int>(2.0 * length / resolution));
+    for (int i = 0; i <= pieces; ++i) {
+      const double share = static_cast<double>(i) / pieces;
+      const int column =
+          static_cast<int>(std::floor((edge.a.x + share * (edge.b.x - edge.a.x) + kMargin) / resolution));
+      const int row =
+          static_cast<int>(std::floor((edge.a.y + share * (edge.b.y - edge.a.y) + kMargin) / resolution));
+      if (grid.contains(column, row)) grid.at(column, row) = Cell::occupied;
+    }
+  }
+  return grid;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mapper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "gridmerge/grid/resample.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+constexpr float kHit = 0.85F;
+constexpr float kMiss = -0.5F;
+constexpr float kMost = 4.0F;  // either way
+constexpr double kOccupied = 0.65;
+constexpr double kFree = 0.196;
+
+}  // namespace
+
+Mapper::Mapper(double resolution, double reach)
+    : resolution_(resolution),
+      half_(static_cast<int>(std::ceil(reach / resolution)) + 1),
+      side_(2 * half_),
+      log_odds_(static_cast<std::size_t>(side_) * side_, std::numeric_limits<float>::quiet_NaN()) {}
+
+void Mapper::update(int column, int row, float evidence) {
+  column += half_;
+  row += half_;
+  if (column < 0 || row < 0 || column >= side_ || row >= side_) return;
+  float& cell = log_odds_[static_cast<std::size_t>(row) * side_ + column];
+  cell = std::clamp((std::isnan(cell) ? 0.0F : cell) + evidence, -kMost, kMost);
+}
+
+void Mapper::add_beam(Point2 from, Point2 to, bool hits) {
+  const double x0 = from.x / resolution_, y0 = from.y / resolution_;
+  const double dx = to.x / resolution_ - x0, dy = to.y / resolution_ - y0;
+  int column = static_cast<int>(std::floor(x0));
+  int row = static_cast<int>(std::floor(y0));
+  const int last_column = static_cast<int>(std::floor(x0 + dx));
+  const int last_row = static_cast<int>(std::floor(y0 + dy));
+  const int step_x = dx < 0.0 ? -1 : 1;
+  const int step_y = dy < 0.0 ? -1 : 1;
+  // Shares of the beam at which it crosses the next border of a cell, along x and along y.
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  double next_x = dx == 0.0 ? kNever : (column + (step_x > 0 ? 1 : 0) - x0) / dx;
+  double next_y = dy == 0.0 ? kNever : (row + (step_y > 0 ? 1 : 0) - y0) / dy;
+  int crossings = std::abs(last_column - column) + std::abs(last_row - row);
+  while (crossings-- > 0) {
+    update(column, row, kMiss);
+    if ((next_x < next_y && column != last_column) || row == last_row) {
+      column += step_x;
+      next_x += std::abs(1.0 / dx);
+    } else {
+      row += step_y;
+      next_y += std::abs(1.0 / dy);
+    }
+  }
+  update(last_column, last_row, hits ? kHit : kMiss);
+}
+
+OccupancyGrid Mapper::grid() const {
+  OccupancyGrid grid =
+      make_grid(side_, side_, resolution_, {-half_ * resolution_, -half_ * resolution_, 0.0});
+  grid.probability.assign(grid.cells.size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < log_odds_.size(); ++i) {
+    if (std::isnan(log_odds_[i])) continue;
+    const double probability = 1.0 / (1.0 + std::exp(-static_cast<double>(log_odds_[i])));
+    grid.probability[i] = static_cast<float>(probability);
+    if (probability > kOccupied) grid.cells[i] = Cell::occupied;
+    if (probability < kFree) grid.cells[i] = Cell::free;
+  }
+  return crop_to_known(grid);
+}
+
+}  // namespace gridmerge

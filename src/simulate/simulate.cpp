@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/simulate/simulate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "gridmerge/search/parallel.hpp"
+#include "survey.hpp"
+#include "team.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+void require(bool condition, const char* what) {
+  if (!condition) throw std::invalid_argument(what);
+}
+
+void check(const SimulateOptions& options) {
+  options.sensor.validate();
+  const auto is_between = [](double value, double low, double high) { return value >= low && value <= high; };
+  require(options.robots >= 1 && options.robots <= 1000, "there must be between 1 and 1000 robots");
+  require(!options.overlap || is_between(*options.overlap, 0.0, 1.0), "overlap must lie in [0, 1]");
+  require(!options.overlap || options.robots >= 2, "an overlap takes two robots");
+  require(options.starts.empty() || options.starts.size() == static_cast<std::size_t>(options.robots),
+          "there must be a start for every robot, or none");
+  require(is_between(options.longest_way, 0.0, 1e5), "the longest way must be between 0 and 100000 metres");
+  require(is_between(options.robot_radius, 0.05, 5.0), "a robot's radius must be between 0.05 and 5 metres");
+  require(is_between(options.scan_every, 0.02, 10.0), "scans must be between 0.02 and 10 metres apart");
+  require(is_between(options.drift, 0.0, 10.0), "drift must be between 0 and 10");
+  require(is_between(options.clutter, 0.0, 10.0), "clutter must be between 0 and 10");
+  require(is_between(options.resolution, 0.01, 1.0),
+          "the resolution must be between 0.01 and 1 metres a cell");
+  require(options.threads >= 0, "threads must not be negative");
+}
+
+/// How much wall of the moving map lies where the fixed one knows, and how much of it meets wall there.
+char tier_of(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SimulatedPair& pair,
+             double bend) {
+  constexpr double kNear = 0.1;  // [m]
+  const int reach = static_cast<int>(std::ceil((kNear + bend) / fixed.resolution));
+  const SE2 T_grid_moving = inverse(fixed.origin) * pair.T_fixed_moving;
+  int shared = 0, matching = 0;
+  for (int row = 0; row < moving.height; ++row) {
+    for (int column = 0; column < moving.width; ++column) {
+      if (moving.at(column, row) != Cell::occupied) continue;
+      const Point2 p = T_grid_moving * moving.cell_center(column, row);
+      const int x = static_cast<int>(std::floor(p.x / fixed.resolution));
+      const int y = static_cast<int>(std::floor(p.y / fixed.resolution));
+      if (!fixed.contains(x, y) || fixed.at(x, y) == Cell::unknown) continue;
+      ++shared;
+      bool meets = false;
+      for (int dy = -reach; dy <= reach && !meets; ++dy) {
+        for (int dx = -reach; dx <= reach && !meets; ++dx)
+          meets = fixed.contains(x + dx, y + dy) && fixed.at(x + dx, y + dy) == Cell::occupied;
+      }
+      matching += meets ? 1 : 0;
+    }
+  }
+  const double walls = shared * moving.resolution / 0.05;
+  const double match = shared > 0 ? static_cast<double>(matching) / shared : 0.0;
+  if (walls >= 400.0 && match >= 0.8) return 'A';
+  return walls >= 150.0 && match >= 0.6 ? 'B' : 'C';
+}
+
+/// Root mean square distance between where two transforms put a map's places [m].
+double difference(const DrawnPlaces& places, const SE2& a, const SE2& b) {
+  double sum = 0.0;
+  const std::vector<PointPair> all = places.building_and_map();
+  for (const PointPair& place : all) {
+    const Point2 at_a = a * place.in_b, at_b = b * place.in_b;
+    sum += (at_a.x - at_b.x) * (at_a.x - at_b.x) + (at_a.y - at_b.y) * (at_a.y - at_b.y);
+  }
+  return all.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(all.size()));
+}
+
+SimulatedPair make_pair(const std::vector<Survey>& surveys, std::size_t fixed, std::size_t moving,
+                        const std::vector<PointPair>& common) {
+  const Survey &f = surveys[fixed], &m = surveys[moving];
+  const RigidFit fit = fit_rigid(common);
+  SimulatedPair pair{fixed, moving, fit.T_a_b};
+  // Bent maps have a transform for what they share and another one for all of them; an estimate may be
+  // nearer to either.
+  const double doubt = difference(m.places, fit.T_a_b, inverse(f.map.T_building_map) * m.map.T_building_map);
+  pair.tolerance = std::max(kLeastTolerance, 0.3 + 2.0 * fit.rms + doubt);
+  pair.overlap =
+      static_cast<double>(common.size()) / std::max(1, std::min(f.places.count(), m.places.count()));
+  pair.tier = tier_of(f.map.grid, m.map.grid, pair, fit.rms);
+  return pair;
+}
+
+void list_pairs(const std::vector<Survey>& surveys, Simulation& simulation) {
+  constexpr double kLeastShared = 1.0;  // [m^2]: less is next to nothing, but not nothing
+  std::vector<double> largest(surveys.size(), 0.0);
+  for (std::size_t i = 0; i < surveys.size(); ++i) {
+    for (std::size_t k = i + 1; k < surveys.size(); ++k) {
+      const std::vector<PointPair> common = common_places(surveys[i].places, surveys[k].places);
+      if (common.empty()) simulation.strangers.emplace_back(i, k);
+      if (static_cast<double>(common.size()) * DrawnPlaces::kCell * DrawnPlaces::kCell < kLeastShared)
+        continue;
+      simulation.pairs.push_back(make_pair(surveys, i, k, common));
+      for (const std::size_t map : {i, k})
+        largest[map] = std::max(largest[map], simulation.pairs.back().overlap);
+    }
+  }
+  for (const double overlap : largest) simulation.overlap += overlap / static_cast<double>(surveys.size());
+}
+
+Simulation simulate_in_arena(const SimulateOptions& options) {
+  Random random(options.seed);
+  Simulation simulation;
+  simulation.building = make_building(options.kind, options.width, options.height, random.bits());
+  const FloorPlan plan(simulation.building.edges, options.robot_radius);
+  require(plan.count_free() > 0, "no robot of this radius can stand in the building");
+  const Team team = plan_team(options, simulation.building, plan, random);
+
+  std::vector<Random> chances;
+  for (std::size_t i = 0; i < team.errands.size(); ++i) chances.push_back(random.fork());
+  std::vector<std::optional<Survey>> made(team.errands.size());
+  std::mutex reporting;
+  std::size_t done = 0;
+  parallel_for(made.size(), [&](std::size_t i) {
+    made[i] = survey(options, team.visits[i], team.errands[i], chances[i]);
+    const std::lock_guard lock(reporting);
+    ++done;
+    if (options.progress) options.progress(static_cast<double>(done) / static_cast<double>(made.size()));
+  });
+  std::vector<Survey> surveys;
+  for (std::optional<Survey>& one : made) surveys.push_back(std::move(*one));
+  list_pairs(surveys, simulation);
+  for (Survey& one : surveys) simulation.maps.push_back(std::move(one.map));
+  return simulation;
+}
+
+}  // namespace
+
+void RangeFinder::validate() const {
+  const auto is_share = [](double value) { return value >= 0.0 && value <= 1.0; };
+  require(field_of_view > 0.0 && field_of_view <= 2.0 * std::numbers::pi + 1e-9,
+          "the field of view must be between 0 and 360 degrees");
+  require(angular_step >= 1e-4 && angular_step <= field_of_view,
+          "the angular step must be positive, and not above the field of view");
+  require(range >= 0.2 && range <= 200.0, "the range must be between 0.2 and 200 metres");
+  require(noise >= 0.0 && noise <= 10.0, "the noise must be between 0 and 10 metres");
+  require(is_share(stray_share) && is_share(missed_share) && is_share(cleared_share),
+          "shares of beams must lie in [0, 1]");
+}
+
+Simulation simulate(const SimulateOptions& options) {
+  check(options);
+  Simulation simulation;
+  with_threads(options.threads, [&] { simulation = simulate_in_arena(options); });
+  return simulation;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "drift.hpp"
+#include "mapper.hpp"
+#include "visit.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+constexpr double kPlaceEvery = 0.5;  // along a beam [m]
+
+/// One beam: how far it seems to go, and whether it seems to end on something.
+struct Beam {
+  double range;
+  bool hits;
+};
+
+class Scanner {
+ public:
+  Scanner(const RangeFinder& sensor, const RayCaster& caster, const Walkers& walkers, Random& random)
+      : sensor_(sensor), caster_(caster), walkers_(walkers), random_(random) {}
+
+  Beam beam(Point2 from, Point2 direction) {
+    double range =
+        std::min(first_echo(from, direction), walkers_.distance_to(from, direction, sensor_.range));
+    if (random_.chance(sensor_.stray_share)) range = random_.uniform() * std::min(range, sensor_.range);
+    const bool hits = range <= sensor_.range && !random_.chance(sensor_.missed_share);
+    if (!hits) return {sensor_.cleared_share * std::min(range, sensor_.range), false};
+    return {std::max(0.0, range + random_.normal(sensor_.noise)), true};
+  }
+
+ private:
+  /// Goes on through glass that does not reflect.
+  double first_echo(Point2 from, Point2 direction) {
+    double beyond = 0.0;
+    while (true) {
+      const Hit hit = caster_.cast(from, direction, sensor_.range, beyond);
+      if (std::isinf(hit.range) || hit.echo >= 1.0 || random_.chance(hit.echo)) return hit.range;
+      beyond = hit.range;
+    }
+  }
+
+  const RangeFinder& sensor_;
+  const RayCaster& caster_;
+  const Walkers& walkers_;
+  Random& random_;
+};
+
+/// The farthest that the robot comes from where it starts, along x or y [m].
+double farthest(const std::vector<SE2>& poses) {
+  double reach = 0.0;
+  for (const SE2& pose : poses)
+    reach = std::max(reach, std::hypot(pose.x - poses.front().x, pose.y - poses.front().y));
+  return reach;
+}
+
+}  // namespace
+
+DrawnPlaces::DrawnPlaces(double width, double height, double margin)
+    : margin_(margin),
+      width_(static_cast<int>((width + 2.0 * margin) / kCell) + 1),
+      height_(static_cast<int>((height + 2.0 * margin) / kCell) + 1),
+      sums_(static_cast<std::size_t>(width_) * height_) {}
+
+void DrawnPlaces::add(Point2 in_building, Point2 in_map) {
+  const double column = std::floor((in_building.x + margin_) / kCell);
+  const double row = std::floor((in_building.y + margin_) / kCell);
+  if (column < 0.0 || row < 0.0 || column >= width_ || row >= height_) return;
+  Sum& sum = sums_[static_cast<std::size_t>(row) * width_ + static_cast<std::size_t>(column)];
+  sum.building_x += in_building.x;
+  sum.building_y += in_building.y;
+  sum.x += in_map.x;
+  sum.y += in_map.y;
+  ++sum.count;
+}
+
+int DrawnPlaces::count() const {
+  return static_cast<int>(
+      std::count_if(sums_.begin(), sums_.end(), [&](const Sum& sum) { return is_drawn(sum); }));
+}
+
+std::vector<PointPair> DrawnPlaces::building_and_map() const {
+  std::vector<PointPair> places;
+  for (const Sum& sum : sums_) {
+    if (!is_drawn(sum)) continue;
+    const double n = sum.count;
+    places.push_back({{sum.building_x / n, sum.building_y / n}, {sum.x / n, sum.y / n}});
+  }
+  return places;
+}
+
+std::vector<PointPair> common_places(const DrawnPlaces& a, const DrawnPlaces& b) {
+  std::vector<PointPair> places;
+  for (std::size_t i = 0; i < a.sums_.size(); ++i) {
+    const DrawnPlaces::Sum &in_a = a.sums_[i], &in_b = b.sums_[i];
+    if (!a.is_drawn(in_a) || !b.is_drawn(in_b)) continue;
+    places.push_back(
+        {{in_a.x / in_a.count, in_a.y / in_a.count}, {in_b.x / in_b.count, in_b.y / in_b.count}});
+  }
+  return places;
+}
+
+Survey survey(const SimulateOptions& options, const Visit& visit, const Errand& errand, Random random) {
+  Survey result{{}, DrawnPlaces(options.width, options.height, options.sensor.range)};
+  result.map.path = explore(visit.plan, visit.caster, errand).poses;
+
+  const std::vector<SE2>& path = result.map.path;
+  SE2 frame = path.front();
+  frame.theta = random.uniform(-std::numbers::pi, std::numbers::pi);
+  const SE2 T_map_building = inverse(frame);
+  DriftingPose belief(options.drift, random.fork());
+  Walkers walkers(visit.plan, options.clutter, random.fork());
+  Random noise = random.fork();
+  Scanner scanner(options.sensor, visit.caster, walkers, noise);
+  Mapper mapper(options.resolution, farthest(path) + options.sensor.range + 5.0);
+  const int beams = static_cast<int>(options.sensor.field_of_view / options.sensor.angular_step) + 1;
+  for (const SE2& pose : path) {
+    const SE2 T_map_robot = T_map_building * belief.follow(pose);
+    for (int i = 0; i < beams; ++i) {
+      const double angle = -0.5 * options.sensor.field_of_view + i * options.sensor.angular_step;
+      const Point2 u{std::cos(angle), std::sin(angle)};
+      const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+      const Beam beam = scanner.beam({pose.x, pose.y}, {c * u.x - s * u.y, s * u.x + c * u.y});
+      mapper.add_beam({T_map_robot.x, T_map_robot.y},
+                      T_map_robot * Point2{beam.range * u.x, beam.range * u.y}, beam.hits);
+      for (double at = beam.range; at > 0.0; at -= kPlaceEvery)
+        result.places.add(pose * Point2{at * u.x, at * u.y}, T_map_robot * Point2{at * u.x, at * u.y});
+    }
+    walkers.walk();
+  }
+  result.map.grid = mapper.grid();
+  const RigidFit fit = fit_rigid(result.places.building_and_map());
+  result.map.T_building_map = fit.T_a_b;
+  result.map.bend = fit.rms;
+  return result;
+}
+
+}  // namespace gridmerge

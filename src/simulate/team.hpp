@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "explore.hpp"
+#include "gridmerge/simulate/random.hpp"
+#include "gridmerge/simulate/simulate.hpp"
+#include "visit.hpp"
+
+namespace gridmerge {
+
+/// Who starts where, what the building is like then, and how far each goes.
+struct Team {
+  std::vector<Errand> errands;
+  std::vector<Visit> visits;
+};
+
+/// `plan` is that of the empty building. Throws std::invalid_argument for starts where no robot can stand and
+/// an overlap that cannot be had.
+Team plan_team(const SimulateOptions& options, const Building& building, const FloorPlan& plan,
+               Random& random);
+
+}  // namespace gridmerge
