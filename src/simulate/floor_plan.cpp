@@ -103,7 +103,9 @@ void FloorPlan::keep_largest_inside() {
 }
 
 Point2 FloorPlan::centre(int cell) const {
-  return {corner_.x + (cell % width_ + 0.5) * kCell, corner_.y + (cell / width_ + 0.5) * kCell};
+  const int column = cell % width_;
+  const int row = cell / width_;
+  return {corner_.x + (column + 0.5) * kCell, corner_.y + (row + 0.5) * kCell};
 }
 
 int FloorPlan::cell_at(Point2 p) const {
@@ -149,8 +151,7 @@ int PathSearch::search(int from, double reach, const std::function<bool(int, dou
   for (int now = 0; empty < kBuckets && now * kUnit <= reach; ++now) {
     std::vector<int>& bucket = buckets[static_cast<std::size_t>(now % kBuckets)];
     empty = bucket.empty() ? empty + 1 : 0;
-    for (std::size_t k = 0; k < bucket.size(); ++k) {
-      const int cell = bucket[k];
+    for (const int cell : bucket) {  // none is added to this one: every step is shorter than the circle
       if (distance_[static_cast<std::size_t>(cell)] != now) continue;  // found shorter since
       if (stop(cell, now * kUnit)) return cell;
       const int width = plan_.width();

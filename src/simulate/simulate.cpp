@@ -119,6 +119,7 @@ Simulation simulate_in_arena(const SimulateOptions& options) {
   const Team team = plan_team(options, simulation.building, plan, random);
 
   std::vector<Random> chances;
+  chances.reserve(team.errands.size());
   for (std::size_t i = 0; i < team.errands.size(); ++i) chances.push_back(random.fork());
   std::vector<std::optional<Survey>> made(team.errands.size());
   std::mutex reporting;
@@ -130,6 +131,7 @@ Simulation simulate_in_arena(const SimulateOptions& options) {
     if (options.progress) options.progress(static_cast<double>(done) / static_cast<double>(made.size()));
   });
   std::vector<Survey> surveys;
+  surveys.reserve(made.size());
   for (std::optional<Survey>& one : made) surveys.push_back(std::move(*one));
   list_pairs(surveys, simulation);
   for (Survey& one : surveys) simulation.maps.push_back(std::move(one.map));

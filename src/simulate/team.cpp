@@ -97,6 +97,7 @@ std::vector<Exploration> explore_all(const Team& team, double reach) {
     found[i] = explore(team.visits[i].plan, team.visits[i].caster, errand);
   });
   std::vector<Exploration> explorations;
+  explorations.reserve(found.size());
   for (std::optional<Exploration>& one : found) explorations.push_back(std::move(*one));
   return explorations;
 }
