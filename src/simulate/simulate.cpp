@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "gridmerge/search/parallel.hpp"
 #include "survey.hpp"
@@ -110,31 +111,78 @@ void list_pairs(const std::vector<Survey>& surveys, Simulation& simulation) {
   for (const double overlap : largest) simulation.overlap += overlap / static_cast<double>(surveys.size());
 }
 
-Simulation simulate_in_arena(const SimulateOptions& options) {
-  Random random(options.seed);
-  Simulation simulation;
-  simulation.building = make_building(options.kind, options.width, options.height, random.bits());
-  const FloorPlan plan(simulation.building.edges, options.robot_radius);
-  require(plan.count_free() > 0, "no robot of this radius can stand in the building");
-  const Team team = plan_team(options, simulation.building, plan, random);
-
+Simulation send_team(const SimulateOptions& options, const Team& team, Random random) {
   std::vector<Random> chances;
   chances.reserve(team.errands.size());
   for (std::size_t i = 0; i < team.errands.size(); ++i) chances.push_back(random.fork());
   std::vector<std::optional<Survey>> made(team.errands.size());
-  std::mutex reporting;
-  std::size_t done = 0;
   parallel_for(made.size(), [&](std::size_t i) {
     made[i] = survey(options, team.visits[i], team.errands[i], chances[i]);
-    const std::lock_guard lock(reporting);
-    ++done;
-    if (options.progress) options.progress(static_cast<double>(done) / static_cast<double>(made.size()));
   });
   std::vector<Survey> surveys;
   surveys.reserve(made.size());
   for (std::optional<Survey>& one : made) surveys.push_back(std::move(*one));
+  Simulation simulation;
   list_pairs(surveys, simulation);
   for (Survey& one : surveys) simulation.maps.push_back(std::move(one.map));
+  return simulation;
+}
+
+/// Plans with an idea of what robots will draw, and sends them; where the overlap comes out otherwise than it
+/// was planned, plans again for as much more or less, from the same starts. The nearest of all tries.
+Simulation aim_for_overlap(const SimulateOptions& options, const Building& building, const FloorPlan& plan,
+                           const Random& random) {
+  constexpr int kTries = 4;
+  constexpr double kNearEnough = 0.03;
+  const double wanted = *options.overlap;
+  SimulateOptions aim = options;
+  std::optional<Simulation> best;
+  const auto off = [&](const Simulation& simulation) { return std::abs(simulation.overlap - wanted); };
+  for (int i = 0; i < kTries; ++i) {
+    Random chance = random;
+    Simulation simulation;
+    try {
+      const Team team = plan_team(aim, building, plan, chance);
+      simulation = send_team(options, team, chance);
+    } catch (const std::invalid_argument&) {
+      if (!best) throw;
+      break;  // what is aimed for instead cannot be had
+    }
+    aim.overlap = std::clamp(*aim.overlap + wanted - simulation.overlap, 0.01, 1.0);
+    if (!best || off(simulation) < off(*best)) best = std::move(simulation);
+    if (off(*best) <= kNearEnough || wanted == 0.0) break;
+  }
+  return std::move(*best);
+}
+
+Simulation send_until_overlap(const SimulateOptions& options, const Building& building, const FloorPlan& plan,
+                              Random& random) {
+  const int rounds = options.starts.empty() ? 4 : 1;  // other starts
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < rounds; ++i) {
+    Simulation simulation = aim_for_overlap(options, building, plan, random.fork());
+    if (is_near_enough(simulation.overlap, *options.overlap)) return simulation;
+    if (std::abs(simulation.overlap - *options.overlap) < std::abs(nearest - *options.overlap))
+      nearest = simulation.overlap;
+    if (options.progress) options.progress((i + 1.0) / (rounds + 1.0));
+  }
+  throw no_such_overlap(*options.overlap, nearest);
+}
+
+Simulation simulate_in_arena(const SimulateOptions& options) {
+  Random random(options.seed);
+  Building building = make_building(options.kind, options.width, options.height, random.bits());
+  const FloorPlan plan(building.edges, options.robot_radius);
+  require(plan.count_free() > 0, "no robot of this radius can stand in the building");
+  Simulation simulation;
+  if (options.overlap) {
+    simulation = send_until_overlap(options, building, plan, random);
+  } else {
+    const Team team = plan_team(options, building, plan, random);
+    simulation = send_team(options, team, random);
+  }
+  simulation.building = std::move(building);
+  if (options.progress) options.progress(1.0);
   return simulation;
 }
 

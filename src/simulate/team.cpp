@@ -150,6 +150,16 @@ Team gather(const SimulateOptions& options, const Building& building, const Floo
 
 }  // namespace
 
+bool is_near_enough(double overlap, double wanted) {
+  return wanted == 0.0 ? overlap == 0.0 : std::abs(overlap - wanted) <= std::max(0.03, 0.12 * wanted);
+}
+
+std::invalid_argument no_such_overlap(double wanted, double nearest) {
+  return std::invalid_argument("an overlap of " + to_text(wanted) +
+                               " cannot be had in this building from these starts and ways: the nearest is " +
+                               to_text(nearest));
+}
+
 Team plan_team(const SimulateOptions& options, const Building& building, const FloorPlan& plan,
                Random& random) {
   if (!options.overlap) {
@@ -158,7 +168,6 @@ Team plan_team(const SimulateOptions& options, const Building& building, const F
     return gather(options, building, plan, starts, random);
   }
   const double wanted = *options.overlap;
-  const double allowed = std::max(0.03, 0.15 * wanted);
   const int tries = options.starts.empty() ? 6 : 1;
   Reach nearest;
   for (int i = 0; i < tries; ++i) {
@@ -167,13 +176,11 @@ Team plan_team(const SimulateOptions& options, const Building& building, const F
     Team team = gather(options, building, plan, starts, random);
     const Reach reach = find_reach(wanted, team);
     if (std::abs(reach.overlap - wanted) < std::abs(nearest.overlap - wanted)) nearest = reach;
-    if (std::abs(reach.overlap - wanted) > (wanted == 0.0 ? 0.0 : allowed)) continue;
+    if (!is_near_enough(reach.overlap, wanted)) continue;
     for (Errand& errand : team.errands) errand.reach = reach.metres;
     return team;
   }
-  throw std::invalid_argument("an overlap of " + to_text(wanted) +
-                              " cannot be had in this building from these starts and ways: the nearest is " +
-                              to_text(nearest.overlap));
+  throw no_such_overlap(wanted, nearest.overlap);
 }
 
 }  // namespace gridmerge

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <stdexcept>
 #include <vector>
 
 #include "explore.hpp"
@@ -15,6 +16,12 @@ struct Team {
   std::vector<Errand> errands;
   std::vector<Visit> visits;
 };
+
+/// Whether an overlap is as good as the one wanted.
+bool is_near_enough(double overlap, double wanted);
+
+/// Says what cannot be had, and what could.
+std::invalid_argument no_such_overlap(double wanted, double nearest);
 
 /// `plan` is that of the empty building. Throws std::invalid_argument for starts where no robot can stand and
 /// an overlap that cannot be had.

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/simulate/building.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "floor_plan.hpp"
+
+namespace gridmerge {
+namespace {
+
+TEST(Building, KindsHaveNames) {
+  for (const BuildingKind kind : building_kinds()) EXPECT_EQ(building_kind(name_of(kind)), kind);
+  EXPECT_EQ(building_kinds().size(), 8U);
+  EXPECT_FALSE(building_kind("castle"));
+}
+
+bool same(const Building& a, const Building& b) {
+  return std::equal(
+      a.edges.begin(), a.edges.end(), b.edges.begin(), b.edges.end(),
+      [](const Edge& x, const Edge& y) { return x.a == y.a && x.b == y.b && x.echo == y.echo; });
+}
+
+TEST(Building, EveryKindAndSizeHasAFloorToWalkOnAndFollowsItsSeed) {
+  for (const BuildingKind kind : building_kinds()) {
+    for (const auto& [width, height] : {std::pair{8.0, 8.0}, std::pair{40.0, 25.0}, std::pair{12.0, 60.0}}) {
+      for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        SCOPED_TRACE(std::string(name_of(kind)) + " " + std::to_string(width) + " " + std::to_string(seed));
+        const Building building = make_building(kind, width, height, seed);
+        const FloorPlan plan(building.edges, 0.2);
+        const double floor = plan.count_free() * FloorPlan::kCell * FloorPlan::kCell;
+        // A curved building fills half a circle at most.
+        const double fills =
+            kind == BuildingKind::curved ? std::pow(std::min(0.5 * width, height), 2) : width * height;
+        EXPECT_GT(floor, std::min(width, height) < 20.0 ? 0.08 * fills : 0.3 * fills);
+        EXPECT_LT(floor, width * height);
+        EXPECT_TRUE(same(building, make_building(kind, width, height, seed)));
+        if (width > 8.0) {
+          EXPECT_FALSE(same(building, make_building(kind, width, height, seed + 100)));
+        }
+        for (const Edge& edge : building.edges) {
+          ASSERT_TRUE(std::isfinite(edge.a.x + edge.a.y + edge.b.x + edge.b.y));
+          ASSERT_TRUE(edge.echo > 0.0 && edge.echo <= 1.0);
+        }
+      }
+    }
+  }
+}
+
+TEST(Building, RefusesSidesThatAreNone) {
+  for (const double side : {0.0, -3.0, 7.9, 501.0, std::nan("")}) {
+    EXPECT_THROW(make_building(BuildingKind::hall, side, 20.0, 1), std::invalid_argument);
+    EXPECT_THROW(make_building(BuildingKind::hall, 20.0, side, 1), std::invalid_argument);
+  }
+}
+
+TEST(Building, TheSymmetricOneIsItselfTurnedByHalfATurnInItsWalls) {
+  const Building building = make_building(BuildingKind::symmetric, 40.0, 20.0, 3);
+  const OccupancyGrid map = draw_building(building, 0.1);
+  std::size_t walls = 0, met = 0;
+  for (int row = 0; row < map.height; ++row) {
+    for (int column = 0; column < map.width; ++column) {
+      if (map.at(column, row) != Cell::occupied) continue;
+      ++walls;
+      for (int k = 0; k < 9; ++k) {
+        const int x = map.width - 1 - column + k % 3 - 1, y = map.height - 1 - row + k / 3 - 1;
+        if (!map.contains(x, y) || map.at(x, y) != Cell::occupied) continue;
+        ++met;
+        break;
+      }
+    }
+  }
+  EXPECT_GT(static_cast<double>(met), 0.75 * static_cast<double>(walls));  // the rest is furniture
+}
+
+}  // namespace
+}  // namespace gridmerge

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/simulate/simulate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "gridmerge/evaluate/displacement.hpp"
+
+namespace gridmerge {
+namespace {
+
+SimulateOptions small(BuildingKind kind = BuildingKind::office) {
+  SimulateOptions options;
+  options.kind = kind;
+  options.width = 24.0;
+  options.height = 16.0;
+  options.scan_every = 0.5;
+  options.sensor.angular_step = 0.0175;
+  options.seed = 3;
+  return options;
+}
+
+/// Share of the moving map's walls that meet a wall of the fixed one, of those that lie where it knows.
+double walls_met(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& T_fixed_moving,
+                 double near) {
+  const SE2 T_grid_moving = inverse(fixed.origin) * T_fixed_moving;
+  const int reach = static_cast<int>(std::ceil(near / fixed.resolution));
+  int known = 0, met = 0;
+  for (int row = 0; row < moving.height; ++row) {
+    for (int column = 0; column < moving.width; ++column) {
+      if (moving.at(column, row) != Cell::occupied) continue;
+      const Point2 p = T_grid_moving * moving.cell_center(column, row);
+      const int x = static_cast<int>(std::floor(p.x / fixed.resolution));
+      const int y = static_cast<int>(std::floor(p.y / fixed.resolution));
+      if (!fixed.contains(x, y) || fixed.at(x, y) == Cell::unknown) continue;
+      ++known;
+      bool meets = false;
+      for (int dy = -reach; dy <= reach; ++dy) {
+        for (int dx = -reach; dx <= reach; ++dx)
+          meets = meets || (fixed.contains(x + dx, y + dy) && fixed.at(x + dx, y + dy) == Cell::occupied);
+      }
+      met += meets ? 1 : 0;
+    }
+  }
+  return known == 0 ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(met) / known;
+}
+
+TEST(Simulate, MapsLieOnTheirBuildingAndOnEachOtherUnderTheTruth) {
+  for (const BuildingKind kind : building_kinds()) {
+    SCOPED_TRACE(name_of(kind));
+    SimulateOptions options = small(kind);
+    options.drift = 0.0;
+    options.clutter = 0.0;
+    options.overlap = 0.4;
+    const Simulation simulation = simulate(options);
+    const OccupancyGrid building = draw_building(simulation.building, 0.05);
+    ASSERT_EQ(simulation.maps.size(), 2U);
+    for (const SimulatedMap& map : simulation.maps) {
+      EXPECT_LT(map.bend, 0.05);
+      EXPECT_GT(walls_met(building, map.grid, map.T_building_map, 0.15), 0.95);
+      const SE2 wrong = map.T_building_map * SE2{0.0, 0.0, 0.1};
+      EXPECT_LT(walls_met(building, map.grid, wrong, 0.15), 0.9);
+    }
+    ASSERT_EQ(simulation.pairs.size(), 1U);
+    const SimulatedPair& pair = simulation.pairs.front();
+    EXPECT_GT(walls_met(simulation.maps[0].grid, simulation.maps[1].grid, pair.T_fixed_moving, 0.15), 0.8);
+    EXPECT_LT(
+        rms_displacement(simulation.maps[1].grid, pair.T_fixed_moving,
+                         inverse(simulation.maps[0].T_building_map) * simulation.maps[1].T_building_map),
+        0.1);
+    EXPECT_NEAR(pair.tolerance, kLeastTolerance, 0.05);
+  }
+}
+
+TEST(Simulate, OverlapComesOutAboutAsAskedFor) {
+  for (const double wanted : {0.15, 0.5, 0.8}) {
+    double sum = 0.0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      SimulateOptions options = small();
+      options.seed = seed;
+      options.overlap = wanted;
+      const double overlap = simulate(options).overlap;
+      EXPECT_NEAR(overlap, wanted, 0.1) << seed;
+      sum += overlap;
+    }
+    EXPECT_NEAR(sum / 4.0, wanted, 0.05);
+  }
+}
+
+TEST(Simulate, NoOverlapMakesStrangers) {
+  SimulateOptions options = small();
+  options.width = 50.0;
+  options.overlap = 0.0;
+  const Simulation simulation = simulate(options);
+  EXPECT_EQ(simulation.pairs.size(), 0U);
+  EXPECT_LT(simulation.overlap, 0.01);
+}
+
+TEST(Simulate, DriftBendsMapsAndWidensTheTolerance) {
+  double straight = 0.0, bent = 0.0, tolerance = 0.0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SimulateOptions options = small();
+    options.width = 40.0;
+    options.seed = seed;
+    options.overlap = 0.6;
+    options.drift = 0.0;
+    straight += simulate(options).maps.front().bend / 4.0;
+    options.drift = 2.0;
+    const Simulation simulation = simulate(options);
+    bent += simulation.maps.front().bend / 4.0;
+    tolerance += simulation.pairs.front().tolerance / 4.0;
+  }
+  EXPECT_LT(straight, 0.03);
+  EXPECT_GT(bent, 0.2);
+  EXPECT_GT(tolerance, 0.6);
+}
+
+TEST(Simulate, ASeedGivesTheSameMapsForAnyNumberOfThreads) {
+  SimulateOptions options = small();
+  options.robots = 3;
+  options.overlap = 0.3;
+  options.threads = 1;
+  const Simulation one = simulate(options);
+  options.threads = 4;
+  const Simulation four = simulate(options);
+  ASSERT_EQ(one.maps.size(), four.maps.size());
+  for (std::size_t i = 0; i < one.maps.size(); ++i) {
+    EXPECT_EQ(one.maps[i].grid.cells, four.maps[i].grid.cells);
+    EXPECT_EQ(one.maps[i].T_building_map, four.maps[i].T_building_map);
+  }
+  options.seed = 4;
+  EXPECT_NE(simulate(options).maps[0].grid.cells, one.maps[0].grid.cells);
+}
+
+TEST(Simulate, ClutterDiffersFromVisitToVisit) {
+  SimulateOptions options = small(BuildingKind::hall);
+  options.drift = 0.0;
+  const auto met = [&](double clutter) {
+    options.clutter = clutter;
+    const Simulation simulation = simulate(options);
+    return walls_met(simulation.maps[0].grid, simulation.maps[1].grid, simulation.pairs[0].T_fixed_moving,
+                     0.15);
+  };
+  EXPECT_GT(met(0.0), 0.95);
+  EXPECT_LT(met(4.0), 0.95);
+}
+
+TEST(Simulate, RobotsStartWhereTheyAreToldTo) {
+  SimulateOptions options = small(BuildingKind::hall);
+  options.starts = {{3.0, 8.0}, {20.0, 8.0}};
+  options.longest_way = 3.0;
+  const Simulation simulation = simulate(options);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const SE2& start = simulation.maps[i].path.front();
+    EXPECT_LT(std::hypot(start.x - options.starts[i].x, start.y - options.starts[i].y), 0.6);
+    // The map's origin is the start.
+    const Point2 origin = simulation.maps[i].T_building_map * Point2{0.0, 0.0};
+    EXPECT_LT(std::hypot(start.x - origin.x, start.y - origin.y), 0.3);
+  }
+}
+
+TEST(Simulate, RefusesWhatCannotBe) {
+  const auto refused = [](auto change) {
+    SimulateOptions options = small();
+    change(options);
+    EXPECT_THROW(simulate(options), std::invalid_argument);
+  };
+  static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  refused([](auto& o) { o.robots = 0; });
+  refused([](auto& o) { o.overlap = 1.1; });
+  refused([](auto& o) { o.overlap = kNaN; });
+  refused([](auto& o) { o.overlap = 0.5, o.robots = 1; });
+  refused([](auto& o) { o.overlap = 0.9, o.starts = {{2.0, 8.0}, {22.0, 8.0}}, o.longest_way = 2.0; });
+  refused([](auto& o) { o.starts = {{-5.0, 8.0}, {22.0, 8.0}}; });
+  refused([](auto& o) { o.starts = {{2.0, 8.0}}; });
+  refused([](auto& o) { o.width = 3.0; });
+  refused([](auto& o) { o.robot_radius = 4.9; });
+  refused([](auto& o) { o.drift = -0.1; });
+  refused([](auto& o) { o.clutter = kNaN; });
+  refused([](auto& o) { o.resolution = 0.0; });
+  refused([](auto& o) { o.longest_way = -1.0; });
+  refused([](auto& o) { o.sensor.noise = -0.1; });
+  refused([](auto& o) { o.sensor.range = 0.0; });
+  refused([](auto& o) { o.sensor.missed_share = 1.5; });
+  refused([](auto& o) { o.sensor.angular_step = 0.0; });
+  refused([](auto& o) { o.sensor.field_of_view = 7.0; });
+}
+
+}  // namespace
+}  // namespace gridmerge
