@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "fixture.hpp"
+
+namespace gridmerge::test {
+namespace {
+
+class Simulate : public CliTest {
+ protected:
+  std::string output(const std::string& name) const { return (directory.path() / name).string(); }
+
+  static std::string bytes_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  const std::vector<std::string> small{"simulate", "--kind", "office", "--size",         "24x14", "--overlap",
+                                       "0.5",      "--seed", "5",      "--angular-step", "1",     "--quiet"};
+
+  std::vector<std::string> with(std::vector<std::string> words) const {
+    words.insert(words.begin(), small.begin(), small.end());
+    return words;
+  }
+};
+
+TEST_F(Simulate, MakesMapsThatTheEngineMergesAndTheTruthConfirms) {
+  const Outcome made = run(with({"-o", output("a")}));
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(made.err, "");
+  EXPECT_NE(made.out.find("overlap 0."), std::string::npos) << made.out;
+  const std::string folder = output("a");
+  const Outcome evaluated = run({"evaluate", folder + "/pairs.tsv", "--negatives", folder + "/negatives.tsv",
+                                 "--sets", folder + "/sets.tsv", "--json", "-", "--quiet"});
+  ASSERT_EQ(evaluated.exit_code, 0) << evaluated.err;
+  const Json json = Json::parse(evaluated.out);
+  EXPECT_EQ(json.at("pairs").at("total"), 1);
+  EXPECT_EQ(json.at("pairs").at("best_correct"), 1);
+  EXPECT_EQ(json.at("negatives").at("total"), 2);
+  EXPECT_EQ(json.at("negatives").at("accepted"), 0);
+}
+
+TEST_F(Simulate, ASeedGivesTheSameFiles) {
+  run(with({"-o", output("a"), "--threads", "1"}));
+  run(with({"-o", output("b"), "--threads", "2"}));
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(output("a"))) {
+    EXPECT_EQ(bytes_of(entry.path()), bytes_of(std::filesystem::path(output("b")) / entry.path().filename()));
+    ++files;
+  }
+  EXPECT_EQ(files, 2U * 2U + 2U + 2U + 3U);  // two robots, one elsewhere, the building, three tables
+}
+
+TEST_F(Simulate, WhatCannotBeHadIsAnErrorAndWritesNothing) {
+  for (const auto& [words, cause] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--longest-way", "2", "--overlap", "0.9", "--start", "2,7", "--start", "22,7"},
+            "an overlap of 0.9"},
+           {{"--start", "-3,7", "--start", "20,7"}, "no robot can stand at -3,7"},
+           {{"--start", "2,7"}, "a start for every robot"},
+           {{"--size", "3x20"}, "between 8 and 500 metres"},
+           {{"--resolution", "0"}, "resolution"},
+           {{"--range", "0"}, "range"}}) {
+    std::vector<std::string> all{"simulate", "--kind",  "hall", "--size",
+                                 "24x14",    "--quiet", "-o",   output("none")};
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      const auto at = std::find(all.begin(), all.end(), words[i]);
+      if (words[i] == "--size" && at != all.end()) {
+        *(at + 1) = words[++i];
+      } else {
+        all.push_back(words[i]);
+      }
+    }
+    expect_error(run(all), "", cause);
+    EXPECT_FALSE(std::filesystem::exists(output("none")));
+  }
+}
+
+class WrongSimulation : public testing::TestWithParam<std::vector<std::string>> {};
+
+TEST_P(WrongSimulation, IsAUsageError) {
+  std::vector<std::string> words{"simulate", "-o", "/nonexistent/x"};
+  words.insert(words.end(), GetParam().begin(), GetParam().end());
+  const Outcome outcome = run(words);
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+  EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+}
+
+using Words = std::vector<std::string>;
+INSTANTIATE_TEST_SUITE_P(Cli, WrongSimulation,
+                         testing::Values(Words{"--kind", "castle"}, Words{"--robots", "0"},
+                                         Words{"--size", "40"}, Words{"--size", "40xx2"},
+                                         Words{"--overlap", "1.5"}, Words{"--overlap", "nan"},
+                                         Words{"--noise", "-0.1"}, Words{"--drift", "-1"},
+                                         Words{"--start", "3"}, Words{"--seed", "x"},
+                                         Words{"--others", "-1"}));
+
+}  // namespace
+}  // namespace gridmerge::test

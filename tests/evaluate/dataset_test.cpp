@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/evaluate/dataset.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "gridmerge/evaluate/truth.hpp"
+#include "gridmerge/io/file_error.hpp"
+#include "gridmerge/io/map_file.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace gridmerge {
+namespace {
+
+SimulateOptions quick(int robots) {
+  SimulateOptions options;
+  options.kind = BuildingKind::hall;
+  options.width = 20.0;
+  options.height = 12.0;
+  options.robots = robots;
+  options.scan_every = 1.0;
+  options.longest_way = 20.0;
+  options.sensor.angular_step = 0.03;
+  return options;
+}
+
+TEST(TruthText, ReadsBackToTheSameValues) {
+  const test::TemporaryDirectory directory;
+  const std::vector<TruePair> pairs{
+      {{"a.yaml", {}}, {"b c.yaml", {}}, {0.1, -2.0 / 3.0, 3.0}, 0.7, "B", 0.123}};
+  const std::vector<TruePair> read = read_pairs(directory.write("pairs.tsv", format_pairs(pairs)));
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].moving.name, "b c.yaml");
+  EXPECT_EQ(read[0].T_fixed_moving, pairs[0].T_fixed_moving);
+  EXPECT_EQ(read[0].tolerance, 0.7);
+  EXPECT_EQ(read[0].tier, "B");
+  EXPECT_EQ(read[0].overlap, 0.123);
+
+  const auto negatives =
+      read_negatives(directory.write("negatives.tsv", format_negatives({{{"a.yaml", {}}, {"x.yaml", {}}}})));
+  ASSERT_EQ(negatives.size(), 1U);
+  EXPECT_EQ(negatives[0].moving.name, "x.yaml");
+
+  const std::vector<TrueSet> sets{{"s", {{{"a.yaml", {}}, {}, 0.5}, {{"b.yaml", {}}, {1.0, 2.0, 0.3}, 0.6}}}};
+  const auto read_back = read_sets(directory.write("sets.tsv", format_sets(sets)));
+  ASSERT_EQ(read_back.size(), 1U);
+  EXPECT_EQ(read_back[0].members[1].T_set_map, sets[0].members[1].T_set_map);
+  EXPECT_EQ(read_back[0].members[1].tolerance, 0.6);
+
+  EXPECT_THROW(format_negatives({{{"a\tb", {}}, {"x", {}}}}), std::invalid_argument);
+  EXPECT_THROW(format_negatives({{{"", {}}, {"x", {}}}}), std::invalid_argument);
+}
+
+TEST(Dataset, HoldsMapsAndTruthThatBelongTogether) {
+  const test::TemporaryDirectory directory;
+  const Simulation simulation = simulate(quick(3));
+  SimulateOptions other = quick(1);
+  other.seed = 77;
+  const std::filesystem::path folder = directory.path() / "made" / "here";
+  write_dataset(folder, simulation, {simulate(other)});
+
+  for (std::size_t i = 0; i < 3; ++i) {
+    const OccupancyGrid map = load_map(folder / ("robot_" + std::to_string(i + 1) + ".yaml")).grid;
+    EXPECT_EQ(map.cells, simulation.maps[i].grid.cells);
+    EXPECT_EQ(map.origin, simulation.maps[i].grid.origin);
+  }
+  EXPECT_GT(count_cells(load_map(folder / "building.yaml").grid).free, 1000U);
+  const std::vector<TruePair> pairs = read_pairs(folder / "pairs.tsv");
+  ASSERT_EQ(pairs.size(), simulation.pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    EXPECT_EQ(pairs[i].T_fixed_moving, simulation.pairs[i].T_fixed_moving);
+    EXPECT_EQ(pairs[i].fixed.name, "robot_" + std::to_string(simulation.pairs[i].fixed + 1) + ".yaml");
+    EXPECT_TRUE(std::filesystem::exists(pairs[i].moving.path));
+  }
+  EXPECT_EQ(read_negatives(folder / "negatives.tsv").size(), 3U + simulation.strangers.size());
+  const std::vector<TrueSet> sets = read_sets(folder / "sets.tsv");
+  ASSERT_EQ(sets.size(), 1U);
+  EXPECT_EQ(sets[0].members.size(), 3U);
+  EXPECT_EQ(sets[0].members[0].T_set_map, SE2{});
+}
+
+TEST(Dataset, KeepsProbabilitiesToAPercent) {
+  const test::TemporaryDirectory directory;
+  const Simulation simulation = simulate(quick(1));
+  write_dataset(directory.path(), simulation, {}, {.probabilities = true});
+  const OccupancyGrid map = load_map(directory.path() / "robot_1.yaml").grid;
+  const OccupancyGrid& made = simulation.maps[0].grid;
+  ASSERT_EQ(map.probability.size(), made.probability.size());
+  for (std::size_t i = 0; i < made.probability.size(); ++i) {
+    ASSERT_EQ(std::isnan(map.probability[i]), std::isnan(made.probability[i]));
+    if (!std::isnan(made.probability[i])) {
+      EXPECT_NEAR(map.probability[i], made.probability[i], 0.0051);
+    }
+  }
+  EXPECT_EQ(map.cells, made.cells);
+  EXPECT_TRUE(read_sets(directory.path() / "sets.tsv").empty());
+}
+
+TEST(Dataset, AFolderThatCannotBeMadeIsAnError) {
+  const test::TemporaryDirectory directory;
+  const std::string file = directory.write("file", "");
+  EXPECT_THROW(write_dataset(std::filesystem::path(file) / "folder", simulate(quick(1)), {}), FileError);
+}
+
+}  // namespace
+}  // namespace gridmerge
