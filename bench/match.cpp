@@ -5,7 +5,7 @@
 
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/search/exhaustive.hpp"
-#include "gridmerge/search/parallel.hpp"
+#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/similarity/evidence.hpp"
 #include "gridmerge/similarity/wall_map.hpp"
 #include "office.hpp"

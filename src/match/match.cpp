@@ -12,7 +12,7 @@
 #include "gridmerge/match/refine.hpp"
 #include "gridmerge/match/verdict.hpp"
 #include "gridmerge/search/exhaustive.hpp"
-#include "gridmerge/search/parallel.hpp"
+#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/similarity/agreement.hpp"
 #include "gridmerge/similarity/wall_lines.hpp"
 #include "gridmerge/similarity/wall_map.hpp"

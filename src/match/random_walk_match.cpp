@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "gridmerge/search/parallel.hpp"
+#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/similarity/agreement.hpp"
 
 namespace gridmerge {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "gridmerge/search/parallel.hpp"
+#include "gridmerge/grid/parallel.hpp"
 
 namespace gridmerge {
 

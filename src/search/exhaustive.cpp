@@ -11,7 +11,7 @@
 #include <unordered_map>
 
 #include "correlate.hpp"
-#include "gridmerge/search/parallel.hpp"
+#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/similarity/evidence.hpp"
 #include "local_maxima.hpp"
 

@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/search/parallel.hpp"
+#include "gridmerge/grid/parallel.hpp"
 
 namespace gridmerge {
 

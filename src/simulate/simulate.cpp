@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "gridmerge/search/parallel.hpp"
+#include "gridmerge/grid/parallel.hpp"
 #include "survey.hpp"
 #include "team.hpp"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "gridmerge/search/parallel.hpp"
+#include "gridmerge/grid/parallel.hpp"
 
 namespace gridmerge {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "../similarity/random_grid.hpp"
-#include "gridmerge/search/parallel.hpp"
+#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/similarity/evidence.hpp"
 
 namespace gridmerge {

@@ -8,7 +8,7 @@
 
 #include "../similarity/random_grid.hpp"
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/search/parallel.hpp"
+#include "gridmerge/grid/parallel.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {

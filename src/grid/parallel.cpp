@@ -4,7 +4,7 @@
 // and would call all of it a race. The atomics below say the same order once more, in a language that it
 // understands, and cmake/tsan.supp passes over this file and oneTBB's own. What is left to report is a race
 // of ours.
-#include "gridmerge/search/parallel.hpp"
+#include "gridmerge/grid/parallel.hpp"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
