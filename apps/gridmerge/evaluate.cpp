@@ -22,6 +22,7 @@ struct EvaluateCommandOptions {
   std::string negatives;
   std::string sets;
   std::string json;
+  std::string features;
   SearchOptions search;
 
   bool writes_json_file() const { return !json.empty() && json != "-"; }
@@ -41,6 +42,7 @@ Evaluation evaluate_files(const EvaluateCommandOptions& options) {
   std::vector<std::filesystem::path> inputs = input_files(truth);
   inputs.insert(inputs.end(), {options.pairs, options.negatives, options.sets});
   if (options.writes_json_file()) try_output_file(options.json, inputs);
+  if (!options.features.empty()) try_output_file(options.features, inputs);
   EvaluateOptions engine;
   engine.matcher = PairMatcher(options.common, options.search);
   engine.progress = [&](std::size_t done, std::size_t total) {
@@ -52,6 +54,7 @@ Evaluation evaluate_files(const EvaluateCommandOptions& options) {
 
 int run_evaluate(const EvaluateCommandOptions& options) {
   const Evaluation evaluation = evaluate_files(options);
+  if (!options.features.empty()) write_file_atomically(options.features, features_table(evaluation));
   if (options.json == "-") {
     print(evaluation_json(evaluation));
     return kDone;
@@ -76,6 +79,10 @@ void add_evaluate(CLI::App& app, Action& action) {
       ->type_name("FILE");
   command->add_option("--json", options->json, "Write JSON to this file; - prints it instead of the summary")
       ->type_name("FILE");
+  command
+      ->add_option("--features", options->features,
+                   "Write what each verdict rests on to this file (TSV), one line a match")
+      ->type_name("FILE");
   add_search_options(*command, options->search);
   add_common_options(*command, options->common);
   command->footer(
@@ -92,6 +99,8 @@ void add_evaluate(CLI::App& app, Action& action) {
     if (options->pairs.empty() && options->negatives.empty() && options->sets.empty()) {
       throw CLI::ValidationError("evaluate", "give PAIRS, --negatives or --sets");
     }
+    if (!options->features.empty() && options->search.random_walk())
+      throw CLI::ValidationError("--features", "needs --search exhaustive");
     action = [options] { return run_evaluate(*options); };
   });
 }

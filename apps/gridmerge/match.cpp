@@ -40,9 +40,23 @@ std::string describe_verdict(const MatchResult& result, const SearchOptions& sea
   if (result.verdict == Verdict::accepted) {
     return fmt::format("accepted: the maps show one place, with probability {:.4f}", result.probability);
   }
-  if (result.hypotheses.empty()) return "refused: there is too little in the maps to compare";
-  return fmt::format("refused: the best way to lay the maps is right with probability {:.4f} only",
-                     result.probability);
+  const auto refused = [&](const char* why) {
+    return fmt::format("refused: {} (probability {:.4f})", why, result.probability);
+  };
+  switch (result.reason) {
+    case Reason::nothing_to_compare:
+      return "refused: there is too little in the maps to compare";
+    case Reason::ambiguous:
+      return refused("two ways to lay the maps explain them nearly equally well");
+    case Reason::contradiction:
+      return refused("the maps disagree where both know the same places");
+    case Reason::too_little_overlap:
+      return refused("the maps agree, but on too little to be sure");
+    case Reason::several:
+    case Reason::none:
+      break;
+  }
+  return refused("no way to lay the maps explains them well");
 }
 
 std::string describe(const MatchResult& result, const MatchCommandOptions& options) {

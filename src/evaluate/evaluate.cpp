@@ -82,6 +82,8 @@ class Evaluator {
     outcome.verdict = result.verdict;
     outcome.probability = result.probability;
     outcome.seconds = result.seconds;
+    outcome.reason = result.reason;
+    outcome.features = result.features;
     return outcome;
   }
 

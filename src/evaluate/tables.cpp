@@ -113,6 +113,24 @@ std::string case_table(const Evaluation& evaluation) {
   return text;
 }
 
+std::string features_table(const Evaluation& evaluation) {
+  std::string text =
+      "fixed\tmoving\ttruth\ttier\tprobability\treason\tlead\tacceptance_index\twall_lines\tscore\t"
+      "nats_per_wall\toverlap\tcommon_area\tspread\tsigma\toutliers\n";
+  for (const MatchOutcome& match : evaluation.matches) {
+    if (match.reason == Reason::nothing_to_compare) continue;
+    const char* truth = match.negative() ? "negative" : match.correct() ? "right" : "wrong";
+    const VerdictFeatures& f = match.features;
+    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}", match.fixed, match.moving, truth,
+                   match.tier, match.probability, name_of(match.reason));
+    for (const double value : {f.lead, f.acceptance_index, f.wall_lines, f.score, f.nats_per_wall, f.overlap,
+                               f.common_area, f.spread, f.sigma, f.outliers})
+      fmt::format_to(std::back_inserter(text), "\t{}", value);
+    text += '\n';
+  }
+  return text;
+}
+
 std::string evaluation_json(const Evaluation& evaluation) {
   const PairCounts pairs = count_pairs(evaluation.matches);
   const NegativeCounts negatives = count_negatives(evaluation.matches);

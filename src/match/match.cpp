@@ -8,11 +8,11 @@
 #include <tuple>
 #include <utility>
 
+#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/refine.hpp"
 #include "gridmerge/match/verdict.hpp"
 #include "gridmerge/search/exhaustive.hpp"
-#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/similarity/agreement.hpp"
 #include "gridmerge/similarity/wall_lines.hpp"
 #include "gridmerge/similarity/wall_map.hpp"
@@ -77,32 +77,57 @@ void report(const MatchOptions& options, double share) {
   if (options.progress) options.progress(share);
 }
 
+struct RankedPose {
+  Hypothesis hypothesis;
+  Evidence walls;
+};
+
 /// Adds to each pose the evidence of the area that both maps know, and puts the best first. Poses that on the
 /// whole speak against themselves are dropped.
-std::vector<Hypothesis> rank(const std::vector<ScoredPose>& poses, const OccupancyGrid& fixed,
+std::vector<RankedPose> rank(const std::vector<ScoredPose>& poses, const OccupancyGrid& fixed,
                              const OccupancyGrid& moving, const WallMap& fixed_walls,
                              const WallMap& moving_walls) {
   const double known = static_cast<double>(moving.cells.size());
   const int stride = std::max(1, static_cast<int>(std::sqrt(known / kRankedCells)));
   const double cells_per_cell = std::pow(moving.resolution / moving_walls.cell, 2);
-  std::vector<Hypothesis> hypotheses;
+  std::vector<RankedPose> ranked;
   for (const ScoredPose& pose : poses) {
     const SE2 T_fixed_moving = to_map_frames(pose.T_fixed_moving, fixed_walls, moving_walls);
     const AgreementCounts common = count_agreement(fixed, moving, T_fixed_moving, stride);
     const double score =
         pose.evidence.score + area_evidence(cells_per_cell * static_cast<double>(common.agreement),
                                             cells_per_cell * static_cast<double>(common.disagreement));
-    if (score > 0.0) hypotheses.push_back({T_fixed_moving, score, 0.0});
+    if (score > 0.0) ranked.push_back({{T_fixed_moving, score, 0.0}, pose.evidence});
   }
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.score > b.score; });
-  return hypotheses;
+  std::stable_sort(ranked.begin(), ranked.end(), [](const RankedPose& a, const RankedPose& b) {
+    return a.hypothesis.score > b.hypothesis.score;
+  });
+  return ranked;
 }
 
 struct FoundHypotheses {
   std::vector<Hypothesis> ranked;  // best first
-  double wall_lines = 0.0;         // on which the maps agree under the best one
+  VerdictFeatures features;        // of the best one; what needs no more than the walls
 };
+
+VerdictFeatures describe_walls(const std::vector<RankedPose>& ranked, const WallMap& fixed_walls,
+                               const WallMap& moving_walls) {
+  const RankedPose& best = ranked.front();
+  const SE2 T_cells = to_cells(best.hypothesis.T_fixed_moving, fixed_walls, moving_walls);
+  const WallSupport support = measure_wall_support(fixed_walls, moving_walls, T_cells);
+  std::vector<double> scores;
+  scores.reserve(ranked.size());
+  for (const RankedPose& pose : ranked) scores.push_back(pose.hypothesis.score);
+  VerdictFeatures features;
+  features.lead = find_lead(scores);
+  features.wall_lines = support.lines;
+  features.score = best.hypothesis.score;
+  features.nats_per_wall = best.walls.seen_walls > 0.0 ? best.walls.score / best.walls.seen_walls : 0.0;
+  features.spread = support.spread * fixed_walls.cell;
+  features.sigma = best.walls.model.sigma * fixed_walls.cell;
+  features.outliers = best.walls.model.outliers;
+  return features;
+}
 
 /// `moving` is the map that is_smaller() picked.
 FoundHypotheses find_hypotheses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
@@ -125,25 +150,20 @@ FoundHypotheses find_hypotheses(const OccupancyGrid& fixed, const OccupancyGrid&
   refinement.max_poses = std::max(kRankedPoses, options.max_hypotheses);
   const std::vector<ScoredPose> poses = refine(fixed_walls, moving_walls, candidates, refinement,
                                                [&](double share) { report(options, 0.5 + 0.45 * share); });
-  FoundHypotheses found{rank(poses, fixed, moving, fixed_walls, moving_walls)};
-  if (!found.ranked.empty()) {
-    const SE2 T_cells = to_cells(found.ranked.front().T_fixed_moving, fixed_walls, moving_walls);
-    found.wall_lines = count_wall_lines(fixed_walls, moving_walls, T_cells);
-  }
+  const std::vector<RankedPose> ranked = rank(poses, fixed, moving, fixed_walls, moving_walls);
+  FoundHypotheses found;
+  if (ranked.empty()) return found;
+  found.features = describe_walls(ranked, fixed_walls, moving_walls);
+  found.ranked.reserve(ranked.size());
+  for (const RankedPose& pose : ranked) found.ranked.push_back(pose.hypothesis);
   return found;
 }
 
 /// The best hypothesis has the verdict's probability; the others share the rest in proportion to their
 /// scores.
-void assign_probabilities(std::vector<Hypothesis>& hypotheses, double acceptance_index, double wall_lines) {
-  std::vector<double> scores;
-  double others = 0.0;
-  for (const Hypothesis& hypothesis : hypotheses) {
-    scores.push_back(hypothesis.score);
-    others += hypothesis.score;
-  }
-  others -= scores.front();
-  const double best = probability_of({find_lead(scores), acceptance_index, wall_lines});
+void assign_probabilities(std::vector<Hypothesis>& hypotheses, double best) {
+  double others = -hypotheses.front().score;
+  for (const Hypothesis& hypothesis : hypotheses) others += hypothesis.score;
   hypotheses[0].probability = best;
   for (std::size_t i = 1; i < hypotheses.size(); ++i) {  // a runner-up is never called likelier than the best
     hypotheses[i].probability = std::min(best, (1.0 - best) * hypotheses[i].score / others);
@@ -167,7 +187,12 @@ MatchResult match_in_arena(const OccupancyGrid& fixed, const OccupancyGrid& movi
   result.agreement = counts.agreement;
   result.disagreement = counts.disagreement;
   result.overlap = measure_overlap(larger, smaller, counts);
-  assign_probabilities(result.hypotheses, result.acceptance_index, found.wall_lines);
+  result.features = found.features;
+  result.features.acceptance_index = result.acceptance_index;
+  result.features.overlap = result.overlap;
+  result.features.common_area =
+      static_cast<double>(counts.both_known()) * smaller.resolution * smaller.resolution;
+  assign_probabilities(result.hypotheses, probability_of(result.features));
 
   if (swapped) {
     for (Hypothesis& hypothesis : result.hypotheses)
@@ -177,15 +202,12 @@ MatchResult match_in_arena(const OccupancyGrid& fixed, const OccupancyGrid& movi
   result.T_fixed_moving = best.T_fixed_moving;
   result.probability = best.probability;
   result.verdict = best.probability >= options.accept_probability ? Verdict::accepted : Verdict::refused;
+  result.reason = explain_refusal(result.features, options.accept_probability);
   if (result.hypotheses.size() > options.max_hypotheses) result.hypotheses.resize(options.max_hypotheses);
   return result;
 }
 
 }  // namespace
-
-const char* name_of(Verdict verdict) {
-  return verdict == Verdict::accepted ? "accepted" : "refused";
-}
 
 MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options) {
   validate(fixed);

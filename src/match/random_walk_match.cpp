@@ -143,6 +143,7 @@ MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid
                           best.similarity.undefined_terms() == 0;
   const bool accepted = comparable && result.acceptance_index >= options.accept_acceptance_index;
   result.verdict = accepted ? Verdict::accepted : Verdict::refused;
+  result.reason = accepted ? Reason::none : !comparable ? Reason::too_little_overlap : Reason::contradiction;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (options.on_walk) {
     for (int i = 0; i < options.restarts; ++i)

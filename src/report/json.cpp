@@ -37,6 +37,7 @@ std::string match_json(const std::string& fixed, const std::string& moving, cons
   const Json json{{"fixed", fixed},
                   {"moving", moving},
                   {"verdict", name_of(result.verdict)},
+                  {"reason", result.verdict == Verdict::accepted ? Json() : Json(name_of(result.reason))},
                   {"transform", transform_of(result.T_fixed_moving)},
                   {"probability", number(result.probability)},
                   {"acceptance_index", number(result.acceptance_index)},

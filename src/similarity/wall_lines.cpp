@@ -102,11 +102,27 @@ class LineTaker {
   std::vector<int> votes_;  // by angle and offset
 };
 
-}  // namespace
+/// The standard deviation of the points in the direction in which it is least.
+double least_spread(const std::vector<MetPoint>& points) {
+  if (points.empty()) return 0.0;
+  const double count = static_cast<double>(points.size());
+  double x = 0.0, y = 0.0;
+  for (const MetPoint& point : points) {
+    x += point.x / count;
+    y += point.y / count;
+  }
+  double xx = 0.0, yy = 0.0, xy = 0.0;
+  for (const MetPoint& point : points) {
+    xx += (point.x - x) * (point.x - x) / count;
+    yy += (point.y - y) * (point.y - y) / count;
+    xy += (point.x - x) * (point.y - y) / count;
+  }
+  const double smaller = 0.5 * (xx + yy) - std::hypot(0.5 * (xx - yy), xy);  // eigenvalue
+  return std::sqrt(std::max(0.0, smaller));
+}
 
-double count_wall_lines(const WallMap& fixed, const WallMap& moving, const SE2& T_fixed_moving_cells) {
-  std::vector<MetPoint> points = find_met_walls(fixed, moving, T_fixed_moving_cells);
-  LineTaker taker(std::hypot(fixed.width, fixed.height));
+double count_lines(std::vector<MetPoint> points, double diagonal) {
+  LineTaker taker(diagonal);
   std::vector<std::size_t> lengths;
   double total = 0.0;
   while (lengths.size() < kMaxLines) {
@@ -122,6 +138,15 @@ double count_wall_lines(const WallMap& fixed, const WallMap& moving, const SE2& 
     entropy -= share * std::log(share);
   }
   return std::exp(entropy);
+}
+
+}  // namespace
+
+WallSupport measure_wall_support(const WallMap& fixed, const WallMap& moving,
+                                 const SE2& T_fixed_moving_cells) {
+  const std::vector<MetPoint> points = find_met_walls(fixed, moving, T_fixed_moving_cells);
+  return {count_lines(points, std::hypot(fixed.width, fixed.height)), static_cast<double>(points.size()),
+          least_spread(points)};
 }
 
 }  // namespace gridmerge

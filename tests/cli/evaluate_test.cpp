@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <sstream>
+
 #include "fixture.hpp"
 
 namespace gridmerge::test {
@@ -52,6 +55,23 @@ TEST_F(EvaluateCommand, WritesTheJsonOfTheContractAndASummary) {
   EXPECT_TRUE(result.at("cases").at(1).at("error").is_null());
   EXPECT_TRUE(result.at("cases").at(1).at("correct").is_null());
   EXPECT_EQ(result.at("cases").at(2).at("fixed"), "other.yaml");
+}
+
+TEST_F(EvaluateCommand, WritesWhatVerdictsRestOn) {
+  const std::string features = directory.file("features.tsv");
+  const Outcome outcome =
+      run({"evaluate", pairs, "--negatives", negatives, "--features", features, "--quiet"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::istringstream lines(read_file(features));
+  std::string head, first, second;
+  std::getline(lines, head);
+  std::getline(lines, first);
+  std::getline(lines, second);
+  EXPECT_EQ(head.rfind("fixed\tmoving\ttruth\ttier\tprobability\treason\tlead\t", 0), 0U) << head;
+  EXPECT_EQ(first.rfind("left.yaml\tright.yaml\tright\tA\t", 0), 0U) << first;
+  EXPECT_EQ(second.rfind("left.yaml\tother.yaml\tnegative\t\t", 0), 0U) << second;
+  EXPECT_EQ(std::count(first.begin(), first.end(), '\t'), std::count(head.begin(), head.end(), '\t'));
+  expect_error(run({"evaluate", pairs, "--features", pairs}), pairs, "is an input");
 }
 
 TEST_F(EvaluateCommand, TheNumberOfThreadsChangesNothingButTheTimes) {

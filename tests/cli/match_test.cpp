@@ -12,7 +12,7 @@ constexpr double kFifthOfADegree = 0.0035;
 class Match : public CliTest {
  protected:
   static void expect_contract(const Json& json) {
-    expect_keys(json, {"fixed", "moving", "verdict", "transform", "probability", "acceptance_index",
+    expect_keys(json, {"fixed", "moving", "verdict", "reason", "transform", "probability", "acceptance_index",
                        "agreement", "disagreement", "overlap", "seconds", "hypotheses"});
     EXPECT_TRUE(json.at("agreement").is_number_integer());
     EXPECT_TRUE(json.at("disagreement").is_number_integer());

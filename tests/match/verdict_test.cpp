@@ -35,6 +35,17 @@ TEST(ProbabilityOf, ACornerIsNotEnoughHoweverLongAndClean) {
   EXPECT_LT(probability_of({46.0, 1.0, 2.0}), 0.5);
 }
 
+TEST(ExplainRefusal, NamesWhatAloneHoldsThePairBack) {
+  constexpr double kAccept = 0.9;
+  EXPECT_EQ(explain_refusal({30.0, 0.97, 8.0}, kAccept), Reason::none);
+  EXPECT_EQ(explain_refusal({0.1, 0.97, 8.0}, kAccept), Reason::ambiguous);
+  EXPECT_EQ(explain_refusal({30.0, 0.6, 8.0}, kAccept), Reason::contradiction);
+  EXPECT_EQ(explain_refusal({30.0, 0.97, 2.0}, kAccept), Reason::too_little_overlap);
+  EXPECT_EQ(explain_refusal({0.1, 0.6, 2.0}, kAccept), Reason::several);
+  EXPECT_STREQ(name_of(Reason::ambiguous), "ambiguous");
+  EXPECT_STREQ(name_of(Reason::too_little_overlap), "too_little_overlap");
+}
+
 TEST(ProbabilityOf, NothingIsNothing) {
   EXPECT_LT(probability_of({}), 1e-9);
 }

@@ -29,7 +29,7 @@ MatchResult any_match() {
 TEST(MatchJson, IsTheDocumentedText) {
   EXPECT_EQ(
       match_json("a.yaml", "b.yaml", any_match()),
-      R"({"fixed":"a.yaml","moving":"b.yaml","verdict":"accepted",)"
+      R"({"fixed":"a.yaml","moving":"b.yaml","verdict":"accepted","reason":null,)"
       R"("transform":{"x":1.25,"y":-3.0,"theta":0.52},)"
       R"("probability":0.998,"acceptance_index":0.964,"agreement":11372,"disagreement":422,)"
       R"("overlap":0.57,"seconds":0.021,)"
@@ -41,7 +41,8 @@ TEST(MatchJson, IsTheDocumentedText) {
 TEST(MatchJson, OfARefusedPairWithNothingToGoBy) {
   EXPECT_EQ(
       match_json("a", "b", {}),
-      R"({"fixed":"a","moving":"b","verdict":"refused","transform":{"x":0.0,"y":0.0,"theta":0.0},)"
+      R"({"fixed":"a","moving":"b","verdict":"refused","reason":"nothing_to_compare",)"
+      R"("transform":{"x":0.0,"y":0.0,"theta":0.0},)"
       R"("probability":0.0,"acceptance_index":0.0,"agreement":0,"disagreement":0,"overlap":0.0,"seconds":0.0,)"
       R"("hypotheses":[]})"
       "\n");

@@ -27,7 +27,7 @@ OccupancyGrid corner() {
 
 double lines_of(const OccupancyGrid& map) {
   const WallMap walls = make_wall_map(map, map.resolution);
-  return count_wall_lines(walls, walls, {});
+  return measure_wall_support(walls, walls, {}).lines;
 }
 
 TEST(WallLines, ACornerHasTwo) {
@@ -58,15 +58,29 @@ TEST(WallLines, DoNotDependOnThePose) {
   OccupancyGrid elsewhere = map;
   elsewhere.origin = {4.0, -3.0, 1.0};
   const WallMap other = make_wall_map(elsewhere, map.resolution);
-  EXPECT_EQ(count_wall_lines(walls, other, {}), count_wall_lines(walls, walls, {}));
+  EXPECT_EQ(measure_wall_support(walls, other, {}).lines, measure_wall_support(walls, walls, {}).lines);
+}
+
+TEST(WallSupport, SpreadsAsFarAsItsNarrowSide) {
+  OccupancyGrid corridor = make_grid(kSide, kSide, 0.05);
+  for (int y = 60; y < 100; ++y) {
+    for (int x = 0; x < kSide; ++x) corridor.at(x, y) = Cell::free;
+  }
+  draw_wall(corridor, 0, 60, kSide - 1, 60);
+  draw_wall(corridor, 0, 99, kSide - 1, 99);
+  const WallMap walls = make_wall_map(corridor, 0.05);
+  const WallSupport support = measure_wall_support(walls, walls, {});
+  EXPECT_NEAR(support.spread, 19.5, 1.5);  // two walls 39 cells apart
+  EXPECT_GT(support.met, 250.0);
+  EXPECT_EQ(measure_wall_support(walls, walls, {1000.0, 0.0, 0.0}).met, 0.0);
 }
 
 TEST(WallLines, WallsThatDoNotMeetAreNone) {
   const WallMap walls = make_wall_map(corner(), 0.05);
-  EXPECT_EQ(count_wall_lines(walls, walls, {1000.0, 0.0, 0.0}), 0.0);
-  EXPECT_EQ(count_wall_lines(walls, walls, {25.0, 25.0, 0.0}), 0.0);
+  EXPECT_EQ(measure_wall_support(walls, walls, {1000.0, 0.0, 0.0}).lines, 0.0);
+  EXPECT_EQ(measure_wall_support(walls, walls, {25.0, 25.0, 0.0}).lines, 0.0);
   const WallMap empty = make_wall_map(make_grid(30, 30, 0.05, {}, Cell::free), 0.05);
-  EXPECT_EQ(count_wall_lines(walls, empty, {}), 0.0);
+  EXPECT_EQ(measure_wall_support(walls, empty, {}).lines, 0.0);
 }
 
 }  // namespace

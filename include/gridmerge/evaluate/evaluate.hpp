@@ -43,6 +43,8 @@ struct MatchOutcome {
   std::optional<double> error;
   std::optional<double> tolerance;  ///< [m]; none for a negative
   double seconds = 0.0;             ///< from grids in memory to the verdict
+  Reason reason = Reason::none;     ///< why it was refused
+  VerdictFeatures features;         ///< what the probability rests on
 
   bool negative() const { return !tolerance; }
   bool accepted() const { return verdict == Verdict::accepted; }

@@ -14,6 +14,11 @@ std::string summary_table(const Evaluation& evaluation, double accept_probabilit
 /// For people: a line for each match. Ends in a newline unless there is none.
 std::string case_table(const Evaluation& evaluation);
 
+/// For fitting the verdict's model: tab-separated, a line for each match that has a hypothesis, in file
+/// order. Columns: fixed, moving, truth (`right` or `wrong` best hypothesis of a true pair, `negative`),
+/// tier, probability, reason, and the VerdictFeatures by name. Numbers read back to the same bits.
+std::string features_table(const Evaluation& evaluation);
+
 /// For programs: a JSON object with the keys `pairs`, `negatives`, `sets`, `seconds` and `cases`, always all
 /// of them. `cases` lists the pairs, then the negatives, in file order; a negative has no truth, so its
 /// `error`, `tolerance` and `correct` are null. Ends in a newline.

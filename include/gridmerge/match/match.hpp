@@ -6,13 +6,9 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/match/verdict.hpp"
 
 namespace gridmerge {
-
-enum class Verdict { refused, accepted };
-
-/// The verdict's one word in every output: "refused" or "accepted".
-const char* name_of(Verdict verdict);
 
 /// One way in which the moving map may lie on the fixed one.
 struct Hypothesis {
@@ -32,12 +28,14 @@ struct MatchOptions {
 
 struct MatchResult {
   Verdict verdict = Verdict::refused;
-  SE2 T_fixed_moving;                  ///< the best hypothesis, given for a refused pair too
-  double probability = 0.0;            ///< that the best hypothesis is the true pose
+  Reason reason = Reason::nothing_to_compare;  ///< why it was refused
+  SE2 T_fixed_moving;                          ///< the best hypothesis, given for a refused pair too
+  double probability = 0.0;                    ///< that the best hypothesis is the true pose
   double acceptance_index = 0.0;       ///< agreement / (agreement + disagreement); 0 when nothing overlaps
   std::int64_t agreement = 0;          ///< cells known in both maps and equal
   std::int64_t disagreement = 0;       ///< cells known in both maps and different
   double overlap = 0.0;                ///< share of the smaller map's known cells that are known in both
+  VerdictFeatures features;            ///< what the probability rests on; all 0 without a hypothesis
   double seconds = 0.0;                ///< wall time from grids in memory to the verdict
   std::vector<Hypothesis> hypotheses;  ///< distinct, best first; empty only when a map has nothing to go by
 };
