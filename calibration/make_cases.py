@@ -22,6 +22,9 @@ import sys
 
 SPLITS = {"fit": ["office", "hall", "apartment", "loop"], "check": ["warehouse", "curved", "outdoor"], "symmetric": ["symmetric"]}
 NEGATIVES_A_MAP = 3
+FEATURES = ["lead", "acceptance_index", "wall_lines", "score", "nats_per_wall", "overlap", "common_area", "spread", "sigma",
+            "outliers"]
+COLUMNS = ["kind", "truth", "tier"] + FEATURES
 
 
 def draw_options(kind: str, dice: random.Random) -> dict[str, str]:
@@ -80,6 +83,12 @@ def tables_of(folder: pathlib.Path, buildings: list[tuple[str, dict[str, str]]],
     return pairs, negatives
 
 
+def compact(row: dict[str, str]) -> dict[str, str]:
+    """What the fit needs of a match, in six digits."""
+    return {"kind": row["fixed"].split("_")[0], "truth": row["truth"], "tier": row["tier"] or "-"} | {
+        name: f"{float(row[name]):.6g}" for name in FEATURES}
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("gridmerge")
@@ -103,7 +112,8 @@ def main() -> None:
         print(f"{split}: {len(buildings)} of {len(wanted)} buildings could be made, {len(pairs)} true pairs, "
               f"{len(negatives)} unrelated ones", flush=True)
         subprocess.run([arguments.gridmerge, "evaluate", folder / "pairs.tsv", "--negatives", folder / "negatives.tsv",
-                        "--features", arguments.output / f"{split}.tsv", "--quiet"], check=True)
+                        "--features", folder / "features.tsv", "--quiet"], check=True)
+        write_rows(arguments.output / f"{split}.tsv", COLUMNS, [compact(row) for row in read_rows(folder / "features.tsv")])
 
 
 if __name__ == "__main__":

@@ -91,6 +91,43 @@ TEST(Match, RefusesUnrelatedBuildings) {
   }
 }
 
+/// A floor that looks the same from its two ends: a building and, beside it, the same turned by half a turn.
+OccupancyGrid symmetric_floor(unsigned seed) {
+  const OccupancyGrid half = test::draw_building(seed);
+  OccupancyGrid floor = make_grid(2 * half.width, half.height, half.resolution);
+  for (int row = 0; row < half.height; ++row) {
+    for (int column = 0; column < half.width; ++column) {
+      floor.at(column, row) = half.at(column, row);
+      floor.at(floor.width - 1 - column, floor.height - 1 - row) = half.at(column, row);
+    }
+  }
+  return floor;
+}
+
+TEST(Match, AFloorThatLooksTheSameFromTwoEndsIsAmbiguousAndBothWaysAreGiven) {
+  std::mt19937 random(6);
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const OccupancyGrid floor = symmetric_floor(seed);
+    const SE2 T_robot_floor = random_pose(random);
+    const OccupancyGrid turned = transform_grid(floor, T_robot_floor, floor.resolution);
+    const MatchResult result = match(floor, turned);
+    EXPECT_EQ(result.verdict, Verdict::refused);
+    EXPECT_EQ(result.reason, Reason::ambiguous);
+    ASSERT_GE(result.hypotheses.size(), 2U);
+    EXPECT_GT(result.hypotheses[1].score, 0.9 * result.hypotheses[0].score);
+    const double turn = result.hypotheses[1].T_fixed_moving.theta - result.hypotheses[0].T_fixed_moving.theta;
+    EXPECT_NEAR(std::abs(normalize_angle(turn)), std::numbers::pi, 0.02);
+    EXPECT_LE(result.probability, 0.6);
+  }
+}
+
+TEST(Match, SaysWhyItRefuses) {
+  const OccupancyGrid building = test::draw_building(2);
+  EXPECT_EQ(match(building, building).reason, Reason::none);
+  EXPECT_NE(match(building, test::draw_building(3)).reason, Reason::none);
+  EXPECT_EQ(match(building, make_grid(20, 20, 0.1)).reason, Reason::nothing_to_compare);
+}
+
 TEST(Match, HandlesOtherResolutionsAndYawedOrigins) {
   const OccupancyGrid fine = test::draw_building(1);
   const SE2 T_robot_building{4.0, -3.0, 2.0};
