@@ -16,17 +16,21 @@ import pathlib
 
 RIDGE = 1.0  # on weights of features that are scaled to unit variance
 
-# What the model sees of a feature: (name, transform, C++ of the transform with the feature as `f`). Logarithms, because
-# features act by their ratios; bounds, because beyond them a feature says how clean or large maps are, not whether they
+# What the model sees of the features: (name of the term, transform of a row, the same in C++). Logarithms, because shares
+# and counts act by their ratios; bounds, because beyond them a feature says how clean or large maps are, not whether they
 # belong together.
 TERMS = [
-    ("lead", lambda f: math.log1p(min(f, 60.0)), "std::log1p(std::min(f.lead, 60.0))"),
-    ("acceptance_index", lambda f: -math.log(1.0 - min(f, 0.985)), "-std::log(1.0 - std::min(f.acceptance_index, 0.985))"),
-    ("wall_lines", lambda f: math.log(min(max(f, 1.0), 8.0)), "std::log(std::clamp(f.wall_lines, 1.0, 8.0))"),
-    ("nats_per_wall", lambda f: math.log(min(max(f, 0.05), 1.5)), "std::log(std::clamp(f.nats_per_wall, 0.05, 1.5))"),
-    ("outliers", lambda f: -math.log(max(f, 0.05)), "-std::log(std::max(f.outliers, 0.05))"),
-    ("spread", lambda f: math.log(min(max(f, 0.5), 5.0)), "std::log(std::clamp(f.spread, 0.5, 5.0))"),
+    ("lead", lambda f: min(f["lead"], 100.0) / 10.0, "std::min(f.lead, 100.0) / 10.0"),
+    ("acceptance index", lambda f: -math.log(1.0 - min(f["acceptance_index"], 0.985)),
+     "-std::log(1.0 - std::min(f.acceptance_index, 0.985))"),
+    ("wall lines", lambda f: math.log(clamp(f["wall_lines"], 1.0, 8.0)), "std::log(std::clamp(f.wall_lines, 1.0, 8.0))"),
+    ("outliers", lambda f: -math.log(max(f["outliers"], 0.05)), "-std::log(std::max(f.outliers, 0.05))"),
 ]
+FEATURES = ["lead", "acceptance_index", "wall_lines", "outliers"]
+
+
+def clamp(value: float, low: float, high: float) -> float:
+    return min(max(value, low), high)
 
 
 def read_cases(paths: list[pathlib.Path]) -> list[tuple[list[float], bool, dict[str, str]]]:
@@ -34,7 +38,8 @@ def read_cases(paths: list[pathlib.Path]) -> list[tuple[list[float], bool, dict[
     for path in paths:
         with path.open(newline="") as file:
             for row in csv.DictReader(file, delimiter="\t"):
-                cases.append(([transform(float(row[name])) for name, transform, _ in TERMS], row["truth"] == "right", row))
+                features = {name: float(row[name]) for name in FEATURES}
+                cases.append(([transform(features) for _, transform, _ in TERMS], row["truth"] == "right", row))
     return cases
 
 
@@ -84,8 +89,10 @@ def fit(cases) -> tuple[float, list[float]]:
     return weights[0] - sum(w * m for w, m in zip(scaled, mean)), scaled
 
 
-def probability(model: tuple[float, list[float]], terms: list[float]) -> float:
-    return sigmoid(model[0] + sum(w * t for w, t in zip(model[1], terms)))
+def probability(model: tuple[float, list[float]], terms: list[float], lead: float, wall_lines: float) -> float:
+    """As probability_of() in verdict.cpp, which says why."""
+    fits = sigmoid(model[0] + sum(w * t for w, t in zip(model[1], terms)))
+    return fits * sigmoid(lead) * sigmoid(3.0 * (wall_lines - 3.5))
 
 
 def header(model: tuple[float, list[float]]) -> str:
@@ -101,7 +108,7 @@ def header(model: tuple[float, list[float]]) -> str:
 
 
 def check(model: tuple[float, list[float]], cases) -> str:
-    judged = [(probability(model, terms), right, row["truth"]) for terms, right, row in cases]
+    judged = [(probability(model, terms, float(row["lead"]), float(row["wall_lines"])), right, row["truth"]) for terms, right, row in cases]
     text = f"{'from':>8} {'right':>7} {'wrong':>7} {'negative':>9}   accepted\n"
     for threshold in (0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.999):
         accepted = [truth for p, _, truth in judged if p >= threshold]

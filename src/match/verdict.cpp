@@ -4,21 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verdict_model.hpp"
+
 namespace gridmerge {
-
-namespace {
-
-// A logistic model. See docs/decisions.md for the pairs that it was fitted to.
-constexpr double kLeadWeight = 0.25;
-constexpr double kAcceptanceWeight = 95.0;
-constexpr double kBias = -92.6;
-constexpr double kMaxAcceptance = 0.975;
-/// With fewer lines of wall the maps agree on too little: a corner fits every corner, a corridor every
-/// corridor.
-constexpr double kEnoughLines = 5.0;
-constexpr double kLinesWeight = 14.0;
-
-}  // namespace
 
 double find_lead(const std::vector<double>& scores) {
   if (scores.empty() || scores[0] <= 0.0) return 0.0;
@@ -27,30 +15,32 @@ double find_lead(const std::vector<double>& scores) {
 }
 
 double probability_of(const VerdictFeatures& features) {
-  // Above this the index says how clean the maps are, not whether they belong together.
-  const double index = std::min(features.acceptance_index, kMaxAcceptance);
-  const double lines = std::clamp(features.wall_lines, 1.0, kEnoughLines) / kEnoughLines;
-  const double logit =
-      kBias + kLeadWeight * features.lead + kAcceptanceWeight * index + kLinesWeight * std::log(lines);
-  return 1.0 / (1.0 + std::exp(-logit));
+  const auto logistic = [](double logit) { return 1.0 / (1.0 + std::exp(-logit)); };
+  // What the fitted model cannot know, because simulated cases hold too little of it: of two hypotheses that
+  // fit, the better one is the true one with a probability that starts at a half, and a lead counts in units
+  // of what chance moves a score by; and maps that agree on the two walls of a corner, or the four of a plain
+  // room, fit every corner and every room, however clean and long the walls.
+  const double best_of_two = logistic(features.lead);
+  const double tells_places_apart = logistic(3.0 * (features.wall_lines - 3.5));
+  return logistic(verdict_logit(features)) * best_of_two * tells_places_apart;
 }
 
 Reason explain_refusal(const VerdictFeatures& features, double accept_probability) {
   if (probability_of(features) >= accept_probability) return Reason::none;
-  // What a pair beyond doubt has of each.
-  constexpr double kClearLead = 20.0;
-  constexpr double kClearIndex = 0.97;
-  constexpr double kClearLines = 8.0;
-  const auto would_do = [&](double lead, double index, double lines) {
+  // What a pair beyond doubt has.
+  const auto would_do = [&](void (*mend)(VerdictFeatures&)) {
     VerdictFeatures better = features;
-    better.lead = std::max(features.lead, lead);
-    better.acceptance_index = std::max(features.acceptance_index, index);
-    better.wall_lines = std::max(features.wall_lines, lines);
+    mend(better);
     return probability_of(better) >= accept_probability;
   };
-  if (would_do(kClearLead, 0.0, 0.0)) return Reason::ambiguous;
-  if (would_do(0.0, kClearIndex, 0.0)) return Reason::contradiction;
-  if (would_do(0.0, 0.0, kClearLines)) return Reason::too_little_overlap;
+  if (would_do([](VerdictFeatures& f) { f.lead = std::max(f.lead, 30.0); })) return Reason::ambiguous;
+  if (would_do([](VerdictFeatures& f) {
+        f.acceptance_index = std::max(f.acceptance_index, 0.98);
+        f.outliers = std::min(f.outliers, 0.1);
+      }))
+    return Reason::contradiction;
+  if (would_do([](VerdictFeatures& f) { f.wall_lines = std::max(f.wall_lines, 10.0); }))
+    return Reason::too_little_overlap;
   return Reason::several;
 }
 

@@ -23,7 +23,8 @@ enum class Reason {
 /// As outputs spell it: "ambiguous", "too_little_overlap", ...; "none" for an accepted pair.
 const char* name_of(Reason reason);
 
-/// What the probability of the best hypothesis rests on.
+/// What speaks for the best hypothesis and against it. Not all of it enters the probability; the rest is for
+/// who fits a model of their own (gridmerge evaluate --features).
 struct VerdictFeatures {
   /// (best - second) / sqrt(best), of the scores of distinct hypotheses [sqrt(nats)]; the second counts 0
   /// when there is none. A score is a sum over many places, so chance moves it by about its square root.
@@ -43,8 +44,10 @@ struct VerdictFeatures {
 /// (best - second) / sqrt(best), from the scores of distinct hypotheses, best first, all positive.
 double find_lead(const std::vector<double>& scores);
 
-/// Probability that the best hypothesis is the true pose. Rises with lead, acceptance index and wall lines.
-/// Without a lead it is about 1/2 at most: another hypothesis is as good.
+/// Probability that the best hypothesis is the true pose: a logistic model of lead, acceptance index, wall
+/// lines (with all of which it rises) and outliers (with which it falls), fitted to simulated maps by
+/// calibration/fit.py. Without a lead it is 1/2 at most: another hypothesis is as good. On fewer than four
+/// lines of wall it is next to nothing. See docs/verdict.md for how well it means what it says.
 double probability_of(const VerdictFeatures& features);
 
 /// Why a best hypothesis with these features is refused where `accept_probability` is asked for: the first of
