@@ -3,9 +3,9 @@
 
 #include <benchmark/benchmark.h>
 
+#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/search/exhaustive.hpp"
-#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/similarity/evidence.hpp"
 #include "gridmerge/similarity/wall_map.hpp"
 #include "office.hpp"

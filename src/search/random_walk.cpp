@@ -10,8 +10,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "gridmerge/grid/resample.hpp"
 #include "gridmerge/grid/parallel.hpp"
+#include "gridmerge/grid/resample.hpp"
 
 namespace gridmerge {
 

@@ -84,7 +84,8 @@ TEST(ExplainRefusal, NamesWhatAloneHoldsThePairBack) {
             Reason::contradiction);
   EXPECT_EQ(reason([](auto& f) { f.wall_lines = 1.5, f.spread = 0.5; }), Reason::too_little_overlap);
   EXPECT_EQ(reason([](auto& f) {
-              f.lead = 0.5, f.acceptance_index = 0.8, f.outliers = 0.5, f.nats_per_wall = 0.4, f.wall_lines = 1.5;
+              f.lead = 0.5, f.acceptance_index = 0.8, f.outliers = 0.5, f.nats_per_wall = 0.4,
+              f.wall_lines = 1.5;
             }),
             Reason::several);
   EXPECT_STREQ(name_of(Reason::ambiguous), "ambiguous");

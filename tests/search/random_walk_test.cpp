@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "../similarity/random_grid.hpp"
-#include "gridmerge/grid/resample.hpp"
 #include "gridmerge/grid/parallel.hpp"
+#include "gridmerge/grid/resample.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {
