@@ -21,12 +21,12 @@ RIDGE = 1.0  # on weights of features that are scaled to unit variance
 # belong together.
 TERMS = [
     ("lead", lambda f: min(f["lead"], 100.0) / 10.0, "std::min(f.lead, 100.0) / 10.0"),
-    ("acceptance index", lambda f: -math.log(1.0 - min(f["acceptance_index"], 0.985)),
-     "-std::log(1.0 - std::min(f.acceptance_index, 0.985))"),
     ("wall lines", lambda f: math.log(clamp(f["wall_lines"], 1.0, 8.0)), "std::log(std::clamp(f.wall_lines, 1.0, 8.0))"),
-    ("outliers", lambda f: -math.log(max(f["outliers"], 0.05)), "-std::log(std::max(f.outliers, 0.05))"),
+    ("walls met locally", lambda f: -math.log(max(1.0 - f["walls_met_locally"], 0.05)),
+     "-std::log(std::max(1.0 - f.walls_met_locally, 0.05))"),
+    ("walls met rigidly", lambda f: -math.log(max(1.0 - f["walls_met"], 0.05)), "-std::log(std::max(1.0 - f.walls_met, 0.05))"),
 ]
-FEATURES = ["lead", "acceptance_index", "wall_lines", "outliers"]
+FEATURES = ["lead", "wall_lines", "walls_met_locally", "walls_met"]
 
 
 def clamp(value: float, low: float, high: float) -> float:
@@ -110,7 +110,7 @@ def header(model: tuple[float, list[float]]) -> str:
 def check(model: tuple[float, list[float]], cases) -> str:
     judged = [(probability(model, terms, float(row["lead"]), float(row["wall_lines"])), right, row["truth"]) for terms, right, row in cases]
     text = f"{'from':>8} {'right':>7} {'wrong':>7} {'negative':>9}   accepted\n"
-    for threshold in (0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.999):
+    for threshold in (0.5, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 0.98, 0.99, 0.995, 0.999):
         accepted = [truth for p, _, truth in judged if p >= threshold]
         text += f"{threshold:>8} {accepted.count('right'):>7} {accepted.count('wrong'):>7} {accepted.count('negative'):>9}\n"
     totals = [truth for _, _, truth in judged]

@@ -23,7 +23,7 @@ import sys
 SPLITS = {"fit": ["office", "hall", "apartment", "loop"], "check": ["warehouse", "curved", "outdoor"], "symmetric": ["symmetric"]}
 NEGATIVES_A_MAP = 3
 FEATURES = ["lead", "acceptance_index", "wall_lines", "score", "nats_per_wall", "overlap", "common_area", "spread", "sigma",
-            "outliers"]
+            "outliers", "walls_met", "walls_met_locally"]
 COLUMNS = ["kind", "truth", "tier"] + FEATURES
 
 

@@ -45,7 +45,7 @@ std::string set_rows(const std::vector<SetOutcome>& sets) {
 }
 
 std::string threshold_rows(const std::vector<MatchOutcome>& matches, double accept_probability) {
-  std::vector<double> thresholds = {0.0, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99, 0.999, 0.9999};
+  std::vector<double> thresholds = {0.0, 0.25, 0.5, 0.75, 0.8, 0.9, 0.95, 0.99, 0.999, 0.9999};
   if (std::find(thresholds.begin(), thresholds.end(), accept_probability) == thresholds.end()) {
     thresholds.insert(std::lower_bound(thresholds.begin(), thresholds.end(), accept_probability),
                       accept_probability);
@@ -116,15 +116,16 @@ std::string case_table(const Evaluation& evaluation) {
 std::string features_table(const Evaluation& evaluation) {
   std::string text =
       "fixed\tmoving\ttruth\ttier\tprobability\treason\tlead\tacceptance_index\twall_lines\tscore\t"
-      "nats_per_wall\toverlap\tcommon_area\tspread\tsigma\toutliers\n";
+      "nats_per_wall\toverlap\tcommon_area\tspread\tsigma\toutliers\twalls_met\twalls_met_locally\n";
   for (const MatchOutcome& match : evaluation.matches) {
     if (match.reason == Reason::nothing_to_compare) continue;
     const char* truth = match.negative() ? "negative" : match.correct() ? "right" : "wrong";
     const VerdictFeatures& f = match.features;
     fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}", match.fixed, match.moving, truth,
                    match.tier, match.probability, name_of(match.reason));
-    for (const double value : {f.lead, f.acceptance_index, f.wall_lines, f.score, f.nats_per_wall, f.overlap,
-                               f.common_area, f.spread, f.sigma, f.outliers})
+    for (const double value :
+         {f.lead, f.acceptance_index, f.wall_lines, f.score, f.nats_per_wall, f.overlap, f.common_area,
+          f.spread, f.sigma, f.outliers, f.walls_met, f.walls_met_locally})
       fmt::format_to(std::back_inserter(text), "\t{}", value);
     text += '\n';
   }

@@ -12,6 +12,7 @@
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/refine.hpp"
 #include "gridmerge/match/verdict.hpp"
+#include "gridmerge/match/walls_met.hpp"
 #include "gridmerge/search/exhaustive.hpp"
 #include "gridmerge/similarity/agreement.hpp"
 #include "gridmerge/similarity/wall_lines.hpp"
@@ -126,6 +127,9 @@ VerdictFeatures describe_walls(const std::vector<RankedPose>& ranked, const Wall
   features.spread = support.spread * fixed_walls.cell;
   features.sigma = best.walls.model.sigma * fixed_walls.cell;
   features.outliers = best.walls.model.outliers;
+  const WallsMet met = measure_walls_met(fixed_walls, moving_walls, T_cells);
+  features.walls_met = met.rigidly;
+  features.walls_met_locally = met.locally;
   return features;
 }
 
@@ -159,14 +163,18 @@ FoundHypotheses find_hypotheses(const OccupancyGrid& fixed, const OccupancyGrid&
   return found;
 }
 
-/// The best hypothesis has the verdict's probability; the others share the rest in proportion to their
-/// scores.
-void assign_probabilities(std::vector<Hypothesis>& hypotheses, double best) {
-  double others = -hypotheses.front().score;
-  for (const Hypothesis& hypothesis : hypotheses) others += hypothesis.score;
-  hypotheses[0].probability = best;
-  for (std::size_t i = 1; i < hypotheses.size(); ++i) {  // a runner-up is never called likelier than the best
-    hypotheses[i].probability = std::min(best, (1.0 - best) * hypotheses[i].score / others);
+/// The model says how probable it is that the best hypothesis is true, given its lead over the next. Measured
+/// against the hypothesis after the first m, the same says that the truth is among these m; what the m-th
+/// adds to that is its own. None is called likelier than the best.
+void assign_probabilities(std::vector<Hypothesis>& hypotheses, const VerdictFeatures& features) {
+  hypotheses[0].probability = probability_of(features);
+  double among_those_before = hypotheses[0].probability;
+  for (std::size_t i = 1; i < hypotheses.size(); ++i) {
+    const double among_these = i + 1 < hypotheses.size()
+                                   ? probability_among(features, hypotheses[0].score, hypotheses[i + 1].score)
+                                   : among_those_before;
+    hypotheses[i].probability = std::min(hypotheses[0].probability, among_these - among_those_before);
+    among_those_before = among_these;
   }
 }
 
@@ -192,7 +200,7 @@ MatchResult match_in_arena(const OccupancyGrid& fixed, const OccupancyGrid& movi
   result.features.overlap = result.overlap;
   result.features.common_area =
       static_cast<double>(counts.both_known()) * smaller.resolution * smaller.resolution;
-  assign_probabilities(result.hypotheses, probability_of(result.features));
+  assign_probabilities(result.hypotheses, result.features);
 
   if (swapped) {
     for (Hypothesis& hypothesis : result.hypotheses)

@@ -25,6 +25,12 @@ double probability_of(const VerdictFeatures& features) {
   return logistic(verdict_logit(features)) * best_of_two * tells_places_apart;
 }
 
+double probability_among(const VerdictFeatures& features, double best, double next) {
+  VerdictFeatures among = features;
+  among.lead = find_lead({best, next});
+  return probability_of(among);
+}
+
 Reason explain_refusal(const VerdictFeatures& features, double accept_probability) {
   if (probability_of(features) >= accept_probability) return Reason::none;
   // What a pair beyond doubt has.
@@ -35,8 +41,8 @@ Reason explain_refusal(const VerdictFeatures& features, double accept_probabilit
   };
   if (would_do([](VerdictFeatures& f) { f.lead = std::max(f.lead, 30.0); })) return Reason::ambiguous;
   if (would_do([](VerdictFeatures& f) {
-        f.acceptance_index = std::max(f.acceptance_index, 0.98);
-        f.outliers = std::min(f.outliers, 0.1);
+        f.walls_met = std::max(f.walls_met, 0.95);
+        f.walls_met_locally = std::max(f.walls_met_locally, 0.95);
       }))
     return Reason::contradiction;
   if (would_do([](VerdictFeatures& f) { f.wall_lines = std::max(f.wall_lines, 10.0); }))

@@ -28,6 +28,8 @@ VerdictFeatures clear_pair() {
   features.spread = 4.0;
   features.sigma = 0.07;
   features.outliers = 0.1;
+  features.walls_met = 0.88;
+  features.walls_met_locally = 0.93;
   return features;
 }
 
@@ -38,8 +40,7 @@ TEST(ProbabilityOf, APairBeyondDoubtIsBelieved) {
 TEST(ProbabilityOf, RisesWithWhatSpeaksForThePair) {
   VerdictFeatures fair = clear_pair();
   fair.lead = 10.0;
-  fair.acceptance_index = 0.95;
-  fair.outliers = 0.2;
+  fair.walls_met_locally = 0.85;
   fair.wall_lines = 6.0;
   const auto changed = [&](double VerdictFeatures::*feature, double value) {
     VerdictFeatures other = fair;
@@ -48,9 +49,8 @@ TEST(ProbabilityOf, RisesWithWhatSpeaksForThePair) {
   };
   const double usual = probability_of(fair);
   EXPECT_GT(changed(&VerdictFeatures::lead, 20.0), usual);
-  EXPECT_GT(changed(&VerdictFeatures::acceptance_index, 0.97), usual);
   EXPECT_GT(changed(&VerdictFeatures::wall_lines, 8.0), usual);
-  EXPECT_LT(changed(&VerdictFeatures::outliers, 0.35), usual);
+  EXPECT_GT(changed(&VerdictFeatures::walls_met_locally, 0.92), usual);
 }
 
 TEST(ProbabilityOf, ATieIsAtMostEven) {
@@ -61,10 +61,18 @@ TEST(ProbabilityOf, ATieIsAtMostEven) {
 
 TEST(ProbabilityOf, ACornerIsNotEnoughHoweverLongAndClean) {
   VerdictFeatures corner = clear_pair();
-  corner.acceptance_index = 1.0;
-  corner.outliers = 0.02;
+  corner.walls_met = 1.0;
+  corner.walls_met_locally = 1.0;
   corner.wall_lines = 2.0;
   EXPECT_LT(probability_of(corner), 0.05);
+}
+
+TEST(ProbabilityAmong, RisesWithTheLeadOverTheNextHypothesis) {
+  const VerdictFeatures features = clear_pair();
+  EXPECT_GT(probability_among(features, 900.0, 100.0), probability_among(features, 900.0, 800.0));
+  VerdictFeatures same = features;
+  same.lead = find_lead({900.0, 400.0});
+  EXPECT_DOUBLE_EQ(probability_among(features, 900.0, 400.0), probability_of(same));
 }
 
 TEST(ProbabilityOf, NothingIsNothing) {
@@ -80,14 +88,11 @@ TEST(ExplainRefusal, NamesWhatAloneHoldsThePairBack) {
   };
   EXPECT_EQ(reason([](auto&) {}), Reason::none);
   EXPECT_EQ(reason([](auto& f) { f.lead = 0.5; }), Reason::ambiguous);
-  EXPECT_EQ(reason([](auto& f) { f.acceptance_index = 0.8, f.outliers = 0.5, f.nats_per_wall = 0.4; }),
-            Reason::contradiction);
+  EXPECT_EQ(reason([](auto& f) { f.walls_met = 0.4, f.walls_met_locally = 0.5; }), Reason::contradiction);
   EXPECT_EQ(reason([](auto& f) { f.wall_lines = 1.5, f.spread = 0.5; }), Reason::too_little_overlap);
-  EXPECT_EQ(reason([](auto& f) {
-              f.lead = 0.5, f.acceptance_index = 0.8, f.outliers = 0.5, f.nats_per_wall = 0.4,
-              f.wall_lines = 1.5;
-            }),
-            Reason::several);
+  EXPECT_EQ(
+      reason([](auto& f) { f.lead = 0.5, f.walls_met = 0.4, f.walls_met_locally = 0.5, f.wall_lines = 1.5; }),
+      Reason::several);
   EXPECT_STREQ(name_of(Reason::ambiguous), "ambiguous");
   EXPECT_STREQ(name_of(Reason::too_little_overlap), "too_little_overlap");
 }

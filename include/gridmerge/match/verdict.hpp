@@ -35,20 +35,26 @@ struct VerdictFeatures {
   double nats_per_wall =
       0.0;               ///< the evidence of walls for a wall point that lies where the other map has seen
   double overlap = 0.0;  ///< share of the smaller map's known cells that are known in both
-  double common_area = 0.0;  ///< known in both [m^2]
-  double spread = 0.0;       ///< WallSupport::spread [m]
-  double sigma = 0.0;        ///< of the error model that explains the maps best [m]
-  double outliers = 0.0;     ///< of that model
+  double common_area = 0.0;        ///< known in both [m^2]
+  double spread = 0.0;             ///< WallSupport::spread [m]
+  double sigma = 0.0;              ///< of the error model that explains the maps best [m]
+  double outliers = 0.0;           ///< of that model
+  double walls_met = 0.0;          ///< WallsMet::rigidly
+  double walls_met_locally = 0.0;  ///< WallsMet::locally
 };
 
 /// (best - second) / sqrt(best), from the scores of distinct hypotheses, best first, all positive.
 double find_lead(const std::vector<double>& scores);
 
-/// Probability that the best hypothesis is the true pose: a logistic model of lead, acceptance index, wall
-/// lines (with all of which it rises) and outliers (with which it falls), fitted to simulated maps by
+/// Probability that the best hypothesis is the true pose: a logistic model of the lead, the lines of wall and
+/// the walls that meet locally (with all of which it rises) and rigidly, fitted to simulated maps by
 /// calibration/fit.py. Without a lead it is 1/2 at most: another hypothesis is as good. On fewer than four
 /// lines of wall it is next to nothing. See docs/verdict.md for how well it means what it says.
 double probability_of(const VerdictFeatures& features);
+
+/// Probability that the truth is among the first few hypotheses, of which the best scored `best` and the one
+/// after them `next`: probability_of() with the lead that the best has over that one.
+double probability_among(const VerdictFeatures& features, double best, double next);
 
 /// Why a best hypothesis with these features is refused where `accept_probability` is asked for: the first of
 /// ambiguous, contradiction and too_little_overlap that alone holds it back; `several` if no single one does;

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "gridmerge/grid/se2.hpp"
+#include "gridmerge/similarity/wall_map.hpp"
+
+namespace gridmerge {
+
+/// How many of two maps' walls meet: the share of those that lie where the other map has seen, of both maps.
+/// Shares in [0, 1]; 0 when no wall lies where the other map has seen.
+struct WallsMet {
+  double rigidly = 0.0;  ///< with one pose for all of them
+  double locally = 0.0;  ///< when every patch of the maps may also shift and turn a little by itself
+};
+
+/// Tells maps that are bent from maps that do not belong together. Neither meet well under one rigid pose;
+/// but of two maps of one place, every patch meets once it is shifted by what the maps are bent there, and of
+/// two places the patches stay as they are, because rooms differ in more than where they lie.
+///
+/// A wall meets another one within two cells, unless the two face opposite ways. Patches are squares of 6 m
+/// (60 cells where those are longer); each climbs to its best pose within 1.2 m of the given one, which is
+/// between grid frames, in cells. O(walls + patches).
+WallsMet measure_walls_met(const WallMap& fixed, const WallMap& moving, const SE2& T_fixed_moving_cells);
+
+}  // namespace gridmerge

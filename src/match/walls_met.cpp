@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/match/walls_met.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "gridmerge/grid/parallel.hpp"
+#include "gridmerge/match/refine.hpp"
+#include "gridmerge/similarity/evidence.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+constexpr double kPatchSide = 6.0;        // [m]
+constexpr double kLeastPatchSide = 60.0;  // [cells]
+constexpr double kFarthestShift = 1.2;    // [m]
+constexpr double kFirstStep = 0.4;        // [m]
+constexpr double kLastStep = 0.5;         // [cells]
+constexpr double kLeastWall = 2.0;        // that a patch must have where both have seen, to move [m]
+constexpr int kMeetingDistance = 2;       // [cells]
+constexpr std::size_t kClimbingWalls = 150;
+
+/// A wall that lies in what the other map has not seen is worth this much when a patch climbs: about what an
+/// unrelated wall is, so that a patch neither flees from what is seen nor is held in it.
+constexpr double kUnseenWorth = 0.3;
+
+struct Meetings {
+  double seen = 0.0;   // walls where the other map has seen
+  double met = 0.0;    // of these, the walls that meet another one
+  double worth = 0.0;  // what a patch climbs on: 1 for a wall on another one, less with their distance
+
+  Meetings& operator+=(const Meetings& other) {
+    seen += other.seen;
+    met += other.met;
+    worth += other.worth;
+    return *this;
+  }
+};
+
+bool are_opposite(std::uint8_t facing, int turn, std::uint8_t other) {
+  if (facing == kNoDirection || other == kNoDirection) return false;
+  const int difference = std::abs((facing + turn) % kDirections - other);
+  return std::min(difference, kDirections - difference) > kDirections / 4;
+}
+
+Meetings look_up(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls) {
+  const double c = std::cos(T_map_walls.theta), s = std::sin(T_map_walls.theta);
+  const double turns = T_map_walls.theta / (2.0 * std::numbers::pi) + 1.0;
+  const int turn = static_cast<int>(std::lround(turns * kDirections)) % kDirections;
+  Meetings meetings;
+  for (const WallPoint& wall : walls) {
+    const double x = c * wall.position.x - s * wall.position.y + T_map_walls.x;
+    const double y = s * wall.position.x + c * wall.position.y + T_map_walls.y;
+    Place place;
+    if (x >= 0.0 && y >= 0.0 && x < map.width && y < map.height)
+      place = map.places[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +
+                         static_cast<std::size_t>(x)];
+    if (place.distance == kUnseen) {
+      meetings.worth += kUnseenWorth;
+      continue;
+    }
+    meetings.seen += 1.0;
+    if (are_opposite(wall.facing, turn, place.facing)) continue;
+    meetings.met += place.distance <= kMeetingDistance ? 1.0 : 0.0;
+    meetings.worth += 1.0 / (1.0 + place.distance * place.distance / 6.0);
+  }
+  return meetings;
+}
+
+/// The walls of both maps in one square of the moving map.
+struct Patch {
+  Point2 centre;                         // [cells, moving grid frame]
+  std::vector<WallPoint> fixed, moving;  // each in its own map's grid frame
+};
+
+std::vector<Patch> cut(const WallMap& fixed, const WallMap& moving, const SE2& T_fixed_moving, double side) {
+  std::map<std::pair<int, int>, Patch> patches;
+  const auto patch_at = [&](const Point2& p) -> Patch& {
+    const double column = std::floor(p.x / side), row = std::floor(p.y / side);
+    Patch& patch = patches[{static_cast<int>(row), static_cast<int>(column)}];
+    patch.centre = {(column + 0.5) * side, (row + 0.5) * side};
+    return patch;
+  };
+  for (const WallPoint& wall : moving.walls) patch_at(wall.position).moving.push_back(wall);
+  const SE2 T_moving_fixed = inverse(T_fixed_moving);
+  for (const WallPoint& wall : fixed.walls) patch_at(T_moving_fixed * wall.position).fixed.push_back(wall);
+  std::vector<Patch> list;
+  list.reserve(patches.size());
+  for (auto& [at, patch] : patches) list.push_back(std::move(patch));
+  return list;
+}
+
+class PatchMatcher {
+ public:
+  PatchMatcher(const WallMap& fixed, const WallMap& moving, const SE2& T_fixed_moving, double side)
+      : fixed_(fixed), moving_(moving), start_(T_fixed_moving), side_(side) {}
+
+  Meetings rigidly(const Patch& patch) const { return at(patch, start_); }
+
+  Meetings locally(const Patch& patch) const {
+    const Meetings before = rigidly(patch);
+    if (patch.moving.empty() || before.seen * fixed_.cell < kLeastWall) return before;
+    return at(patch, climb(patch));
+  }
+
+ private:
+  Meetings at(const Patch& patch, const SE2& T_fixed_moving) const {
+    Meetings sum = look_up(fixed_, patch.moving, T_fixed_moving);
+    sum += look_up(moving_, patch.fixed, inverse(T_fixed_moving));
+    return sum;
+  }
+
+  /// Steepest ascent; the step is halved whenever none helps.
+  SE2 climb(const Patch& patch) const {
+    constexpr int kMaxMoves = 5;  // a step
+    constexpr std::array<std::array<double, 3>, 6> kMoves{
+        {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+    const std::vector<WallPoint> fixed_walls = draw_evenly(patch.fixed, kClimbingWalls);
+    const std::vector<WallPoint> moving_walls = draw_evenly(patch.moving, kClimbingWalls);
+    const PoseMetric metric{patch.centre, 0.4 * side_};
+    const auto all_per_drawn = [](const auto& all, const auto& drawn) {
+      return drawn.empty() ? 0.0 : static_cast<double>(all.size()) / static_cast<double>(drawn.size());
+    };
+    const double fixed_weight = all_per_drawn(patch.fixed, fixed_walls);
+    const double moving_weight = all_per_drawn(patch.moving, moving_walls);
+    const auto worth_of = [&](const SE2& T_fixed_moving) {
+      return moving_weight * look_up(fixed_, moving_walls, T_fixed_moving).worth +
+             fixed_weight * look_up(moving_, fixed_walls, inverse(T_fixed_moving)).worth;
+    };
+    SE2 best = start_;
+    double most = worth_of(best);
+    for (double step = kFirstStep / fixed_.cell; step >= kLastStep; step /= 2.0) {
+      bool improved = true;
+      for (int i = 0; i < kMaxMoves && improved; ++i) {
+        improved = false;
+        const SE2 from = best;
+        for (const auto& [dx, dy, turn] : kMoves) {
+          const SE2 pose = metric.moved(from, step * dx, step * dy, step * turn / metric.radius);
+          if (metric.displacement(pose, start_) > kFarthestShift / fixed_.cell) continue;
+          const double worth = worth_of(pose);
+          if (worth <= most) continue;
+          most = worth;
+          best = pose;
+          improved = true;
+        }
+      }
+    }
+    return best;
+  }
+
+  const WallMap& fixed_;
+  const WallMap& moving_;
+  SE2 start_;
+  double side_;
+};
+
+double share_met(const std::vector<Meetings>& patches) {
+  Meetings sum;
+  for (const Meetings& patch : patches) sum += patch;
+  return sum.seen > 0.0 ? sum.met / sum.seen : 0.0;
+}
+
+}  // namespace
+
+WallsMet measure_walls_met(const WallMap& fixed, const WallMap& moving, const SE2& T_fixed_moving_cells) {
+  const double side = std::max(kPatchSide / fixed.cell, kLeastPatchSide);
+  const std::vector<Patch> patches = cut(fixed, moving, T_fixed_moving_cells, side);
+  const PatchMatcher matcher(fixed, moving, T_fixed_moving_cells, side);
+  std::vector<Meetings> rigidly(patches.size()), locally(patches.size());
+  parallel_for(patches.size(), [&](std::size_t i) {
+    rigidly[i] = matcher.rigidly(patches[i]);
+    locally[i] = matcher.locally(patches[i]);
+  });
+  return {share_met(rigidly), share_met(locally)};
+}
+
+}  // namespace gridmerge
