@@ -12,6 +12,7 @@ import argparse
 import concurrent.futures
 import csv
 import json
+import math
 import os
 import pathlib
 import subprocess
@@ -35,7 +36,7 @@ FAMILIES = {
     "resolution": ("cell [m]", [({"--resolution": v}, float(v)) for v in ("0.025", "0.05", "0.1", "0.2", "0.4")]),
     "kind": ("kind of building", [({"--kind": v, "--size": "14x11" if v == "apartment" else "40x25"}, v) for v in
                                   ("office", "hall", "warehouse", "apartment", "symmetric", "loop", "curved", "outdoor")]),
-    "size": ("side of the building [m]", [({"--size": f"{v}x{v}"}, v) for v in (10, 20, 40, 80, 160)]),
+    "size": ("side of the building [m]", [({"--size": f"{v}x{v}"}, v) for v in (10, 20, 40, 80, 160, 200)]),
 }
 RATIOS = (1, 2, 3, 4, 6)          # of the two maps' cells
 TEAMS = (2, 4, 6, 8)              # robots
@@ -190,6 +191,23 @@ def plot_family(rows: list[dict], label: str, path: pathlib.Path) -> None:
     plt.close(figure)
 
 
+def plot_cost(rows: list[dict], label: str, path: pathlib.Path) -> None:
+    """Time and memory of a match; memory is the process's, two maps and all."""
+    figure, axes = plt.subplots(figsize=(5, 3))
+    values = [str(row["value"]) for row in rows]
+    axes.plot(values, [math.nan if row["median s"] == "–" else float(row["median s"]) for row in rows], color="#0072b2", marker="o")
+    axes.set_xlabel(label)
+    axes.set_ylabel("median seconds a match", color="#0072b2")
+    axes.set_ylim(bottom=0)
+    memory = axes.twinx()
+    memory.plot(values, [float(row["peak MB"]) for row in rows], color="#d55e00", marker="s")
+    memory.set_ylabel("peak memory [MB]", color="#d55e00")
+    memory.set_ylim(bottom=0)
+    figure.tight_layout()
+    figure.savefig(path, dpi=120)
+    plt.close(figure)
+
+
 def plot_probability(cases: list[dict], path: pathlib.Path) -> float:
     """ROC and reliability; the expected calibration error."""
     judged = sorted(((case["probability"], bool(case["correct"])) for case in cases), reverse=True)
@@ -241,7 +259,7 @@ def main() -> None:
     parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared/data"))
     parser.add_argument("--full", action="store_true")
     arguments = parser.parse_args()
-    bench = Bench(arguments.gridmerge, arguments.output, 32 if arguments.full else 4)
+    bench = Bench(arguments.gridmerge, arguments.output, 64 if arguments.full else 8)
     (arguments.output / "cases").mkdir(parents=True, exist_ok=True)
 
     report = "# Where the engine works, and where it breaks\n"
@@ -251,6 +269,9 @@ def main() -> None:
         rows = bench.sweep(family, values)
         plot_family(rows, label, arguments.output / f"{family}.png")
         report += f"\n## {family}\n![{label}]({family}.png)\n\n{table(rows, label)}"
+        if family == "size":
+            plot_cost(rows, label, arguments.output / "cost.png")
+            report += "\n![Time and memory](cost.png)\n"
     print("ratio, teams, walk ...", flush=True)
     report += "\n## Ratio of the two maps' cells\n" + table(bench.ratios(), "ratio")
     report += "\n## Teams, merged up the tree\n" + table(bench.teams())
