@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "gridmerge/grid/parallel.hpp"
-#include "gridmerge/grid/resample.hpp"
+#include "gridmerge/match/prepared_map.hpp"
 #include "gridmerge/match/refine.hpp"
 #include "gridmerge/match/verdict.hpp"
 #include "gridmerge/match/walls_met.hpp"
@@ -51,15 +51,15 @@ double working_cell(const OccupancyGrid& a, const OccupancyGrid& b) {
 /// Whether `a` should be searched as the moving map: the one with fewer known cells, so that its walls have
 /// the best chance to be met in the other. Any further difference breaks ties, so that the answer does not
 /// depend on which map the caller called fixed.
-bool is_smaller(const OccupancyGrid& a, const OccupancyGrid& b) {
-  const auto key = [](const OccupancyGrid& grid) {
-    const CellCounts counts = count_cells(grid);
-    return std::tuple(static_cast<double>(counts.known()) * grid.resolution * grid.resolution,
-                      counts.occupied, grid.width, grid.height);
+bool is_smaller(const PreparedMap& a, const PreparedMap& b) {
+  const auto key = [](const PreparedMap& map) {
+    const OccupancyGrid& grid = map.known();
+    return std::tuple(static_cast<double>(map.counts().known()) * grid.resolution * grid.resolution,
+                      map.counts().occupied, grid.width, grid.height);
   };
   const auto key_a = key(a);
   const auto key_b = key(b);
-  return key_a != key_b ? key_a < key_b : a.cells < b.cells;
+  return key_a != key_b ? key_a < key_b : a.known().cells < b.known().cells;
 }
 
 /// A hypothesis between map frames, from one between grid frames in cells.
@@ -76,6 +76,10 @@ SE2 to_cells(const SE2& T_fixed_moving, const WallMap& fixed, const WallMap& mov
 
 void report(const MatchOptions& options, double share) {
   if (options.progress) options.progress(share);
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 struct RankedPose {
@@ -134,18 +138,19 @@ VerdictFeatures describe_walls(const std::vector<RankedPose>& ranked, const Wall
 }
 
 /// `moving` is the map that is_smaller() picked.
-FoundHypotheses find_hypotheses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                const MatchOptions& options) {
-  const double cell = working_cell(fixed, moving);
-  const WallMap fixed_walls = make_wall_map(fixed, cell);
-  const WallMap moving_walls = make_wall_map(moving, cell);
+FoundHypotheses find_hypotheses(const PreparedMap& fixed, const PreparedMap& moving,
+                                const std::vector<SE2>& guesses, const MatchOptions& options) {
+  const double cell = working_cell(fixed.known(), moving.known());
+  const WallMap& fixed_walls = fixed.walls(cell);
+  const WallMap& moving_walls = moving.walls(cell);
   report(options, 0.1);
 
-  const double side = std::max(longer_side(fixed), longer_side(moving)) / cell;
+  const double side = std::max(longer_side(fixed.known()), longer_side(moving.known())) / cell;
   ExhaustiveSearchOptions search;
   search.coarse_factor = std::clamp(static_cast<int>(std::ceil(side / kCoarseCellsAlongSide)), 2, 4);
   search.sigma = kCoarseSigma * search.coarse_factor;
-  const std::vector<PoseCandidate> candidates = search_all_poses(fixed_walls, moving_walls, search);
+  std::vector<PoseCandidate> candidates = search_all_poses(fixed_walls, moving_walls, search);
+  for (const SE2& guess : guesses) candidates.push_back({to_cells(guess, fixed_walls, moving_walls), 0});
   report(options, 0.5);
 
   RefineOptions refinement;
@@ -154,7 +159,8 @@ FoundHypotheses find_hypotheses(const OccupancyGrid& fixed, const OccupancyGrid&
   refinement.max_poses = std::max(kRankedPoses, options.max_hypotheses);
   const std::vector<ScoredPose> poses = refine(fixed_walls, moving_walls, candidates, refinement,
                                                [&](double share) { report(options, 0.5 + 0.45 * share); });
-  const std::vector<RankedPose> ranked = rank(poses, fixed, moving, fixed_walls, moving_walls);
+  const std::vector<RankedPose> ranked =
+      rank(poses, fixed.known(), moving.known(), fixed_walls, moving_walls);
   FoundHypotheses found;
   if (ranked.empty()) return found;
   found.features = describe_walls(ranked, fixed_walls, moving_walls);
@@ -178,28 +184,28 @@ void assign_probabilities(std::vector<Hypothesis>& hypotheses, const VerdictFeat
   }
 }
 
-MatchResult match_in_arena(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                           const MatchOptions& options) {
-  const OccupancyGrid fixed_known = crop_to_known(fixed);
-  const OccupancyGrid moving_known = crop_to_known(moving);
-  const bool swapped = is_smaller(fixed_known, moving_known);
-  const OccupancyGrid& larger = swapped ? moving_known : fixed_known;
-  const OccupancyGrid& smaller = swapped ? fixed_known : moving_known;
+MatchResult match_in_arena(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options) {
+  const bool swapped = is_smaller(fixed, moving);
+  const PreparedMap& larger = swapped ? moving : fixed;
+  const PreparedMap& smaller = swapped ? fixed : moving;
+  std::vector<SE2> guesses = options.guesses;
+  if (swapped) std::transform(guesses.begin(), guesses.end(), guesses.begin(), inverse);
 
   MatchResult result;
-  FoundHypotheses found = find_hypotheses(larger, smaller, options);
+  FoundHypotheses found = find_hypotheses(larger, smaller, guesses, options);
   result.hypotheses = std::move(found.ranked);
   if (result.hypotheses.empty()) return result;
-  const AgreementCounts counts = count_agreement(larger, smaller, result.hypotheses.front().T_fixed_moving);
+  const AgreementCounts counts =
+      count_agreement(larger.known(), smaller.known(), result.hypotheses.front().T_fixed_moving);
   result.acceptance_index = counts.acceptance_index();
   result.agreement = counts.agreement;
   result.disagreement = counts.disagreement;
-  result.overlap = measure_overlap(larger, smaller, counts);
+  result.overlap = measure_overlap(larger.known(), smaller.known(), counts);
   result.features = found.features;
   result.features.acceptance_index = result.acceptance_index;
   result.features.overlap = result.overlap;
   result.features.common_area =
-      static_cast<double>(counts.both_known()) * smaller.resolution * smaller.resolution;
+      static_cast<double>(counts.both_known()) * smaller.known().resolution * smaller.known().resolution;
   assign_probabilities(result.hypotheses, result.features);
 
   if (swapped) {
@@ -218,19 +224,34 @@ MatchResult match_in_arena(const OccupancyGrid& fixed, const OccupancyGrid& movi
 }  // namespace
 
 MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options) {
-  validate(fixed);
-  validate(moving);
+  validate(options);
+  const auto start = std::chrono::steady_clock::now();
+  MatchResult result;
+  const PreparedMap prepared_fixed(fixed), prepared_moving(moving);
+  with_threads(options.threads, [&] { result = match(prepared_fixed, prepared_moving, options); });
+  result.seconds = seconds_since(start);
+  report(options, 1.0);
+  return result;
+}
+
+MatchResult match(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options) {
+  validate(options);
+  const auto start = std::chrono::steady_clock::now();
+  MatchResult result = match_in_arena(fixed, moving, options);
+  result.seconds = seconds_since(start);
+  return result;
+}
+
+void validate(const MatchOptions& options) {
   if (options.threads < 0) throw std::invalid_argument("threads must not be negative");
   if (!(options.accept_probability >= 0.0 && options.accept_probability <= 1.0)) {
     throw std::invalid_argument("accept_probability must lie in [0, 1]");
   }
-
-  const auto start = std::chrono::steady_clock::now();
-  MatchResult result;
-  with_threads(options.threads, [&] { result = match_in_arena(fixed, moving, options); });
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  report(options, 1.0);
-  return result;
+  const auto is_finite = [](const SE2& T) {
+    return std::isfinite(T.x) && std::isfinite(T.y) && std::isfinite(T.theta);
+  };
+  if (!std::all_of(options.guesses.begin(), options.guesses.end(), is_finite))
+    throw std::invalid_argument("guesses must be finite");
 }
 
 }  // namespace gridmerge

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/match/prepared_map.hpp"
 #include "gridmerge/match/verdict.hpp"
 
 namespace gridmerge {
@@ -22,6 +23,8 @@ struct MatchOptions {
   int threads = 0;                  ///< worker threads; 0 = one a core. The result does not depend on it.
   std::size_t max_hypotheses = 10;  ///< how many distinct hypotheses the result lists
   double accept_probability = 0.8;  ///< the verdict is `accepted` from this probability on
+  /// Poses T_fixed_moving that are tried beside those of the search, as if it had found them.
+  std::vector<SE2> guesses;
   /// Called now and then with the share of the work that is done, in [0, 1]; never from two threads at once.
   std::function<void(double)> progress;
 };
@@ -43,5 +46,12 @@ struct MatchResult {
 /// Finds how `moving` lies on `fixed`, searching every pose, and says whether to believe it.
 /// Throws std::invalid_argument for an invalid grid or option (see validate()).
 MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options = {});
+
+/// The same of maps that are matched with several others. Runs in the calling TBB arena, for which
+/// `options.threads` changes nothing; may be called by several threads at once.
+MatchResult match(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options = {});
+
+/// Throws std::invalid_argument for options that make no sense.
+void validate(const MatchOptions& options);
 
 }  // namespace gridmerge
