@@ -45,6 +45,12 @@ Evaluation evaluate_files(const EvaluateCommandOptions& options) {
   if (!options.features.empty()) try_output_file(options.features, inputs);
   EvaluateOptions engine;
   engine.matcher = PairMatcher(options.common, options.search);
+  engine.merger = [&](const std::vector<OccupancyGrid>& maps) {
+    if (options.search.up_the_tree()) return merge_up_tree(maps, engine.matcher);
+    MergeOptions joint;
+    joint.match = match_options(options.common, options.search);
+    return merge(maps, joint);
+  };
   engine.progress = [&](std::size_t done, std::size_t total) {
     console.progress(static_cast<double>(done) / static_cast<double>(total));
   };
@@ -84,6 +90,7 @@ void add_evaluate(CLI::App& app, Action& action) {
                    "Write what each verdict rests on to this file (TSV), one line a match")
       ->type_name("FILE");
   add_search_options(*command, options->search);
+  add_strategy_option(*command, options->search);
   add_common_options(*command, options->common);
   command->footer(
       "At least one of the three tables is needed; maps are named relative to the table. Tables are\n"

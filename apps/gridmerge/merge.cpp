@@ -13,8 +13,10 @@
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"
+#include "known_poses.hpp"
 #include "search_options.hpp"
 
 namespace gridmerge::cli {
@@ -28,6 +30,7 @@ struct MergeCommandOptions {
   double resolution = 0.0;
   double output_resolution = 0.0;
   SearchOptions search;
+  KnownPoseOptions known;
 };
 
 struct Inputs {
@@ -45,13 +48,8 @@ Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
   return inputs;
 }
 
-MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeCommandOptions& options,
-                       PairMatcher& matcher, Console& console) {
-  MergeOptions engine;
-  engine.resolution = options.output_resolution;
-  engine.progress = [&](std::size_t done, std::size_t total) {
-    console.progress(static_cast<double>(done) / static_cast<double>(total));
-  };
+MergeResult merge_up_tree_named(const std::vector<OccupancyGrid>& maps, const MergeCommandOptions& options,
+                                PairMatcher& matcher, const TreeOptions& engine) {
   const auto match_named = [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
     try {
       return matcher(fixed, moving);
@@ -59,8 +57,22 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeComman
       throw std::runtime_error(fmt::format("{}: {}", fmt::join(options.maps, ", "), error.what()));
     }
   };
+  return merge_up_tree(maps, match_named, engine);
+}
+
+MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeCommandOptions& options,
+                       PairMatcher& matcher, Console& console) {
+  const auto progress = [&](std::size_t done, std::size_t total) {
+    console.progress(static_cast<double>(done) / static_cast<double>(total));
+  };
   try {
-    return merge(maps, engine, match_named);
+    if (options.search.up_the_tree())
+      return merge_up_tree_named(maps, options, matcher, {options.output_resolution, progress});
+    MergeOptions engine;
+    engine.match = match_options(options.common, options.search);
+    engine.resolution = options.output_resolution;
+    engine.progress = progress;
+    return merge(maps, engine, load_known_poses(options.known, options.maps));
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one
     throw FileError(options.output, error.what());
   }
@@ -71,8 +83,8 @@ std::string describe_joins(const MergeCommandOptions& options, const MergeResult
   const char* figure = options.search.random_walk() ? "acceptance index" : "probability";
   std::string text;
   for (const Join& join : result.joins) {
-    fmt::format_to(std::back_inserter(text), "{:<8} {} {:.4f}, {:.3f} s: {} and {}\n",
-                   name_of(join.match.verdict), figure, join.match.probability, join.match.seconds,
+    fmt::format_to(std::back_inserter(text), "{:<8} {} {:.4f}, {:.3f} s: {} and {}\n", name_of(join.outcome),
+                   figure, join.probability, join.match.seconds,
                    escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
   }
   return text;
@@ -140,7 +152,9 @@ void add_merge(CLI::App& app, Action& action) {
                    "Metres a cell of the merged map; without it the finest of the maps'")
       ->type_name("METRES")
       ->check(kMetresPerCell);
+  add_known_pose_options(*command, options->known);
   add_search_options(*command, options->search);
+  add_strategy_option(*command, options->search);
   add_trace_option(*command, options->search);
   add_resolution_option(*command, options->resolution);
   add_common_options(*command, options->common);

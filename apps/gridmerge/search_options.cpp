@@ -68,6 +68,8 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
           ->capture_default_str();
   command.parse_complete_callback([&options, c_lock, restarts, temperature, seed] {
     if (options.random_walk()) {
+      if (!options.up_the_tree())
+        throw CLI::ValidationError("--strategy", "joint needs several hypotheses a pair: --search exhaustive");
       if (options.restarts && static_cast<std::size_t>(*options.restarts) < options.c_locks.size())
         throw CLI::ValidationError("--restarts",
                                    "is less than the number of --c-lock, which are used in turn");
@@ -85,6 +87,22 @@ void add_trace_option(CLI::App& command, SearchOptions& options) {
       ->type_name("FILE");
 }
 
+void add_strategy_option(CLI::App& command, SearchOptions& options) {
+  command
+      .add_option("--strategy", options.strategy,
+                  "joint: what all pairs say together decides; tree: pairwise up a tree, as Birk & Carpin "
+                  "(2006). joint if not given, tree with --search random-walk")
+      ->type_name("STRATEGY")
+      ->check(CLI::IsMember({"joint", "tree"}));
+}
+
+MatchOptions match_options(const CommonOptions& common, const SearchOptions& options) {
+  MatchOptions engine;
+  engine.threads = common.threads;
+  engine.accept_probability = options.accept_from();
+  return engine;
+}
+
 PairMatcher::PairMatcher(const CommonOptions& common, SearchOptions options,
                          std::function<void(double)> progress)
     : common_(common), options_(std::move(options)), progress_(std::move(progress)), trace_(kTraceHead) {}
@@ -92,9 +110,7 @@ PairMatcher::PairMatcher(const CommonOptions& common, SearchOptions options,
 MatchResult PairMatcher::operator()(const OccupancyGrid& fixed, const OccupancyGrid& moving) {
   ++matches_;
   if (!options_.random_walk()) {
-    MatchOptions engine;
-    engine.threads = common_.threads;
-    engine.accept_probability = options_.accept_from();
+    MatchOptions engine = match_options(common_, options_);
     engine.progress = progress_;
     return match(fixed, moving, engine);
   }

@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "gridmerge/match/match.hpp"
 #include "gridmerge/match/random_walk_match.hpp"
-#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/tree.hpp"
 #include "options.hpp"
 
 namespace gridmerge::cli {
@@ -23,9 +24,12 @@ struct SearchOptions {
   double temperature = 0.0;
   std::uint64_t seed = 1;
   std::string trace;
+  std::optional<std::string> strategy;  // how several maps are merged
 
   bool random_walk() const { return method == "random-walk"; }
   double accept_from() const;
+  /// Up the paper's tree; it is the random walk's way if none is asked for.
+  bool up_the_tree() const { return strategy ? *strategy == "tree" : random_walk(); }
 };
 
 /// --search and what belongs to it. Options of the random walk without it are a usage error.
@@ -33,6 +37,12 @@ void add_search_options(CLI::App& command, SearchOptions& options);
 
 /// --trace: needs add_search_options() of the same command.
 void add_trace_option(CLI::App& command, SearchOptions& options);
+
+/// --strategy: needs add_search_options() of the same command.
+void add_strategy_option(CLI::App& command, SearchOptions& options);
+
+/// The options of joint merging and of matching every pair, as the command line gives them.
+MatchOptions match_options(const CommonOptions& common, const SearchOptions& options);
 
 /// Matches pairs as the options say, and keeps the walks' traces if they are asked for.
 class PairMatcher {

@@ -14,7 +14,7 @@
 #include "gridmerge/evaluate/displacement.hpp"
 #include "gridmerge/io/atomic_file.hpp"
 #include "gridmerge/match/random_walk_match.hpp"
-#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/tree.hpp"
 #include "maps.hpp"
 
 namespace {
@@ -172,7 +172,7 @@ std::string merge_all(const std::vector<RobotMap>& robots) {
       "| method | components | maps placed | of them right | seconds |\n|---|---|---|---|---|\n";
   const auto add = [&](const std::string& method, const Matcher& matcher) {
     double seconds = 0.0;
-    const MergeResult result = merge(maps, {}, [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+    const MergeResult result = merge_up_tree(maps, [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
       MatchResult match = matcher(fixed, moving);
       seconds += match.seconds;
       return match;

@@ -24,6 +24,9 @@ class Evaluator {
         return match(fixed, moving);
       };
     }
+    if (!options_.merger) {
+      options_.merger = [](const std::vector<OccupancyGrid>& grids) { return merge(grids); };
+    }
   }
 
   MatchOutcome evaluate_pair(const TruePair& pair) {
@@ -54,7 +57,7 @@ class Evaluator {
       moments.push_back(map.moments);
     }
     try {
-      return judge_set(set, moments, merge(grids, {}, options_.matcher));
+      return judge_set(set, moments, options_.merger(grids));
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error("set " + set.name + ": " + error.what());
     }

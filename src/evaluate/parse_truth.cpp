@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "text_table.hpp"
+#include "gridmerge/io/text_table.hpp"
 
 namespace gridmerge {
 

@@ -21,6 +21,13 @@ Json transform_of(const SE2& T) {
   return {{"x", number(T.x)}, {"y", number(T.y)}, {"theta", number(T.theta)}};
 }
 
+Json member_json(const std::string& name, const Member& member) {
+  Json json{{"source", name}, {"transform", transform_of(member.T_component_map)}};
+  if (member.probability) json["probability"] = number(*member.probability);
+  if (member.sd) json["sd"] = {{"position", number(member.sd->position)}, {"theta", number(member.sd->theta)}};
+  return json;
+}
+
 std::string text_of(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -54,8 +61,7 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     Json members = Json::array();
     for (const Member& member : result.components[i].members) {
-      members.push_back(
-          {{"source", names.at(member.map)}, {"transform", transform_of(member.T_component_map)}});
+      members.push_back(member_json(names.at(member.map), member));
     }
     components.push_back({{"map", component_file(i)}, {"members", std::move(members)}});
   }
@@ -63,14 +69,19 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
   for (const Join& join : result.joins) {
     joins.push_back({{"fixed", names.at(join.fixed)},
                      {"moving", names.at(join.moving)},
-                     {"transform", transform_of(join.match.T_fixed_moving)},
-                     {"verdict", name_of(join.match.verdict)},
-                     {"probability", number(join.match.probability)}});
+                     {"transform", transform_of(join.T_fixed_moving)},
+                     {"verdict", join.used() ? "accepted" : "refused"},
+                     {"probability", number(join.probability)},
+                     {"outcome", name_of(join.outcome)}});
   }
   Json left_out = Json::array();
   for (const std::size_t map : result.left_out) left_out.push_back(names.at(map));
-  const Json json{
-      {"components", std::move(components)}, {"joins", std::move(joins)}, {"left_out", std::move(left_out)}};
+  Json reasons = Json::array();
+  for (const Reason reason : result.left_out_reasons) reasons.push_back(name_of(reason));
+  const Json json{{"components", std::move(components)},
+                  {"joins", std::move(joins)},
+                  {"left_out", std::move(left_out)},
+                  {"left_out_reasons", std::move(reasons)}};
   return text_of(json, 2);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge::test {
 
@@ -21,10 +21,15 @@ inline MergeResult merged(const std::vector<OccupancyGrid>& maps,
       joined[member.map] = true;
     }
     for (std::size_t i = 1; i < members.size(); ++i) {
-      Join join{members[0].map, members[i].map, {}};
+      Join join;
+      join.fixed = members[0].map;
+      join.moving = members[i].map;
       join.match.verdict = Verdict::accepted;
       join.match.probability = 0.75;
       join.match.T_fixed_moving = members[i].T_component_map;
+      join.outcome = JoinOutcome::accepted;
+      join.T_fixed_moving = join.match.T_fixed_moving;
+      join.probability = join.match.probability;
       result.joins.push_back(join);
     }
     result.components.push_back({members, fuse(inputs, maps[members[0].map].resolution)});

@@ -8,7 +8,7 @@
 
 #include "gridmerge/evaluate/displacement.hpp"
 #include "gridmerge/evaluate/evaluate.hpp"
-#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
 

@@ -10,6 +10,7 @@
 
 #include "gridmerge/evaluate/truth.hpp"
 #include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/tree.hpp"
 
 namespace gridmerge {
 
@@ -21,8 +22,10 @@ struct Truth {
 };
 
 struct EvaluateOptions {
-  /// How two maps are compared, by themselves and in sets; match() as it is, if empty.
+  /// How two maps are compared; match() as it is, if empty.
   Matcher matcher;
+  /// How the maps of a set are merged; merge() as it is, if empty.
+  std::function<MergeResult(const std::vector<OccupancyGrid>&)> merger;
   /// How much of the maps of pairs and negatives is kept in memory, those used last first [bytes].
   std::size_t cache_bytes = std::size_t{96} << 20;
   /// Called with the number of finished and of all pairs, negatives and sets.

@@ -3,66 +3,43 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/merge/fuse.hpp"
+#include "gridmerge/merge/known_pose.hpp"
+#include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
 
 struct MergeOptions {
-  MatchOptions match;       ///< how each pair is matched; its progress callback is not used
+  /// How each pair is matched, and from which probability on maps are joined; its progress callback and its
+  /// guesses are not used.
+  MatchOptions match;
   double resolution = 0.0;  ///< of the merged maps [m]; 0 = the finest among a map's inputs
-  /// Called after every comparison with the number of finished ones and of those to be expected in all if
-  /// nothing more joined (a join changes the latter), from the calling thread.
+  /// Called with the numbers of pairs that are matched and to be matched, never from two threads at once.
   std::function<void(std::size_t, std::size_t)> progress;
 };
 
-/// A comparison that was made between two groups of maps, said of one map of each: the first of its group.
-struct Join {
-  std::size_t fixed = 0;   ///< index of the input map
-  std::size_t moving = 0;  ///< index of the input map
-  MatchResult match;       ///< T_fixed_moving between the frames of these two input maps
-};
-
-struct Member {
-  std::size_t map = 0;  ///< index of the input map
-  SE2 T_component_map;  ///< takes the map's frame to the component's
-};
-
-/// Maps that were joined. The component's frame is the map frame of its first member.
-struct Component {
-  std::vector<Member> members;
-  FusedMap fused;
-};
-
-struct MergeResult {
-  std::vector<Component> components;  ///< of two or more maps each, most members first
-  std::vector<Join> joins;            ///< every comparison made, accepted or refused, in the order made
-  std::vector<std::size_t> left_out;  ///< maps that joined nothing, ascending
-};
-
-/// How two grids are compared: what merge() asks of match().
-using Matcher = std::function<MatchResult(const OccupancyGrid& fixed, const OccupancyGrid& moving)>;
-
-/// Merges `maps` pairwise up a binary tree (Birk & Carpin 2006): (0 + 1), (2 + 3), then their results.
+/// Merges `maps` by what all pairs of them say together.
 ///
-/// At every node of the tree all groups of maps below it are tried against each other until nothing more
-/// joins, the group with the lowest map first and as the fixed one. Groups that are refused stay apart and
-/// are tried again further up, with groups that they have not met; the very same two groups are never
-/// compared twice. A group of several maps is compared as the fusion of the original maps at their poses,
-/// never as a fusion of fusions, and is fused once more at the end. No map gives an empty result, one map is
-/// left out.
+/// Every pair is matched, and all hypotheses are kept. The arrangement of all maps that they speak for most is
+/// chosen (see arrange()): a weak pair that agrees with the others is used, a strong one that contradicts them
+/// is not. Then all poses are adjusted together, to what the pairs and the maps' walls say (robust least
+/// squares), and the maps of each component are fused in one pass. Maps that nothing joins surely enough are
+/// left out; groups between which nothing is sure are components of their own.
 ///
-/// The result does not depend on the number of threads; the order of the maps decides the order of the
-/// comparisons. Throws std::invalid_argument for an invalid grid or option, naming the map by its index, and
-/// when a merged map would exceed 2^28 cells.
-/// At most (k - 1)^2 comparisons for k maps, k * (k - 1) / 2 when nothing joins.
-MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {});
-
-/// The same with another way to compare two grids; `options.match` is not used.
-MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
-                  const Matcher& matcher);
+/// `known_poses[i]`, where there is one, is what is known of map i beforehand; it may be shorter than `maps`.
+/// Known poses of two maps that are not fixed speak for joining them so, as one more strong hypothesis; the
+/// poses of fixed maps are not changed, and the component that holds one has the world's frame. With no fixed
+/// map in it a component has the frame of its first member.
+///
+/// The result does not depend on the number of threads, nor on the order of the maps, but that the frame of a
+/// component is its first member's and `joins` are in the order (0, 1), (0, 2), ... Throws
+/// std::invalid_argument for an invalid grid, option or known pose, naming the map by its index, and when a
+/// merged map would exceed 2^28 cells. k * (k - 1) / 2 matches for k maps.
+MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
+                  const std::vector<std::optional<KnownPose>>& known_poses = {});
 
 }  // namespace gridmerge

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gridmerge/io/file_error.hpp"
-#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/tree.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "joins.hpp"
 
 namespace gridmerge {
 
@@ -26,9 +28,9 @@ struct Group {
 /// The groups of maps on their way up the tree.
 class PairwiseTree {
  public:
-  PairwiseTree(const std::vector<OccupancyGrid>& maps, const MergeOptions& options, const Matcher& matcher)
-      : maps_(maps), options_(options), matcher_(matcher) {
-    for (std::size_t map = 0; map < maps.size(); ++map) groups_.push_back({{{map, {}}}, std::nullopt});
+  PairwiseTree(const std::vector<OccupancyGrid>& maps, const Matcher& matcher, const TreeOptions& options)
+      : maps_(maps), matcher_(matcher), options_(options) {
+    for (std::size_t map = 0; map < maps.size(); ++map) groups_.push_back({{Member{map, {}}}, std::nullopt});
   }
 
   void climb() {
@@ -47,6 +49,7 @@ class PairwiseTree {
     for (Group& group : groups_) {
       if (group.members.size() == 1) {
         result.left_out.push_back(group.first());
+        result.left_out_reasons.push_back(why_left_out(result.joins, group.first()));
       } else {
         FusedMap fused =
             fuse(placed(group), options_.resolution > 0.0 ? options_.resolution : finest(group.members));
@@ -79,9 +82,9 @@ class PairwiseTree {
   bool compare(std::size_t fixed, std::size_t moving) {
     Group& fixed_group = groups_[fixed];
     Group& moving_group = groups_[moving];
-    Join join{fixed_group.first(), moving_group.first(),
-              matcher_(grid_of(fixed_group), grid_of(moving_group))};
-    const bool accepted = join.match.verdict == Verdict::accepted;
+    Join join = make_join(fixed_group.first(), moving_group.first(),
+                          matcher_(grid_of(fixed_group), grid_of(moving_group)));
+    const bool accepted = join.used();
     if (accepted) {
       absorb(fixed, moving, join.match.T_fixed_moving);
     } else {
@@ -100,7 +103,7 @@ class PairwiseTree {
     });
     Group joined{std::move(groups_[fixed].members), std::nullopt};
     for (const Member& member : groups_[moving].members) {
-      joined.members.push_back({member.map, T_fixed_moving * member.T_component_map});
+      joined.members.push_back(Member{member.map, T_fixed_moving * member.T_component_map});
     }
     std::sort(joined.members.begin(), joined.members.end(),
               [](const Member& a, const Member& b) { return a.map < b.map; });
@@ -129,41 +132,19 @@ class PairwiseTree {
   }
 
   const std::vector<OccupancyGrid>& maps_;
-  const MergeOptions& options_;
   const Matcher& matcher_;
+  const TreeOptions& options_;
   std::vector<Group> groups_;  // ascending by first member
   std::set<Pair> refused_;     // two groups that exist, by their first members, the lower one first
   std::vector<Join> joins_;
 };
 
-void validate_maps(const std::vector<OccupancyGrid>& maps) {
-  for (std::size_t i = 0; i < maps.size(); ++i) {
-    try {
-      validate(maps[i]);
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("map " + std::to_string(i) + ": " + error.what());
-    }
-  }
-}
-
 }  // namespace
 
-MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options) {
-  MatchOptions match_options = options.match;
-  match_options.progress = nullptr;
-  return merge(maps, options, [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
-    return match(fixed, moving, match_options);
-  });
-}
-
-MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
-                  const Matcher& matcher) {
-  if (!std::isfinite(options.resolution) || options.resolution < 0.0) {
-    throw std::invalid_argument(
-        "the merged map's resolution must be a positive number of metres, or 0 for the finest");
-  }
-  validate_maps(maps);
-  PairwiseTree tree(maps, options, matcher);
+MergeResult merge_up_tree(const std::vector<OccupancyGrid>& maps, const Matcher& matcher,
+                          const TreeOptions& options) {
+  validate_merge(maps, options.resolution);
+  PairwiseTree tree(maps, matcher, options);
   tree.climb();
   return tree.result();
 }

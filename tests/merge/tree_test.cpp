@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/tree.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -51,10 +51,10 @@ class World {
   }
 
   /// Merges all maps; `fits` says whether two groups are accepted. Checks what must hold whatever it says.
-  MergeResult merge_if(const std::function<bool(const Maps&, const Maps&)>& fits, MergeOptions options = {}) {
+  MergeResult merge_if(const std::function<bool(const Maps&, const Maps&)>& fits, TreeOptions options = {}) {
     comparisons.clear();
     const MergeResult result =
-        merge(maps_, options, [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+        merge_up_tree(maps_, [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
           comparisons.emplace_back(maps_in(fixed), maps_in(moving));
           MatchResult match;
           match.verdict = fits(maps_in(fixed), maps_in(moving)) ? Verdict::accepted : Verdict::refused;
@@ -63,7 +63,7 @@ class World {
                                      ? T(*maps_in(fixed).begin(), *maps_in(moving).begin())
                                      : SE2{99.0, 99.0, 1.0};
           return match;
-        });
+        }, options);
     check(result);
     return result;
   }
@@ -112,18 +112,18 @@ bool never(const Maps&, const Maps&) {
   return false;
 }
 
-TEST(Merge, OfNothingIsNothing) {
+TEST(MergeUpTree, OfNothingIsNothing) {
   const MergeResult result = World(0).merge_if(always);
   EXPECT_TRUE(result.components.empty() && result.joins.empty() && result.left_out.empty());
 }
 
-TEST(Merge, OneMapIsLeftOut) {
+TEST(MergeUpTree, OneMapIsLeftOut) {
   const MergeResult result = World(1).merge_if(always);
   EXPECT_TRUE(result.components.empty() && result.joins.empty());
   EXPECT_EQ(result.left_out, std::vector<std::size_t>{0});
 }
 
-TEST(Merge, TwoMapsThatFit) {
+TEST(MergeUpTree, TwoMapsThatFit) {
   const MergeResult result = World(2).merge_if(always);
   ASSERT_EQ(result.components.size(), 1u);
   EXPECT_EQ(result.joins.size(), 1u);
@@ -131,7 +131,7 @@ TEST(Merge, TwoMapsThatFit) {
   EXPECT_TRUE(result.left_out.empty());
 }
 
-TEST(Merge, TwoMapsThatDoNotFit) {
+TEST(MergeUpTree, TwoMapsThatDoNotFit) {
   const MergeResult result = World(2).merge_if(never);
   EXPECT_TRUE(result.components.empty());
   ASSERT_EQ(result.joins.size(), 1u);
@@ -139,7 +139,7 @@ TEST(Merge, TwoMapsThatDoNotFit) {
   EXPECT_EQ(result.left_out, (std::vector<std::size_t>{0, 1}));
 }
 
-TEST(Merge, ClimbsABinaryTree) {
+TEST(MergeUpTree, ClimbsABinaryTree) {
   World world(5);
   const MergeResult result = world.merge_if(always);
   EXPECT_EQ(world.comparisons, (Sequence{{{0}, {1}}, {{2}, {3}}, {{0, 1}, {2, 3}}, {{0, 1, 2, 3}, {4}}}));
@@ -147,13 +147,13 @@ TEST(Merge, ClimbsABinaryTree) {
   EXPECT_EQ(result.components[0].members.size(), 5u);
 }
 
-TEST(Merge, TriesEveryPairOnceWhenNothingFits) {
+TEST(MergeUpTree, TriesEveryPairOnceWhenNothingFits) {
   World world(5);
   EXPECT_EQ(world.merge_if(never).left_out.size(), 5u);
   EXPECT_EQ(world.comparisons.size(), 10u);
 }
 
-TEST(Merge, AMapThatIsRefusedJoinsLaterWhenItsNeighbourHas) {
+TEST(MergeUpTree, AMapThatIsRefusedJoinsLaterWhenItsNeighbourHas) {
   World world(3);  // a row of rooms in the order 0, 2, 1: 1 does not fit 0 alone
   const auto fits = [](const Maps& a, const Maps& b) { return a.contains(2) || b.contains(2); };
   const MergeResult result = world.merge_if(fits);
@@ -162,7 +162,7 @@ TEST(Merge, AMapThatIsRefusedJoinsLaterWhenItsNeighbourHas) {
   EXPECT_TRUE(result.left_out.empty());
 }
 
-TEST(Merge, AGroupThatWasRefusedIsTriedAgainWhenItHasGrown) {
+TEST(MergeUpTree, AGroupThatWasRefusedIsTriedAgainWhenItHasGrown) {
   // 3 fits nothing until 0, 1 and 2 are one: it is refused below as itself, and by each of the smaller
   // groups.
   World world(4);
@@ -174,7 +174,7 @@ TEST(Merge, AGroupThatWasRefusedIsTriedAgainWhenItHasGrown) {
   EXPECT_TRUE(result.left_out.empty());
 }
 
-TEST(Merge, TwoBuildingsAreTwoComponentsAndAStrangerIsLeftOut) {
+TEST(MergeUpTree, TwoBuildingsAreTwoComponentsAndAStrangerIsLeftOut) {
   World world(7);
   const auto building = [](const Maps& maps) {
     return *maps.begin() == 5 ? 2 : *maps.begin() % 3 == 0 && *maps.begin() < 6 ? 0 : 1;
@@ -189,21 +189,21 @@ TEST(Merge, TwoBuildingsAreTwoComponentsAndAStrangerIsLeftOut) {
   EXPECT_EQ(result.left_out, std::vector<std::size_t>{5});
 }
 
-TEST(Merge, SingleMapsAreComparedAsTheyCame) {
+TEST(MergeUpTree, SingleMapsAreComparedAsTheyCame) {
   World world(2);
-  merge(world.maps(), {}, [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+  merge_up_tree(world.maps(), [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
     EXPECT_EQ(&fixed, &world.maps()[0]);
     EXPECT_EQ(&moving, &world.maps()[1]);
     return MatchResult{};
   });
 }
 
-TEST(Merge, GroupsAreComparedAsTheFusionOfTheOriginals) {
+TEST(MergeUpTree, GroupsAreComparedAsTheFusionOfTheOriginals) {
   // Fused twice, the wall that 1, 2 and 3 do not see would have another probability.
   std::vector<OccupancyGrid> maps(5, map_from({"."}));
   maps[0] = map_from({"#"});
   maps[4] = map_from({"#."});
-  const MergeResult result = merge(maps, {}, [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+  const MergeResult result = merge_up_tree(maps, [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
     if (moving.width == 2) {
       const FusedMap expected = fuse({{&maps[0], {}}, {&maps[1], {}}, {&maps[2], {}}, {&maps[3], {}}}, 1.0);
       EXPECT_EQ(fixed.probability, expected.grid.probability);
@@ -218,17 +218,17 @@ TEST(Merge, GroupsAreComparedAsTheFusionOfTheOriginals) {
   EXPECT_EQ(result.components[0].fused.grid.probability, fuse(inputs, 1.0).grid.probability);
 }
 
-TEST(Merge, TheSameMapTwiceIsOneMapSeenTwice) {
+TEST(MergeUpTree, TheSameMapTwiceIsOneMapSeenTwice) {
   const OccupancyGrid map = map_from({"#..", ".##"}, 0.05, {1.0, 2.0, 0.4});
   MatchResult same;
   same.verdict = Verdict::accepted;
-  const MergeResult result = merge({map, map}, {}, [&](const auto&, const auto&) { return same; });
+  const MergeResult result = merge_up_tree({map, map}, [&](const auto&, const auto&) { return same; });
   ASSERT_EQ(result.components.size(), 1u);
   EXPECT_EQ(result.components[0].fused.conflicting, 0u);
   EXPECT_EQ(result.components[0].fused.agreeing, count_cells(result.components[0].fused.grid).known());
 }
 
-TEST(Merge, ResolutionIsTheFinestOfTheMembersOrTheOneAskedFor) {
+TEST(MergeUpTree, ResolutionIsTheFinestOfTheMembersOrTheOneAskedFor) {
   std::vector<OccupancyGrid> maps{make_grid(8, 8, 0.1, {}, Cell::free), make_grid(8, 8, 0.2, {}, Cell::free),
                                   make_grid(8, 8, 0.05, {}, Cell::free)};
   const Matcher matcher = [](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
@@ -237,15 +237,15 @@ TEST(Merge, ResolutionIsTheFinestOfTheMembersOrTheOneAskedFor) {
         fixed.resolution == 0.05 || moving.resolution == 0.05 ? Verdict::refused : Verdict::accepted;
     return match;
   };
-  EXPECT_EQ(merge(maps, {}, matcher).components.at(0).fused.grid.resolution, 0.1);
-  MergeOptions options;
+  EXPECT_EQ(merge_up_tree(maps, matcher).components.at(0).fused.grid.resolution, 0.1);
+  TreeOptions options;
   options.resolution = 0.4;
-  EXPECT_EQ(merge(maps, options, matcher).components.at(0).fused.grid.resolution, 0.4);
+  EXPECT_EQ(merge_up_tree(maps, matcher, options).components.at(0).fused.grid.resolution, 0.4);
 }
 
-TEST(Merge, ReportsProgress) {
+TEST(MergeUpTree, ReportsProgress) {
   std::vector<std::pair<std::size_t, std::size_t>> reports;
-  MergeOptions options;
+  TreeOptions options;
   options.progress = [&](std::size_t done, std::size_t expected) { reports.emplace_back(done, expected); };
   using Reports = decltype(reports);
   World(4).merge_if(never, options);
@@ -255,27 +255,27 @@ TEST(Merge, ReportsProgress) {
   EXPECT_EQ(reports, (Reports{{1, 4}, {2, 3}, {3, 3}}));
 }
 
-TEST(Merge, NamesTheInvalidMap) {
+TEST(MergeUpTree, NamesTheInvalidMap) {
   std::vector<OccupancyGrid> maps = World(3).maps();
   maps[2].resolution = -1.0;
   try {
-    merge(maps);
+    merge_up_tree(maps, [](const auto&, const auto&) { return MatchResult{}; });
     FAIL() << "must throw";
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("map 2: "), std::string::npos) << error.what();
   }
 }
 
-TEST(Merge, RefusesAnInvalidResolution) {
+TEST(MergeUpTree, RefusesAnInvalidResolution) {
   for (const double resolution : {-1.0, std::nan(""), HUGE_VAL}) {
-    MergeOptions options;
+    TreeOptions options;
     options.resolution = resolution;
-    EXPECT_THROW(merge({}, options), std::invalid_argument) << resolution;
+    EXPECT_THROW(merge_up_tree({}, [](const auto&, const auto&) { return MatchResult{}; }, options), std::invalid_argument) << resolution;
   }
 }
 
 // Two groups fit when a map of one and a map of the other do. Then what is joined must be what is connected.
-RC_GTEST_PROP(Merge, FindsTheConnectedComponents, ()) {
+RC_GTEST_PROP(MergeUpTree, FindsTheConnectedComponents, ()) {
   const auto size = static_cast<std::size_t>(*rc::gen::inRange(1, 10));
   const auto density = *rc::gen::inRange(0, 100);
   std::mt19937 random(*rc::gen::arbitrary<unsigned>());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "text_table.hpp"
+#include "gridmerge/io/text_table.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "gridmerge/grid/se2.hpp"
+#include "gridmerge/merge/coverage.hpp"
+
+namespace gridmerge {
+
+/// One way in which two maps may lie, from what they say of each other alone.
+struct CandidateJoin {
+  SE2 T_fixed_moving;     ///< between the map frames
+  double log_odds = 0.0;  ///< of being true against none of the pair's candidates being true [nats]
+  double sd = 1.0;        ///< if it is true: standard deviation of the displacement from the true pose [m]
+};
+
+/// The candidates of two maps.
+struct PairCandidates {
+  std::size_t fixed = 0;  ///< index of the map, less than `moving`
+  std::size_t moving = 0;
+  std::vector<CandidateJoin> candidates;  ///< distinct; none if nothing speaks for the pair
+};
+
+/// All that is known of k maps.
+struct ArrangementProblem {
+  std::vector<MapExtent> maps;
+  std::vector<PairCandidates> pairs;  ///< at most one a pair of maps
+  /// Where each map knows anything; without it no two maps are thought to have anything in common, and every
+  /// pair is thought to speak of other places than the rest.
+  std::vector<const Coverage*> coverage;
+};
+
+struct PlacedNode {
+  std::size_t map = 0;
+  SE2 T_group_map;
+  double probability = 1.0;  ///< that the map lies there, given where the others of the group lie
+};
+
+/// Maps that lie together. The frame is that of the first.
+using NodeGroup = std::vector<PlacedNode>;
+
+/// A candidate that the arrangement agrees with.
+struct UsedCandidate {
+  std::size_t pair = 0;       ///< index into ArrangementProblem::pairs
+  std::size_t candidate = 0;  ///< index into its candidates
+};
+
+struct Arrangement {
+  std::vector<NodeGroup> groups;     ///< every map is in one; ascending by first map, maps ascending
+  std::vector<UsedCandidate> used;   ///< ascending by pair, at most one a pair
+};
+
+/// How far apart a pair's candidate and the poses of an arrangement may put the maps and still agree [m]:
+/// bent maps do not close a cycle exactly.
+double agreement_tolerance(const MapExtent& a, const MapExtent& b);
+
+/// Root mean square distance by which two poses of a moving map of this extent differ [m].
+double displacement(const MapExtent& moving, const SE2& a, const SE2& b);
+
+/// The arrangement of all maps that the candidates speak for most, as far as it can be believed.
+///
+/// To lie together so is worth to two groups of maps what the pairs across them say of it: the log odds of a
+/// candidate that agrees, and what it is worth that a pose which others chose is among the pair's few
+/// candidates; or, when none agrees, a loss that grows with how much the two maps would have in common. Less
+/// what choosing the pose is worth, once. So two maps alone are worth the log odds of their candidate, and in
+/// a cycle that closes every further pair adds. Pairs do not err independently, so each counts for less than
+/// the stronger ones; and where it is asked whether the groups belong together at all, rather than how they
+/// lie, a pair counts by the share of what its maps have in common of which no stronger pair has spoken: maps
+/// that look alike in one place agree with each other there however many they are.
+///
+/// Starting from single maps, the two groups whose join is most probable are joined, as long as it is at least
+/// `accept_probability`: against lying otherwise, and against not belonging together. Then every map is
+/// taken out and put where it is worth most, which takes back what was joined too early, until nothing
+/// changes. At last a group is cut where its two parts could not be joined as surely as asked for.
+///
+/// Deterministic; the order of maps and pairs plays no part, beyond which map a group's frame is that of.
+/// O(k^2) joins are weighed a round, k rounds.
+Arrangement arrange(const ArrangementProblem& problem, double accept_probability);
+
+}  // namespace gridmerge

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "gridmerge/grid/se2.hpp"
+#include "gridmerge/match/match.hpp"
+#include "gridmerge/merge/fuse.hpp"
+
+namespace gridmerge {
+
+/// What became of a comparison of two maps.
+enum class JoinOutcome {
+  refused,   ///< the maps are not said to lie so, by themselves or with the others
+  accepted,  ///< believed by itself, and nothing that the other maps say contradicts it
+  rescued,   ///< too weak to be believed by itself, but it agrees with what the other maps say
+  rejected,  ///< would be believed by itself, but contradicts what the other maps say
+};
+
+/// As outputs spell it: "refused", "accepted", "rescued", "rejected".
+const char* name_of(JoinOutcome outcome);
+
+/// A comparison of two maps, or up the tree of two groups of maps: then said of the first map of each.
+struct Join {
+  std::size_t fixed = 0;   ///< index of the input map
+  std::size_t moving = 0;  ///< index of the input map
+  MatchResult match;       ///< T_fixed_moving between the frames of these two input maps
+  JoinOutcome outcome = JoinOutcome::refused;
+  SE2 T_fixed_moving;        ///< the hypothesis that was used, or the best one of a join that was not
+  double probability = 0.0;  ///< of that hypothesis, from these two maps alone
+
+  /// Whether the maps lie so in the result.
+  bool used() const { return outcome == JoinOutcome::accepted || outcome == JoinOutcome::rescued; }
+};
+
+/// How well a pose is known.
+struct PoseDeviation {
+  double position = 0.0;  ///< standard deviation of the middle of the map's known cells [m]
+  double theta = 0.0;     ///< standard deviation of the direction [rad]
+};
+
+struct Member {
+  std::size_t map = 0;  ///< index of the input map
+  SE2 T_component_map;  ///< takes the map's frame to the component's
+  /// That the map lies where it is said to, with all that the other maps say of it. The tree does not know.
+  std::optional<double> probability = {};
+  /// Relative to what holds the component's frame, which has none. The tree does not know.
+  std::optional<PoseDeviation> sd = {};
+};
+
+/// Maps that were joined. The component's frame is the map frame of its first member, unless poses are fixed
+/// (see KnownPose).
+struct Component {
+  std::vector<Member> members;  ///< ascending
+  FusedMap fused;
+};
+
+struct MergeResult {
+  std::vector<Component> components;  ///< of two or more maps each, most members first
+  std::vector<Join> joins;            ///< every comparison made, whatever its outcome
+  std::vector<std::size_t> left_out;  ///< maps that joined nothing, ascending
+  std::vector<Reason> left_out_reasons;  ///< why, one for each that was left out
+};
+
+}  // namespace gridmerge

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gridmerge/merge/merge.hpp"
+
+namespace gridmerge {
+
+/// merge() for maps that come one after the other, or grow: pairs that have not changed are not matched again.
+/// The result is the same as that of merge() with all the maps that are in it, in the order in which they were
+/// added.
+class Merger {
+ public:
+  using MapId = std::size_t;
+
+  /// Throws std::invalid_argument for invalid options.
+  explicit Merger(MergeOptions options = {});
+  ~Merger();
+  Merger(Merger&&) noexcept;
+  Merger& operator=(Merger&&) noexcept;
+
+  /// Takes in one more map, with what is known of its pose; nothing is matched before result(). Throws
+  /// std::invalid_argument for an invalid map or pose, and is then as before.
+  MapId add(OccupancyGrid map, std::optional<KnownPose> known_pose = {});
+
+  /// Another map in the place of one that was added: of the same robot, later. Throws std::out_of_range for an
+  /// unknown id, and as add().
+  void update(MapId id, OccupancyGrid map);
+
+  /// What is known of a map's pose. Throws as update().
+  void set_known_pose(MapId id, std::optional<KnownPose> known_pose);
+
+  /// Throws std::out_of_range for an unknown id.
+  void remove(MapId id);
+
+  /// The maps that are in it, in the order in which they were added: MergeResult speaks of them by their place
+  /// in this list.
+  std::vector<MapId> maps() const;
+
+  /// Matches the pairs that are new or have changed, and merges. Throws std::invalid_argument when a merged map
+  /// would exceed 2^28 cells.
+  MergeResult result();
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace gridmerge

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/io/initial_poses.hpp"
+
+#include <algorithm>
+
+#include "file_reader.hpp"
+#include "gridmerge/io/text_table.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{16} << 20;  // bounds what a wrong argument makes us read
+
+double deviation(const TextTable& table, std::size_t row, std::string_view column, double usual) {
+  if (!table.has(column)) return usual;
+  const double value = table.number(row, column);
+  if (value <= 0.0) table.fail(row, std::string(column) + " must be positive");
+  return value;
+}
+
+}  // namespace
+
+std::vector<InitialPose> parse_initial_poses(const std::filesystem::path& path, std::string_view text) {
+  const TextTable table(path, text, {"map", "x", "y", "theta"}, {"sd", "sd_theta"});
+  std::vector<InitialPose> poses;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    InitialPose pose;
+    pose.name = table.text(row, "map");
+    if (pose.name.find('\0') != std::string::npos) table.fail(row, "map holds a NUL character");
+    const bool is_known = std::any_of(poses.begin(), poses.end(),
+                                      [&](const InitialPose& other) { return other.name == pose.name; });
+    if (is_known) table.fail(row, "names '" + pose.name + "' a second time");
+    pose.path = path.parent_path() / pose.name;
+    pose.T_world_map = {table.number(row, "x"), table.number(row, "y"),
+                        normalize_angle(table.number(row, "theta"))};
+    pose.sd = deviation(table, row, "sd", pose.sd);
+    pose.sd_theta = deviation(table, row, "sd_theta", pose.sd_theta);
+    poses.push_back(std::move(pose));
+  }
+  return poses;
+}
+
+std::vector<InitialPose> read_initial_poses(const std::filesystem::path& path) {
+  FileReader reader(path);
+  return parse_initial_poses(path, reader.read_all(kMaxBytes));
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "alignment.hpp"
+
+#include <ceres/ceres.h>
+#include <ceres/covariance.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "relative_pose_error.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+using Parameters = std::array<double, 3>;  // x, y, theta
+
+/// Where the first map with a fixed pose says that the group's frame lies in the world; the first map's own
+/// frame if there is none.
+SE2 find_frame(const std::vector<AlignedMap>& maps) {
+  for (const AlignedMap& map : maps) {
+    if (map.known_pose && map.known_pose->fixed) return map.known_pose->T_world_map * inverse(map.T_group_map);
+  }
+  return inverse(maps.front().T_group_map);
+}
+
+class Adjustment {
+ public:
+  Adjustment(const std::vector<AlignedMap>& maps, const std::vector<RelativePose>& measured) : maps_(maps) {
+    const SE2 T_frame_group = find_frame(maps);
+    for (const AlignedMap& map : maps) {
+      const bool held = map.known_pose && map.known_pose->fixed;
+      const SE2 pose = held ? map.known_pose->T_world_map : T_frame_group * map.T_group_map;
+      held_.push_back(held);
+      parameters_.push_back({pose.x, pose.y, pose.theta});
+    }
+    is_world_ = std::find(held_.begin(), held_.end(), true) != held_.end();
+    if (!is_world_) held_.front() = true;
+    for (Parameters& pose : parameters_) problem_.AddParameterBlock(pose.data(), 3);
+    for (const RelativePose& relative : measured) add(relative);
+    add_known_poses();
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+      if (held_[i]) problem_.SetParameterBlockConstant(parameters_[i].data());
+    }
+  }
+
+  std::vector<AdjustedPose> solved() {
+    solve(problem_);
+    std::vector<AdjustedPose> poses;
+    for (const Parameters& pose : parameters_) poses.push_back({{pose[0], pose[1], normalize_angle(pose[2])}});
+    add_deviations(poses);
+    return poses;
+  }
+
+ private:
+  void add(const RelativePose& relative) {
+    problem_.AddResidualBlock(RelativePoseError::make(relative), new ceres::HuberLoss(1.0),
+                              parameters_[relative.fixed].data(), parameters_[relative.moving].data());
+  }
+
+  /// In the world's frame a known pose pulls by itself. Otherwise only what two of them say of each other
+  /// counts: each is held against the first one.
+  void add_known_poses() {
+    std::optional<std::size_t> first;
+    for (std::size_t i = 0; i < maps_.size(); ++i) {
+      if (!maps_[i].known_pose) continue;
+      const std::size_t from = is_world_ ? held_place() : first.value_or(i);
+      if (!first) first = i;
+      if (from == i || held_[i]) continue;
+      const KnownPose& origin = *maps_[from].known_pose;
+      const double sd = std::hypot(sd_of_known(i), is_world_ ? 0.0 : sd_of_known(from));
+      add({from, i, inverse(origin.T_world_map) * maps_[i].known_pose->T_world_map, maps_[i].extent.centre,
+           std::max(1.0, maps_[i].extent.radius), sd});
+    }
+  }
+
+  std::size_t held_place() const {
+    return static_cast<std::size_t>(std::find(held_.begin(), held_.end(), true) - held_.begin());
+  }
+
+  double sd_of_known(std::size_t place) const {
+    const KnownPose& known = *maps_[place].known_pose;
+    return std::hypot(known.sd_position, known.sd_theta * maps_[place].extent.radius);
+  }
+
+  void add_deviations(std::vector<AdjustedPose>& poses) {
+    std::vector<std::pair<const double*, const double*>> blocks;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (!held_[i]) blocks.emplace_back(parameters_[i].data(), parameters_[i].data());
+    }
+    ceres::Covariance::Options options;
+    options.algorithm_type = ceres::DENSE_SVD;
+    options.num_threads = 1;
+    ceres::Covariance covariance(options);
+    if (blocks.empty() || !covariance.Compute(blocks, &problem_)) return;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (held_[i]) continue;
+      std::array<double, 9> block{};
+      covariance.GetCovarianceBlock(parameters_[i].data(), parameters_[i].data(), block.data());
+      // Of the map's centre, where the pose is known best, not of the frame's origin.
+      const SE2& T = poses[i].T_frame_map;
+      const Point2 turned = SE2{0.0, 0.0, T.theta} * maps_[i].extent.centre;
+      const double dx = -turned.y, dy = turned.x;  // of the centre, by theta
+      const double xx = block[0] + 2.0 * dx * block[2] + dx * dx * block[8];
+      const double yy = block[4] + 2.0 * dy * block[5] + dy * dy * block[8];
+      poses[i].sd = PoseDeviation{std::sqrt(std::max(0.0, xx + yy)), std::sqrt(std::max(0.0, block[8]))};
+    }
+  }
+
+  const std::vector<AlignedMap>& maps_;
+  std::vector<Parameters> parameters_;
+  std::vector<bool> held_;
+  bool is_world_ = false;
+  ceres::Problem problem_;
+};
+
+}  // namespace
+
+std::vector<AdjustedPose> align(const std::vector<AlignedMap>& maps, const std::vector<RelativePose>& measured) {
+  return Adjustment(maps, measured).solved();
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "gridmerge/merge/arrangement.hpp"
+#include "gridmerge/merge/known_pose.hpp"
+#include "gridmerge/merge/merge_result.hpp"
+#include "pose_graph.hpp"
+
+namespace gridmerge {
+
+/// A map whose pose is to be adjusted together with those of others.
+struct AlignedMap {
+  SE2 T_group_map;  ///< about where it lies, in a frame that all have in common
+  MapExtent extent;
+  std::optional<KnownPose> known_pose;
+};
+
+struct AdjustedPose {
+  SE2 T_frame_map;
+  std::optional<PoseDeviation> sd = {};  ///< none for a pose that is held
+};
+
+/// The poses that fit best to what is measured between them and to what is known of them beforehand: robust
+/// least squares (Ceres). In the world's frame, with the fixed maps where they are known to be, if there are
+/// any; otherwise in the frame of the first map. Standard deviations are of the linearised problem, relative
+/// to what holds the frame.
+std::vector<AdjustedPose> align(const std::vector<AlignedMap>& maps, const std::vector<RelativePose>& measured);
+
+}  // namespace gridmerge

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/merge/arrangement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "join_weights.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+/// Bent maps of 70 m close cycles of three within 2.4 m in 95 of 100 cases.
+constexpr double kLeastTolerance = 0.5;  // [m]
+constexpr double kToleranceShare = 0.045;
+
+/// A map that moves elsewhere must gain so much, or rounding would keep it moving [nats].
+constexpr double kLeastGain = 0.1;
+
+/// Weighs groups against each other, and keeps what it has found until the groups change.
+class Arranger {
+ public:
+  Arranger(const ArrangementProblem& problem, double accept_probability)
+      : weights_(problem), accept_(accept_probability) {
+    for (std::size_t map = 0; map < problem.maps.size(); ++map) groups_.push_back({PlacedNode{map, {}}});
+  }
+
+  NodeGroups settle() {
+    join_all();
+    // Every move gains, so this ends; the bound is for arrangements that are worth the same within rounding.
+    for (std::size_t moves = 0; moves < 4 * groups_.size() + 64 && move_one(); ++moves) join_all();
+    while (cut_one()) {
+    }
+    return std::move(groups_);
+  }
+
+ private:
+  /// Joins the two groups that belong together most surely, until none do surely enough.
+  void join_all() {
+    while (true) {
+      std::optional<std::pair<std::size_t, std::size_t>> best;
+      WeighedJoin best_join;
+      for (std::size_t a = 0; a < groups_.size(); ++a) {
+        for (std::size_t b = a + 1; b < groups_.size(); ++b) {
+          const WeighedJoin& join = best_join_of(groups_[a], groups_[b]);
+          if (join.probability < accept_) continue;
+          if (best && join.worth.against_apart <= best_join.worth.against_apart) continue;
+          best = {a, b};
+          best_join = join;
+        }
+      }
+      if (!best) return;
+      join(best->first, best->second, best_join.T_a_b);
+    }
+  }
+
+  void join(std::size_t a, std::size_t b, const SE2& T_a_b) {
+    NodeGroup joined = groups_[a];
+    for (const PlacedNode& node : groups_[b]) joined.push_back({node.map, T_a_b * node.T_group_map});
+    groups_.erase(groups_.begin() + static_cast<std::ptrdiff_t>(b));
+    groups_[a] = weights_.adjusted(std::move(joined));
+  }
+
+  /// Takes out the map that gains most by lying elsewhere, or alone, and puts it there; false if none gains.
+  bool move_one() {
+    double most = kLeastGain;
+    std::optional<std::pair<std::size_t, std::size_t>> which;  // group, place in it
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (groups_[g].size() < 2) continue;
+      for (std::size_t i = 0; i < groups_[g].size(); ++i) {
+        const double gain = gain_of_moving(g, i);
+        if (gain <= most) continue;
+        most = gain;
+        which = {g, i};
+      }
+    }
+    if (!which) return false;
+    const auto [rest, alone] = taken_out(groups_[which->first], which->second);
+    groups_.erase(groups_.begin() + static_cast<std::ptrdiff_t>(which->first));
+    for (NodeGroup& part : weights_.connected(rest)) groups_.push_back(std::move(part));
+    groups_.push_back(alone);
+    place_best(groups_.size() - 1);
+    return true;
+  }
+
+  /// Joins the group, which is one map, where it is worth most, if it is worth anything.
+  void place_best(std::size_t alone) {
+    double most = 0.0;
+    std::optional<std::size_t> where;
+    SE2 T_where_alone;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (g == alone) continue;
+      const WeighedJoin& join = best_join_of(groups_[g], groups_[alone]);
+      if (join.worth.against_apart <= most) continue;
+      most = join.worth.against_apart;
+      where = g;
+      T_where_alone = join.T_a_b;
+    }
+    if (where) join(*where, alone, T_where_alone);
+  }
+
+  double gain_of_moving(std::size_t group, std::size_t place) {
+    const auto [rest, alone] = taken_out(groups_[group], place);
+    const double stays = weights_.worth_of(rest, alone, {}).against_apart;
+    double elsewhere = std::max(0.0, best_join_of(rest, alone).worth.against_apart);
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (g != group) elsewhere = std::max(elsewhere, best_join_of(groups_[g], alone).worth.against_apart);
+    }
+    return elsewhere - stays;
+  }
+
+  /// Cuts a group where its parts belong together least surely, if that is not surely enough.
+  bool cut_one() {
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      double least = accept_;
+      std::optional<std::pair<NodeGroup, NodeGroup>> weakest;
+      for (auto& parts : weights_.halves(groups_[g])) {
+        const double probability = weights_.probability_of_lying_so(parts.first, parts.second);
+        if (probability >= least) continue;
+        least = probability;
+        weakest = std::move(parts);
+      }
+      if (!weakest) continue;
+      groups_[g] = weights_.adjusted(std::move(weakest->first));
+      groups_.push_back(weights_.adjusted(std::move(weakest->second)));
+      return true;
+    }
+    return false;
+  }
+
+  /// Remembered by which maps the groups hold and where: groups change little from round to round.
+  const WeighedJoin& best_join_of(const NodeGroup& a, const NodeGroup& b) {
+    const auto [found, is_new] = weighed_.try_emplace({key_of(a), key_of(b)});
+    if (is_new) found->second = weights_.best_join(a, b);
+    return found->second;
+  }
+
+  using Key = std::vector<double>;
+  static Key key_of(const NodeGroup& group) {
+    Key key;
+    for (const PlacedNode& node : group) {
+      const SE2& T = node.T_group_map;
+      key.insert(key.end(), {static_cast<double>(node.map), T.x, T.y, T.theta});
+    }
+    return key;
+  }
+
+  JoinWeights weights_;
+  double accept_;
+  NodeGroups groups_;
+  std::map<std::pair<Key, Key>, WeighedJoin> weighed_;
+};
+
+/// In the frame of the lowest map, maps ascending.
+NodeGroup in_order(NodeGroup group) {
+  std::sort(group.begin(), group.end(),
+            [](const PlacedNode& a, const PlacedNode& b) { return a.map < b.map; });
+  const SE2 T_first_group = inverse(group.front().T_group_map);
+  for (PlacedNode& node : group) node.T_group_map = T_first_group * node.T_group_map;
+  group.front().T_group_map = {};
+  return group;
+}
+
+}  // namespace
+
+double agreement_tolerance(const MapExtent& a, const MapExtent& b) {
+  return std::max(kLeastTolerance, kToleranceShare * std::max(a.side, b.side));
+}
+
+double displacement(const MapExtent& moving, const SE2& a, const SE2& b) {
+  const Point2 at_a = a * moving.centre;
+  const Point2 at_b = b * moving.centre;
+  const double turned = 2.0 * (1.0 - std::cos(a.theta - b.theta)) * moving.radius * moving.radius;
+  return std::sqrt((at_a.x - at_b.x) * (at_a.x - at_b.x) + (at_a.y - at_b.y) * (at_a.y - at_b.y) + turned);
+}
+
+Arrangement arrange(const ArrangementProblem& problem, double accept_probability) {
+  Arrangement arrangement;
+  for (NodeGroup& group : Arranger(problem, accept_probability).settle())
+    arrangement.groups.push_back(in_order(std::move(group)));
+  std::sort(arrangement.groups.begin(), arrangement.groups.end(),
+            [](const NodeGroup& a, const NodeGroup& b) { return a.front().map < b.front().map; });
+  const JoinWeights weights(problem);
+  for (NodeGroup& group : arrangement.groups) {
+    if (group.size() > 1) {
+      for (std::size_t i = 0; i < group.size(); ++i) {
+        const auto [rest, alone] = taken_out(group, i);
+        group[i].probability = weights.probability_of_lying_so(rest, alone);
+      }
+    }
+    for (const UsedCandidate& used : weights.used_in(group)) arrangement.used.push_back(used);
+  }
+  std::sort(arrangement.used.begin(), arrangement.used.end(),
+            [](const UsedCandidate& a, const UsedCandidate& b) { return a.pair < b.pair; });
+  return arrangement;
+}
+
+}  // namespace gridmerge

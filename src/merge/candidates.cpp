@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gridmerge {
+
+namespace {
+
+constexpr double kLeastProbability = 1e-3;
+constexpr double kLeastRest = 1e-5;  // that none of them is true: the model is not surer of anything
+
+/// A pose is off by about so many standard deviations of the walls that agree on it: bent maps have no exact
+/// one.
+constexpr double kDeviationsOfWalls = 2.0;
+
+}  // namespace
+
+std::vector<CandidateJoin> candidate_joins(const MatchResult& match) {
+  double rest = 1.0;
+  for (const Hypothesis& hypothesis : match.hypotheses) rest -= hypothesis.probability;
+  rest = std::max(rest, kLeastRest);
+  std::vector<CandidateJoin> candidates;
+  for (const Hypothesis& hypothesis : match.hypotheses) {
+    if (hypothesis.probability < kLeastProbability) continue;
+    candidates.push_back({hypothesis.T_fixed_moving, std::log(hypothesis.probability / rest),
+                          kDeviationsOfWalls * match.features.sigma});
+  }
+  return candidates;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "gridmerge/merge/arrangement.hpp"
+
+namespace gridmerge {
+
+using NodeGroups = std::vector<NodeGroup>;
+
+/// What it is worth to two groups of maps to lie together so [nats].
+struct JoinWorth {
+  double against_other_poses = 0.0;  ///< all that speaks for it: tells how they lie, if they belong together
+  double against_apart = 0.0;        ///< what speaks for their belonging together, once for every place
+};
+
+/// A way to join two groups of maps.
+struct WeighedJoin {
+  SE2 T_a_b;  ///< between the groups' frames
+  JoinWorth worth;
+  double probability = 0.0;  ///< against lying otherwise, and apart; 0 if there is no way to join them
+};
+
+/// What the candidates of all pairs say of groups of maps: see arrange() for what an arrangement is worth.
+class JoinWeights {
+ public:
+  /// `problem` must outlive this. O(k^2).
+  explicit JoinWeights(const ArrangementProblem& problem);
+
+  /// The best of all ways to join two groups that some candidate proposes.
+  WeighedJoin best_join(const NodeGroup& a, const NodeGroup& b) const;
+
+  /// What it is worth that the groups lie so.
+  JoinWorth worth_of(const NodeGroup& a, const NodeGroup& b, const SE2& T_a_b) const;
+
+  /// That two groups in one frame lie as they do: against the other ways that candidates propose, and apart.
+  double probability_of_lying_so(const NodeGroup& a, const NodeGroup& b) const;
+
+  /// The candidates that agree with the poses of a group.
+  std::vector<UsedCandidate> used_in(const NodeGroup& group) const;
+
+  /// The parts of a group that candidates which agree with its poses hold together.
+  NodeGroups connected(const NodeGroup& group) const;
+
+  /// The ways to cut a group in two along the strongest candidates that hold it together: one for each edge of
+  /// their maximum spanning tree.
+  std::vector<std::pair<NodeGroup, NodeGroup>> halves(const NodeGroup& group) const;
+
+  /// The group with the poses that fit its candidates best.
+  NodeGroup adjusted(NodeGroup group) const;
+
+ private:
+  struct Agreement {
+    std::size_t pair;
+    std::size_t candidate;
+    double worth;
+  };
+
+  struct Edge {
+    std::size_t a, b;  // places in the group
+    Agreement agreement;
+  };
+
+  const std::optional<std::size_t>& pair_of(std::size_t a, std::size_t b) const;
+  /// T takes points of map b to map a.
+  std::optional<Agreement> find_agreement(std::size_t a, std::size_t b, const SE2& T_a_b) const;
+  double loss_of_missing(std::size_t a, std::size_t b, const SE2& T_a_b) const;
+  std::vector<WeighedJoin> ways_to_join(const NodeGroup& a, const NodeGroup& b) const;
+  std::vector<Edge> edges_of(const NodeGroup& group) const;
+
+  const ArrangementProblem& problem_;
+  std::vector<std::optional<std::size_t>> pair_index_;  // by map * maps + map
+};
+
+/// A group without one of its maps, and that map, both in the group's frame.
+std::pair<NodeGroup, NodeGroup> taken_out(const NodeGroup& group, std::size_t place);
+
+}  // namespace gridmerge

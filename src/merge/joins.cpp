@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "joins.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace gridmerge {
+
+const char* name_of(JoinOutcome outcome) {
+  switch (outcome) {
+    case JoinOutcome::accepted:
+      return "accepted";
+    case JoinOutcome::rescued:
+      return "rescued";
+    case JoinOutcome::rejected:
+      return "rejected";
+    case JoinOutcome::refused:
+      break;
+  }
+  return "refused";
+}
+
+void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution) {
+  if (!std::isfinite(resolution) || resolution < 0.0) {
+    throw std::invalid_argument(
+        "the merged map's resolution must be a positive number of metres, or 0 for the finest");
+  }
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    try {
+      validate(maps[i]);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("map " + std::to_string(i) + ": " + error.what());
+    }
+  }
+}
+
+Join make_join(std::size_t fixed, std::size_t moving, MatchResult match) {
+  Join join;
+  join.fixed = fixed;
+  join.moving = moving;
+  join.match = std::move(match);
+  join.outcome = join.match.verdict == Verdict::accepted ? JoinOutcome::accepted : JoinOutcome::refused;
+  join.T_fixed_moving = join.match.T_fixed_moving;
+  join.probability = join.match.probability;
+  return join;
+}
+
+Reason why_left_out(const std::vector<Join>& joins, std::size_t map) {
+  const Join* nearest = nullptr;
+  for (const Join& join : joins) {
+    if (join.fixed != map && join.moving != map) continue;
+    if (nearest == nullptr || join.match.probability > nearest->match.probability) nearest = &join;
+  }
+  return nearest == nullptr ? Reason::nothing_to_compare : nearest->match.reason;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the ways to merge have in common.
+#pragma once
+
+#include <vector>
+
+#include "gridmerge/merge/merge_result.hpp"
+
+namespace gridmerge {
+
+/// Throws std::invalid_argument for an invalid map, naming it by its index, or an invalid resolution of the
+/// merged maps.
+void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution);
+
+/// A join that means what its own verdict says.
+Join make_join(std::size_t fixed, std::size_t moving, MatchResult match);
+
+/// Why a map joined nothing: the reason of the refused join of it that was most probable.
+Reason why_left_out(const std::vector<Join>& joins, std::size_t map);
+
+}  // namespace gridmerge

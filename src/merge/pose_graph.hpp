@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "gridmerge/grid/se2.hpp"
+
+namespace gridmerge {
+
+/// What is measured between two poses.
+struct RelativePose {
+  std::size_t fixed = 0;   ///< index of a pose
+  std::size_t moving = 0;  ///< index of a pose
+  SE2 T_fixed_moving;
+  Point2 pivot;                ///< in the moving frame, where the measurement is made [m]
+  double radius = 1.0;         ///< of what it is made of about the pivot: how much an angle counts [m]
+  double sd_position = 1.0;    ///< standard deviation of the displacement [m]
+};
+
+/// The poses nearest to what is measured between them, by robust least squares (Ceres), with the first held.
+/// Every pose must be connected with the first.
+std::vector<SE2> adjust_poses(std::vector<SE2> poses, const std::vector<RelativePose>& relative);
+
+}  // namespace gridmerge
