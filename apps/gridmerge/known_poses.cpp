@@ -44,14 +44,16 @@ void fix(const KnownPoseOptions& options, const std::vector<std::string>& maps,
 
 void add_known_pose_options(CLI::App& command, KnownPoseOptions& options) {
   command
-      .add_option("--init", options.init,
-                  "Table of poses of some or all maps (TSV: map x y theta, and optionally sd sd_theta: standard "
-                  "deviations, 1 m and 0.1 rad if not given)")
+      .add_option(
+          "--init", options.init,
+          "Table of poses of some or all maps (TSV: map x y theta, and optionally sd sd_theta: standard "
+          "deviations, 1 m and 0.1 rad if not given)")
       ->type_name("FILE");
   command
-      .add_option("--fix", options.fix,
-                  "Take this map's pose for the truth: it is not changed, and the merged map is in its frame, or "
-                  "in that of --init")
+      .add_option(
+          "--fix", options.fix,
+          "Take this map's pose for the truth: it is not changed, and the merged map is in its frame, or "
+          "in that of --init")
       ->type_name("MAP")
       ->allow_extra_args(false);  // or it would take the maps behind it
 }

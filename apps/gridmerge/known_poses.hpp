@@ -12,16 +12,16 @@ namespace gridmerge::cli {
 
 /// What the command line says of where maps lie.
 struct KnownPoseOptions {
-  std::string init;               // file of initial poses
-  std::vector<std::string> fix;   // maps, as the command line names them
+  std::string init;              // file of initial poses
+  std::vector<std::string> fix;  // maps, as the command line names them
 };
 
 /// --init and --fix.
 void add_known_pose_options(CLI::App& command, KnownPoseOptions& options);
 
-/// For each map what is known of its pose. Throws FileError when the file is no table of poses or names none of
-/// the maps, and std::runtime_error when a map that is to be fixed is none of them, or several are and one has
-/// no pose.
+/// For each map what is known of its pose. Throws FileError when the file is no table of poses or names none
+/// of the maps, and std::runtime_error when a map that is to be fixed is none of them, or several are and one
+/// has no pose.
 std::vector<std::optional<KnownPose>> load_known_poses(const KnownPoseOptions& options,
                                                        const std::vector<std::string>& maps);
 

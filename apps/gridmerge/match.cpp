@@ -53,6 +53,7 @@ std::string describe_verdict(const MatchResult& result, const SearchOptions& sea
     case Reason::too_little_overlap:
       return refused("the maps agree, but on too little to be sure");
     case Reason::several:
+    case Reason::contradicts_others:
     case Reason::none:
       break;
   }

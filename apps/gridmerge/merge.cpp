@@ -16,6 +16,7 @@
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"
+#include "gridmerge/report/wording.hpp"
 #include "known_poses.hpp"
 #include "search_options.hpp"
 
@@ -84,8 +85,8 @@ std::string describe_joins(const MergeCommandOptions& options, const MergeResult
   std::string text;
   for (const Join& join : result.joins) {
     fmt::format_to(std::back_inserter(text), "{:<8} {} {:.4f}, {:.3f} s: {} and {}\n", name_of(join.outcome),
-                   figure, join.probability, join.match.seconds,
-                   escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
+                   figure, join.probability, join.match.seconds, escape_controls(names[join.fixed]),
+                   escape_controls(names[join.moving]));
   }
   return text;
 }
@@ -101,8 +102,15 @@ std::string describe(const std::vector<std::string>& names, const MergeResult& r
                      describe_pose(member.T_component_map));
     }
   }
-  for (const std::size_t map : result.left_out) {
-    fmt::format_to(out, "left out: {}\n", escape_controls(names[map]));
+  for (std::size_t i = 0; i < result.left_out.size(); ++i) {
+    fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[result.left_out[i]]),
+                   explain_left_out(result.left_out_reasons[i]));
+  }
+  for (const Join& join : result.joins) {
+    if (join.outcome != JoinOutcome::rescued && join.outcome != JoinOutcome::rejected) continue;
+    fmt::format_to(out, "{}: {} and {}, {:.3f} by themselves, but the others {}\n", name_of(join.outcome),
+                   escape_controls(names[join.fixed]), escape_controls(names[join.moving]), join.probability,
+                   join.outcome == JoinOutcome::rescued ? "agree" : "contradict");
   }
   return text;
 }

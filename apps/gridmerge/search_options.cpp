@@ -69,7 +69,8 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
   command.parse_complete_callback([&options, c_lock, restarts, temperature, seed] {
     if (options.random_walk()) {
       if (!options.up_the_tree())
-        throw CLI::ValidationError("--strategy", "joint needs several hypotheses a pair: --search exhaustive");
+        throw CLI::ValidationError("--strategy",
+                                   "joint needs several hypotheses a pair: --search exhaustive");
       if (options.restarts && static_cast<std::size_t>(*options.restarts) < options.c_locks.size())
         throw CLI::ValidationError("--restarts",
                                    "is less than the number of --c-lock, which are used in turn");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -22,12 +23,19 @@ namespace gridmerge {
 
 namespace {
 
-/// Larger maps are compared in larger cells, so that time and memory stay bounded.
-constexpr double kMaxCellsAlongSide = 800.0;
+/// Larger maps are compared in larger cells, but no larger than rooms and doors allow...
+constexpr double kCellsAlongSide = 800.0;
+constexpr double kCoarsestCell = 0.1;  // [m], unless the maps themselves are coarser
+/// ...up to where time and memory have to be bounded.
+constexpr double kMaxCellsAlongSide = 4000.0;
 /// Small maps are searched in finer steps, large ones in coarser: the search takes about the same time for
 /// all.
 constexpr double kCoarseCellsAlongSide = 150.0;
 constexpr double kCoarseSigma = 0.8;  // tolerance of the search [coarse cells]
+/// Steps of rotation move the walls by so much on average, within bounds.
+constexpr double kTurnStep = 2.0;  // coarse cells
+constexpr int kLeastRotations = 180;
+constexpr int kMostRotations = 720;
 /// Poses nearer than this share of the larger map's side, and never less than kMinDistinct, are one
 /// hypothesis.
 constexpr double kDistinctShare = 0.03;
@@ -41,11 +49,14 @@ double longer_side(const OccupancyGrid& grid) {
   return std::max(grid.width, grid.height) * grid.resolution;
 }
 
-/// The coarser map's resolution, or the multiple of it that keeps both maps within kMaxCellsAlongSide.
+/// The coarser map's resolution, or a multiple of it for large maps.
 double working_cell(const OccupancyGrid& a, const OccupancyGrid& b) {
   const double resolution = std::max(a.resolution, b.resolution);
   const double side = std::max(longer_side(a), longer_side(b)) / resolution;
-  return resolution * std::max(1.0, std::ceil(side / kMaxCellsAlongSide));
+  const double wanted = std::ceil(side / kCellsAlongSide);
+  const double least = std::ceil(side / kMaxCellsAlongSide);
+  const double most = std::floor(kCoarsestCell / resolution + 1e-9);
+  return resolution * std::max({1.0, least, std::min(wanted, most)});
 }
 
 /// Whether `a` should be searched as the moving map: the one with fewer known cells, so that its walls have
@@ -149,6 +160,9 @@ FoundHypotheses find_hypotheses(const PreparedMap& fixed, const PreparedMap& mov
   ExhaustiveSearchOptions search;
   search.coarse_factor = std::clamp(static_cast<int>(std::ceil(side / kCoarseCellsAlongSide)), 2, 4);
   search.sigma = kCoarseSigma * search.coarse_factor;
+  const double radius = make_pose_metric(moving_walls).radius / search.coarse_factor;
+  search.rotations = std::clamp(static_cast<int>(std::ceil(2.0 * std::numbers::pi * radius / kTurnStep)),
+                                kLeastRotations, kMostRotations);
   std::vector<PoseCandidate> candidates = search_all_poses(fixed_walls, moving_walls, search);
   for (const SE2& guess : guesses) candidates.push_back({to_cells(guess, fixed_walls, moving_walls), 0});
   report(options, 0.5);

@@ -66,6 +66,8 @@ const char* name_of(Reason reason) {
       return "too_little_overlap";
     case Reason::several:
       return "several";
+    case Reason::contradicts_others:
+      return "contradicts_others";
     case Reason::none:
       break;
   }

@@ -20,7 +20,8 @@ using Parameters = std::array<double, 3>;  // x, y, theta
 /// frame if there is none.
 SE2 find_frame(const std::vector<AlignedMap>& maps) {
   for (const AlignedMap& map : maps) {
-    if (map.known_pose && map.known_pose->fixed) return map.known_pose->T_world_map * inverse(map.T_group_map);
+    if (map.known_pose && map.known_pose->fixed)
+      return map.known_pose->T_world_map * inverse(map.T_group_map);
   }
   return inverse(maps.front().T_group_map);
 }
@@ -48,7 +49,8 @@ class Adjustment {
   std::vector<AdjustedPose> solved() {
     solve(problem_);
     std::vector<AdjustedPose> poses;
-    for (const Parameters& pose : parameters_) poses.push_back({{pose[0], pose[1], normalize_angle(pose[2])}});
+    for (const Parameters& pose : parameters_)
+      poses.push_back({{pose[0], pose[1], normalize_angle(pose[2])}});
     add_deviations(poses);
     return poses;
   }
@@ -70,8 +72,8 @@ class Adjustment {
       if (from == i || held_[i]) continue;
       const KnownPose& origin = *maps_[from].known_pose;
       const double sd = std::hypot(sd_of_known(i), is_world_ ? 0.0 : sd_of_known(from));
-      add({from, i, inverse(origin.T_world_map) * maps_[i].known_pose->T_world_map, maps_[i].extent.centre,
-           std::max(1.0, maps_[i].extent.radius), sd});
+      add(measured_between(from, i, inverse(origin.T_world_map) * maps_[i].known_pose->T_world_map,
+                           maps_[from].extent, maps_[i].extent, sd));
     }
   }
 
@@ -117,7 +119,8 @@ class Adjustment {
 
 }  // namespace
 
-std::vector<AdjustedPose> align(const std::vector<AlignedMap>& maps, const std::vector<RelativePose>& measured) {
+std::vector<AdjustedPose> align(const std::vector<AlignedMap>& maps,
+                                const std::vector<RelativePose>& measured) {
   return Adjustment(maps, measured).solved();
 }
 

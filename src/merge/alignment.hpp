@@ -20,13 +20,14 @@ struct AlignedMap {
 
 struct AdjustedPose {
   SE2 T_frame_map;
-  std::optional<PoseDeviation> sd = {};  ///< none for a pose that is held
+  PoseDeviation sd = {};  ///< 0 for a pose that is held
 };
 
 /// The poses that fit best to what is measured between them and to what is known of them beforehand: robust
 /// least squares (Ceres). In the world's frame, with the fixed maps where they are known to be, if there are
 /// any; otherwise in the frame of the first map. Standard deviations are of the linearised problem, relative
 /// to what holds the frame.
-std::vector<AdjustedPose> align(const std::vector<AlignedMap>& maps, const std::vector<RelativePose>& measured);
+std::vector<AdjustedPose> align(const std::vector<AlignedMap>& maps,
+                                const std::vector<RelativePose>& measured);
 
 }  // namespace gridmerge

@@ -25,9 +25,8 @@ std::vector<RelativePose> measured_in(const NodeGroup& group, const ArrangementP
     const PairCandidates& pair = problem.pairs[used.pair];
     if (!places[pair.fixed] || !places[pair.moving]) continue;
     const CandidateJoin& candidate = pair.candidates[used.candidate];
-    const MapExtent& moving = problem.maps[pair.moving];
-    measured.push_back({*places[pair.fixed], *places[pair.moving], candidate.T_fixed_moving, moving.centre,
-                        std::max(1.0, moving.radius), candidate.sd});
+    measured.push_back(measured_between(*places[pair.fixed], *places[pair.moving], candidate.T_fixed_moving,
+                                        problem.maps[pair.fixed], problem.maps[pair.moving], candidate.sd));
   }
   return measured;
 }

@@ -68,8 +68,8 @@ bool Coverage::knows(const Point2& at) const {
   const Point2 p = T_grid_map_ * at;
   const double x = p.x / cell_, y = p.y / cell_;
   if (!(x >= 0.0 && y >= 0.0 && x < width_ && y < height_)) return false;
-  return known_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)] !=
-         0;
+  return known_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                static_cast<std::size_t>(x)] != 0;
 }
 
 std::vector<Point2> Coverage::in_common(const Coverage& other, const SE2& T_this_other) const {

@@ -15,12 +15,15 @@ namespace {
 
 /// What it is worth that a pose which others chose is among a pair's candidates, beyond what the pair itself
 /// thinks of it: the dozen candidates of an unrelated pair are spread over thousands of square metres and a
-/// turn, but walls are parallel nearly everywhere, so that about one in 150 agrees by chance.
-constexpr double kPoseNats = 5.0;
+/// turn, but walls are parallel nearly everywhere, so that about one in 50 agrees by chance.
+constexpr double kPoseNats = 4.0;
 /// No single pair says more than this about two maps: their errors have causes in common with other pairs'.
 constexpr double kMostLogOdds = 6.0;
-/// The second strongest pair that says something of a join counts by so much, the third by its square...
-constexpr double kDependence = 0.6;
+/// Where the strongest pair has spoken, the second counts by so much, the third by the square of that...
+constexpr double kDependence = 0.3;
+/// A pair of whose places a share is fresh speaks of them with this power of the share: what borders on known
+/// places is not independent of them either.
+constexpr double kFreshPower = 3.0;
 /// Candidates less likely than this propose no join, though they may agree with one.
 constexpr double kLeastLogOdds = -6.0;
 /// The loss when two maps that would have much in common have no candidate that agrees, and the shares of the
@@ -49,12 +52,12 @@ MapExtent extent_of(const NodeGroup& group, const std::vector<MapExtent>& maps) 
   return all;
 }
 
-/// What several pairs say together. They do not err independently: maps of one place mislead in one way.
-double sum_of_dependent(std::vector<double> nats) {
-  std::sort(nats.begin(), nats.end(), [](double a, double b) { return std::abs(a) > std::abs(b); });
+/// What several losses come to: they have causes in common, as the gains do.
+double sum_of_dependent(std::vector<double> losses) {
+  std::sort(losses.begin(), losses.end());
   double sum = 0.0, weight = 1.0;
-  for (const double value : nats) {
-    sum += weight * value;
+  for (const double loss : losses) {
+    sum += weight * loss;
     weight *= kDependence;
   }
   return sum;
@@ -122,7 +125,7 @@ std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t a,
   std::optional<Agreement> best;
   for (std::size_t i = 0; i < pair.candidates.size(); ++i) {
     const CandidateJoin& candidate = pair.candidates[i];
-    if (displacement(moving, T, candidate.T_fixed_moving) > agreement_tolerance(fixed, moving)) continue;
+    if (difference(fixed, moving, T, candidate.T_fixed_moving) > agreement_tolerance(fixed, moving)) continue;
     if (best && candidate.log_odds <= pair.candidates[best->candidate].log_odds) continue;
     best = {*index, i, std::min(candidate.log_odds, kMostLogOdds) + kPoseNats};
   }
@@ -153,18 +156,22 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
   std::stable_sort(witnesses.begin(), witnesses.end(),
                    [](const Witness& x, const Witness& y) { return x.worth > y.worth; });
   const double lost = sum_of_dependent(std::move(losses)) - kPoseNats;
-  std::vector<double> all, anew;
+  JoinWorth worth{lost, lost};
   SpokenOf spoken_of;
+  double dependence = 1.0;
   for (const Witness& witness : witnesses) {
-    all.push_back(witness.worth);
-    double share = 1.0;
-    if (!problem_.coverage.empty())
-      share = spoken_of.add(problem_.coverage[witness.in_a->map]->in_common(
-                                *problem_.coverage[witness.in_b->map], witness.T_a_b),
-                            witness.in_a->T_group_map);
-    anew.push_back(share * witness.worth);
+    double fresh = 1.0;
+    if (!problem_.coverage.empty()) {
+      const Coverage& in_a = *problem_.coverage[witness.in_a->map];
+      const Coverage& in_b = *problem_.coverage[witness.in_b->map];
+      fresh = std::pow(spoken_of.add(in_a.in_common(in_b, witness.T_a_b), witness.in_a->T_group_map),
+                       kFreshPower);
+    }
+    worth.against_apart += fresh * witness.worth;
+    worth.against_other_poses += (fresh + (1.0 - fresh) * dependence) * witness.worth;
+    dependence *= kDependence;
   }
-  return {sum_of_dependent(std::move(all)) + lost, sum_of_dependent(std::move(anew)) + lost};
+  return worth;
 }
 
 std::vector<WeighedJoin> JoinWeights::ways_to_join(const NodeGroup& a, const NodeGroup& b) const {
@@ -182,16 +189,15 @@ std::vector<WeighedJoin> JoinWeights::ways_to_join(const NodeGroup& a, const Nod
       }
     }
   }
-  std::stable_sort(ways.begin(), ways.end(),
-                   [](const WeighedJoin& x, const WeighedJoin& y) {
-                     return x.worth.against_other_poses > y.worth.against_other_poses;
-                   });
-  const MapExtent extent = extent_of(b, problem_.maps);
-  const double distinct = agreement_tolerance(extent_of(a, problem_.maps), extent);
+  std::stable_sort(ways.begin(), ways.end(), [](const WeighedJoin& x, const WeighedJoin& y) {
+    return x.worth.against_other_poses > y.worth.against_other_poses;
+  });
+  const MapExtent of_a = extent_of(a, problem_.maps), of_b = extent_of(b, problem_.maps);
+  const double distinct = agreement_tolerance(of_a, of_b);
   std::vector<WeighedJoin> kept;
   for (const WeighedJoin& way : ways) {
     const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const WeighedJoin& other) {
-      return displacement(extent, way.T_a_b, other.T_a_b) < distinct;
+      return difference(of_a, of_b, way.T_a_b, other.T_a_b) < distinct;
     });
     if (is_new) kept.push_back(way);
   }
@@ -207,11 +213,11 @@ WeighedJoin JoinWeights::best_join(const NodeGroup& a, const NodeGroup& b) const
 }
 
 double JoinWeights::probability_of_lying_so(const NodeGroup& a, const NodeGroup& b) const {
-  const MapExtent extent = extent_of(b, problem_.maps);
-  const double distinct = agreement_tolerance(extent_of(a, problem_.maps), extent);
+  const MapExtent of_a = extent_of(a, problem_.maps), of_b = extent_of(b, problem_.maps);
+  const double distinct = agreement_tolerance(of_a, of_b);
   std::vector<WeighedJoin> ways{{{}, worth_of(a, b, {}), 0.0}};
   for (const WeighedJoin& way : ways_to_join(a, b)) {
-    if (displacement(extent, way.T_a_b, {}) >= distinct) ways.push_back(way);
+    if (difference(of_a, of_b, way.T_a_b, {}) >= distinct) ways.push_back(way);
   }
   return probability_of_first(ways);
 }
@@ -304,11 +310,10 @@ NodeGroup JoinWeights::adjusted(NodeGroup group) const {
   for (const Edge& edge : edges_of(group)) {
     const PairCandidates& pair = problem_.pairs[edge.agreement.pair];
     const bool in_order = pair.fixed == group[edge.a].map;
-    const MapExtent& moving = problem_.maps[pair.moving];
-    relative.push_back({in_order ? edge.a : edge.b, in_order ? edge.b : edge.a,
-                        pair.candidates[edge.agreement.candidate].T_fixed_moving, moving.centre,
-                        std::max(1.0, moving.radius),
-                        agreement_tolerance(problem_.maps[pair.fixed], moving)});
+    const MapExtent &fixed = problem_.maps[pair.fixed], &moving = problem_.maps[pair.moving];
+    relative.push_back(measured_between(in_order ? edge.a : edge.b, in_order ? edge.b : edge.a,
+                                        pair.candidates[edge.agreement.candidate].T_fixed_moving, fixed,
+                                        moving, agreement_tolerance(fixed, moving)));
   }
   poses = adjust_poses(std::move(poses), relative);
   for (std::size_t i = 0; i < group.size(); ++i) group[i].T_group_map = poses[i];

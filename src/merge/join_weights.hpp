@@ -45,8 +45,8 @@ class JoinWeights {
   /// The parts of a group that candidates which agree with its poses hold together.
   NodeGroups connected(const NodeGroup& group) const;
 
-  /// The ways to cut a group in two along the strongest candidates that hold it together: one for each edge of
-  /// their maximum spanning tree.
+  /// The ways to cut a group in two along the strongest candidates that hold it together: one for each edge
+  /// of their maximum spanning tree.
   std::vector<std::pair<NodeGroup, NodeGroup>> halves(const NodeGroup& group) const;
 
   /// The group with the poses that fit its candidates best.

@@ -53,7 +53,8 @@ Reason why_left_out(const std::vector<Join>& joins, std::size_t map) {
     if (join.fixed != map && join.moving != map) continue;
     if (nearest == nullptr || join.match.probability > nearest->match.probability) nearest = &join;
   }
-  return nearest == nullptr ? Reason::nothing_to_compare : nearest->match.reason;
+  if (nearest == nullptr) return Reason::nothing_to_compare;
+  return nearest->outcome == JoinOutcome::rejected ? Reason::contradicts_others : nearest->match.reason;
 }
 
 }  // namespace gridmerge

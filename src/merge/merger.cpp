@@ -148,7 +148,8 @@ class Merger::State {
     for (std::size_t a = 0; a < by_place.size(); ++a) {
       for (std::size_t b = a + 1; b < by_place.size(); ++b) {
         PairCandidates pair{a, b, candidate_joins(matches_.at({by_place[a], by_place[b]}))};
-        if (known[a] && known[b]) apply_known_poses(*known[a], *known[b], problem.maps[a], problem.maps[b], pair);
+        if (known[a] && known[b])
+          apply_known_poses(*known[a], *known[b], problem.maps[a], problem.maps[b], pair);
         problem.pairs.push_back(std::move(pair));
       }
     }
@@ -159,7 +160,8 @@ class Merger::State {
     const std::vector<MapId> by_place = ids();
     std::vector<Join> joins;
     for (const PairCandidates& pair : problem.pairs) {
-      Join join = make_join(pair.fixed, pair.moving, matches_.at({by_place[pair.fixed], by_place[pair.moving]}));
+      Join join =
+          make_join(pair.fixed, pair.moving, matches_.at({by_place[pair.fixed], by_place[pair.moving]}));
       join.outcome = outcome_of(join.match, false);
       joins.push_back(std::move(join));
     }
@@ -176,7 +178,8 @@ class Merger::State {
     return joins;
   }
 
-  void add_components(const ArrangementProblem& problem, const Arrangement& arrangement, MergeResult& result) const {
+  void add_components(const ArrangementProblem& problem, const Arrangement& arrangement,
+                      MergeResult& result) const {
     std::vector<const OccupancyGrid*> grids;
     for (const auto& [id, input] : inputs_) grids.push_back(input.grid.get());
     const std::vector<std::optional<KnownPose>> known = known_poses();
@@ -218,11 +221,17 @@ void Merger::set_known_pose(MapId id, std::optional<KnownPose> known_pose) {
   state_->set_known_pose(id, known_pose);
 }
 
-void Merger::remove(MapId id) { state_->remove(id); }
+void Merger::remove(MapId id) {
+  state_->remove(id);
+}
 
-std::vector<Merger::MapId> Merger::maps() const { return state_->ids(); }
+std::vector<Merger::MapId> Merger::maps() const {
+  return state_->ids();
+}
 
-MergeResult Merger::result() { return state_->result(); }
+MergeResult Merger::result() {
+  return state_->result();
+}
 
 MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
                   const std::vector<std::optional<KnownPose>>& known_poses) {

@@ -24,7 +24,8 @@ void validate_known_pose(const KnownPose& known) {
   if (known.fixed) return;
   if (!(std::isfinite(known.sd_position) && known.sd_position > 0.0 && std::isfinite(known.sd_theta) &&
         known.sd_theta > 0.0))
-    throw std::invalid_argument("the standard deviations of a known pose must be positive, unless it is fixed");
+    throw std::invalid_argument(
+        "the standard deviations of a known pose must be positive, unless it is fixed");
 }
 
 double sd_of(const KnownPose& known, const MapExtent& extent) {
@@ -42,7 +43,8 @@ void apply_known_poses(const KnownPose& fixed, const KnownPose& moving, const Ma
   const double near = agreement_tolerance(fixed_extent, moving_extent) + kDeviations * sd;
   bool is_found = false;
   for (CandidateJoin& candidate : pair.candidates) {
-    const bool is_near = displacement(moving_extent, candidate.T_fixed_moving, T_fixed_moving) <= near;
+    const bool is_near =
+        difference(fixed_extent, moving_extent, candidate.T_fixed_moving, T_fixed_moving) <= near;
     candidate.log_odds += is_near ? kKnownNats : -kKnownNats;
     is_found = is_found || is_near;
   }

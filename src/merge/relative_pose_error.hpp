@@ -8,8 +8,8 @@
 
 namespace gridmerge {
 
-/// How far two poses (x, y, theta) put the moving map from where it was measured: the pivot's displacement and
-/// the turn at the radius, in standard deviations.
+/// How far two poses (x, y, theta) put the moving map from where it was measured: the pivot's displacement
+/// and the turn at the radius, in standard deviations.
 class RelativePoseError {
  public:
   explicit RelativePoseError(const RelativePose& measured) : measured_(measured) {}

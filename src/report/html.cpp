@@ -10,6 +10,7 @@
 #include "base64.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/preview.hpp"
+#include "gridmerge/report/wording.hpp"
 
 namespace gridmerge {
 
@@ -106,6 +107,17 @@ std::string transform_cells(const SE2& T) {
 constexpr const char* kTransformHeads =
     R"(<th class="number">x [m]</th><th class="number">y [m]</th><th class="number">θ [rad]</th><th class="number">θ [°]</th>)";
 
+constexpr const char* kCertaintyHeads =
+    R"(<th class="number">probability</th><th class="number">± [m]</th><th class="number">± [°]</th>)";
+
+std::string certainty_cells(const Member& member) {
+  const std::string unknown = R"(<td class="number">–</td>)";
+  return (member.probability ? number_cell(*member.probability, 4) : unknown) +
+         (member.sd ? number_cell(member.sd->position, 3) +
+                          number_cell(member.sd->theta * 180.0 / std::numbers::pi, 2)
+                    : unknown + unknown);
+}
+
 // "1 map", "2 maps".
 std::string count(std::size_t number, const char* what) {
   return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
@@ -130,33 +142,44 @@ std::string component_section(const std::vector<std::string>& names, const Merge
   html +=
       fmt::format(R"(<p class="soft">A transform takes a point of the map's frame to the frame of {}.</p>)",
                   text(names.at(component.members.front().map)));
-  html += fmt::format("\n<div class=\"table\"><table>\n<tr><th>map</th>{}</tr>\n", kTransformHeads);
+  html += fmt::format("\n<div class=\"table\"><table>\n<tr><th>map</th>{}{}</tr>\n", kTransformHeads,
+                      kCertaintyHeads);
   for (const Member& member : component.members) {
-    html +=
-        fmt::format("<tr>{}{}</tr>\n", name_cell(names, member.map), transform_cells(member.T_component_map));
+    html += fmt::format("<tr>{}{}{}</tr>\n", name_cell(names, member.map),
+                        transform_cells(member.T_component_map), certainty_cells(member));
   }
   return html + "</table></div>\n";
 }
 
+constexpr const char* kJoinsText =
+    "<h2>Comparisons</h2>\n<p class=\"soft\">Of two maps, or of two groups that were already joined, named "
+    "by their "
+    "first map. <strong>accepted</strong>: believed by itself. <strong>rescued</strong>: too weak by itself, "
+    "but it agrees with "
+    "what "
+    "the other maps say. <strong>rejected</strong>: would be believed by itself, but contradicts the other "
+    "maps. "
+    "<strong>refused</strong>: not believed. The probability is that the transform, which takes the moving "
+    "frame to "
+    "the "
+    "fixed one, is the true one, by these two maps alone (of a random walk, which knows no probability, it "
+    "is "
+    "the acceptance index); that of a refused or rejected one is the best guess and was not used.</p>\n";
+
 std::string joins_section(const std::vector<std::string>& names, const MergeResult& result) {
   if (result.joins.empty()) return {};
-  std::string html =
-      "<h2>Comparisons</h2>\n<p class=\"soft\">In the order made. A group of maps that were already joined "
-      "is named by "
-      "its first map. The probability is that the transform, which takes the moving frame to the fixed one, "
-      "is the true one (of a random walk, which knows no probability, it is the acceptance index); a refused "
-      "one is the best guess and was not used.</p>\n<div "
-      "class=\"table\"><table>\n<tr><th>fixed</th>"
-      "<th>moving</th><th>verdict</th><th class=\"number\">probability</th><th class=\"number\">acceptance "
-      "index</th>"
+  std::string html = kJoinsText;
+  html +=
+      "<div class=\"table\"><table>\n<tr><th>fixed</th><th>moving</th><th>outcome</th>"
+      "<th class=\"number\">probability</th><th class=\"number\">acceptance index</th>"
       "<th class=\"number\">overlap</th>";
   html += fmt::format("{}</tr>\n", kTransformHeads);
   for (const Join& join : result.joins) {
-    const char* verdict = name_of(join.match.verdict);
     html += fmt::format("<tr>{}{}<td class=\"{}\">{}</td>{}{}{}{}</tr>\n", name_cell(names, join.fixed),
-                        name_cell(names, join.moving), verdict, verdict,
-                        number_cell(join.match.probability, 4), number_cell(join.match.acceptance_index, 4),
-                        number_cell(join.match.overlap, 3), transform_cells(join.match.T_fixed_moving));
+                        name_cell(names, join.moving), join.used() ? "accepted" : "refused",
+                        name_of(join.outcome), number_cell(join.probability, 4),
+                        number_cell(join.match.acceptance_index, 4), number_cell(join.match.overlap, 3),
+                        transform_cells(join.T_fixed_moving));
   }
   return html + "</table></div>\n";
 }
@@ -165,8 +188,11 @@ std::string left_out_section(const std::vector<std::string>& names, const MergeR
   if (result.left_out.empty()) return {};
   std::string html =
       "<h2>Left out</h2>\n<p>These maps could not be joined to another one with confidence.</p>\n<ul>\n";
-  for (const std::size_t map : result.left_out)
-    html += fmt::format("<li>{}{}</li>\n", swatch(map), text(names.at(map)));
+  for (std::size_t i = 0; i < result.left_out.size(); ++i) {
+    const std::size_t map = result.left_out[i];
+    html += fmt::format("<li>{}{}: {}</li>\n", swatch(map), text(names.at(map)),
+                        explain_left_out(result.left_out_reasons.at(i)));
+  }
   return html + "</ul>\n";
 }
 

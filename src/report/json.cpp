@@ -21,11 +21,16 @@ Json transform_of(const SE2& T) {
   return {{"x", number(T.x)}, {"y", number(T.y)}, {"theta", number(T.theta)}};
 }
 
+Json deviation_of(const std::optional<PoseDeviation>& sd) {
+  if (!sd) return nullptr;
+  return {{"position", number(sd->position)}, {"theta", number(sd->theta)}};
+}
+
 Json member_json(const std::string& name, const Member& member) {
-  Json json{{"source", name}, {"transform", transform_of(member.T_component_map)}};
-  if (member.probability) json["probability"] = number(*member.probability);
-  if (member.sd) json["sd"] = {{"position", number(member.sd->position)}, {"theta", number(member.sd->theta)}};
-  return json;
+  return {{"source", name},
+          {"transform", transform_of(member.T_component_map)},
+          {"probability", member.probability ? Json(number(*member.probability)) : Json()},
+          {"sd", deviation_of(member.sd)}};
 }
 
 std::string text_of(const Json& json, int indent) {

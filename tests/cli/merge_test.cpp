@@ -28,20 +28,20 @@ TEST_F(Merge, WritesTheFilesOfTheContract) {
   EXPECT_EQ(files_in(output), all_files);
 
   const Json json = Json::parse(read_file(output + "/transforms.json"));
-  expect_keys(json, {"components", "joins", "left_out"});
+  expect_keys(json, {"components", "joins", "left_out", "left_out_reasons"});
   EXPECT_EQ(json.at("left_out"), Json::array());
   ASSERT_EQ(json.at("components").size(), 1u);
   expect_keys(json.at("components").at(0), {"map", "members"});
   EXPECT_EQ(json.at("components").at(0).at("map"), "merged.yaml");
   ASSERT_EQ(json.at("components").at(0).at("members").size(), 2u);
   const Json& members = json.at("components").at(0).at("members");
-  for (const Json& member : members) expect_keys(member, {"source", "transform"});
+  for (const Json& member : members) expect_keys(member, {"source", "transform", "probability", "sd"});
   EXPECT_EQ(members.at(0).at("source"), left);
   expect_near(members.at(0).at("transform"), {}, 1e-12, 1e-12);
   EXPECT_EQ(members.at(1).at("source"), right);
   expect_near(members.at(1).at("transform"), T_left_right, 0.1, 0.007);
   ASSERT_EQ(json.at("joins").size(), 1u);
-  expect_keys(json.at("joins").at(0), {"fixed", "moving", "transform", "verdict", "probability"});
+  expect_keys(json.at("joins").at(0), {"fixed", "moving", "transform", "verdict", "probability", "outcome"});
   EXPECT_EQ(json.at("joins").at(0).at("fixed"), left);
   EXPECT_EQ(json.at("joins").at(0).at("moving"), right);
   EXPECT_EQ(json.at("joins").at(0).at("verdict"), "accepted");
@@ -63,7 +63,7 @@ TEST_F(Merge, LeavesOutWhatDoesNotFit) {
   const Outcome outcome = run({"merge", left, other, right, "-o", output});
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_EQ(outcome.err, "");
-  EXPECT_NE(outcome.out.find("left out: " + other + "\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("left out: " + other + ": "), std::string::npos) << outcome.out;
   EXPECT_EQ(files_in(output), all_files);
   const Json json = Json::parse(read_file(output + "/transforms.json"));
   EXPECT_EQ(json.at("left_out"), Json::array({other}));

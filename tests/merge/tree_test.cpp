@@ -53,8 +53,9 @@ class World {
   /// Merges all maps; `fits` says whether two groups are accepted. Checks what must hold whatever it says.
   MergeResult merge_if(const std::function<bool(const Maps&, const Maps&)>& fits, TreeOptions options = {}) {
     comparisons.clear();
-    const MergeResult result =
-        merge_up_tree(maps_, [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+    const MergeResult result = merge_up_tree(
+        maps_,
+        [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
           comparisons.emplace_back(maps_in(fixed), maps_in(moving));
           MatchResult match;
           match.verdict = fits(maps_in(fixed), maps_in(moving)) ? Verdict::accepted : Verdict::refused;
@@ -63,7 +64,8 @@ class World {
                                      ? T(*maps_in(fixed).begin(), *maps_in(moving).begin())
                                      : SE2{99.0, 99.0, 1.0};
           return match;
-        }, options);
+        },
+        options);
     check(result);
     return result;
   }
@@ -203,7 +205,8 @@ TEST(MergeUpTree, GroupsAreComparedAsTheFusionOfTheOriginals) {
   std::vector<OccupancyGrid> maps(5, map_from({"."}));
   maps[0] = map_from({"#"});
   maps[4] = map_from({"#."});
-  const MergeResult result = merge_up_tree(maps, [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+  const MergeResult result = merge_up_tree(maps, [&](const OccupancyGrid& fixed,
+                                                     const OccupancyGrid& moving) {
     if (moving.width == 2) {
       const FusedMap expected = fuse({{&maps[0], {}}, {&maps[1], {}}, {&maps[2], {}}, {&maps[3], {}}}, 1.0);
       EXPECT_EQ(fixed.probability, expected.grid.probability);
@@ -270,7 +273,10 @@ TEST(MergeUpTree, RefusesAnInvalidResolution) {
   for (const double resolution : {-1.0, std::nan(""), HUGE_VAL}) {
     TreeOptions options;
     options.resolution = resolution;
-    EXPECT_THROW(merge_up_tree({}, [](const auto&, const auto&) { return MatchResult{}; }, options), std::invalid_argument) << resolution;
+    EXPECT_THROW(merge_up_tree(
+                     {}, [](const auto&, const auto&) { return MatchResult{}; }, options),
+                 std::invalid_argument)
+        << resolution;
   }
 }
 

@@ -44,8 +44,9 @@ const std::vector<OccupancyGrid> kMaps(4, make_grid(3, 2, 0.5, {}, Cell::free));
 
 MergeResult two_of_four() {
   MergeResult result = test::merged(kMaps, {{{0, {}}, {2, {1.25, -0.0001, std::numbers::pi / 2}}}});
-  Join refused{0, 1, {}};
-  refused.match.probability = 0.0625;
+  Join refused;
+  refused.moving = 1;
+  refused.probability = 0.0625;
   refused.match.acceptance_index = 0.8125;
   refused.match.overlap = 0.375;
   result.joins.push_back(refused);

@@ -81,10 +81,15 @@ TEST(MatchJson, TakesAnyName) {
 TEST(TransformsJson, IsTheDocumentedText) {
   const std::vector<OccupancyGrid> maps(4, make_grid(1, 1, 1.0, {}, Cell::free));
   MergeResult result = test::merged(maps, {{{0, {}}, {2, {1.25, -3.0, 0.52}}}});
-  Join refused{0, 1, {}};
-  refused.match.T_fixed_moving = {0.5, 0.25, 3.0};
-  refused.match.probability = 0.125;
+  Join refused;
+  refused.moving = 1;
+  refused.T_fixed_moving = {0.5, 0.25, 3.0};
+  refused.probability = 0.125;
+  result.joins.front().outcome = JoinOutcome::rescued;
   result.joins.insert(result.joins.begin(), refused);
+  result.components[0].members[1].probability = 0.875;
+  result.components[0].members[1].sd = PoseDeviation{0.125, 0.0625};
+  result.left_out_reasons.front() = Reason::ambiguous;
   EXPECT_EQ(transforms_json({"a.yaml", "b.yaml", "c.yaml", "d.yaml"}, result), R"({
   "components": [
     {
@@ -96,7 +101,9 @@ TEST(TransformsJson, IsTheDocumentedText) {
             "x": 0.0,
             "y": 0.0,
             "theta": 0.0
-          }
+          },
+          "probability": null,
+          "sd": null
         },
         {
           "source": "c.yaml",
@@ -104,6 +111,11 @@ TEST(TransformsJson, IsTheDocumentedText) {
             "x": 1.25,
             "y": -3.0,
             "theta": 0.52
+          },
+          "probability": 0.875,
+          "sd": {
+            "position": 0.125,
+            "theta": 0.0625
           }
         }
       ]
@@ -119,7 +131,8 @@ TEST(TransformsJson, IsTheDocumentedText) {
         "theta": 3.0
       },
       "verdict": "refused",
-      "probability": 0.125
+      "probability": 0.125,
+      "outcome": "refused"
     },
     {
       "fixed": "a.yaml",
@@ -130,12 +143,17 @@ TEST(TransformsJson, IsTheDocumentedText) {
         "theta": 0.52
       },
       "verdict": "accepted",
-      "probability": 0.75
+      "probability": 0.75,
+      "outcome": "rescued"
     }
   ],
   "left_out": [
     "b.yaml",
     "d.yaml"
+  ],
+  "left_out_reasons": [
+    "ambiguous",
+    "nothing_to_compare"
   ]
 }
 )");
@@ -151,7 +169,9 @@ TEST(TransformsJson, NamesTheMapOfEveryComponent) {
 }
 
 TEST(TransformsJson, OfNothing) {
-  EXPECT_EQ(transforms_json({}, {}), "{\n  \"components\": [],\n  \"joins\": [],\n  \"left_out\": []\n}\n");
+  EXPECT_EQ(
+      transforms_json({}, {}),
+      "{\n  \"components\": [],\n  \"joins\": [],\n  \"left_out\": [],\n  \"left_out_reasons\": []\n}\n");
 }
 
 TEST(TransformsJson, EveryMapNeedsAName) {

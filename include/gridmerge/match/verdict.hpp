@@ -18,6 +18,7 @@ enum class Reason {
   contradiction,       ///< the maps disagree where they know the same places
   too_little_overlap,  ///< they agree, but on too little
   several,             ///< more than one of these
+  contradicts_others,  ///< of a merge: believed by itself, but not with what the other maps say
 };
 
 /// As outputs spell it: "ambiguous", "too_little_overlap", ...; "none" for an accepted pair.

@@ -48,16 +48,20 @@ struct UsedCandidate {
 };
 
 struct Arrangement {
-  std::vector<NodeGroup> groups;     ///< every map is in one; ascending by first map, maps ascending
-  std::vector<UsedCandidate> used;   ///< ascending by pair, at most one a pair
+  std::vector<NodeGroup> groups;    ///< every map is in one; ascending by first map, maps ascending
+  std::vector<UsedCandidate> used;  ///< ascending by pair, at most one a pair
 };
 
 /// How far apart a pair's candidate and the poses of an arrangement may put the maps and still agree [m]:
 /// bent maps do not close a cycle exactly.
 double agreement_tolerance(const MapExtent& a, const MapExtent& b);
 
-/// Root mean square distance by which two poses of a moving map of this extent differ [m].
+/// Root mean square distance by which two poses of a map of this extent differ [m].
 double displacement(const MapExtent& moving, const SE2& a, const SE2& b);
+
+/// How far two ways in which maps a and b may lie differ [m]: the displacement of that map which it moves
+/// less. The same whichever of the two is taken for the moving one.
+double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b, const SE2& other_T_a_b);
 
 /// The arrangement of all maps that the candidates speak for most, as far as it can be believed.
 ///
@@ -65,13 +69,13 @@ double displacement(const MapExtent& moving, const SE2& a, const SE2& b);
 /// candidate that agrees, and what it is worth that a pose which others chose is among the pair's few
 /// candidates; or, when none agrees, a loss that grows with how much the two maps would have in common. Less
 /// what choosing the pose is worth, once. So two maps alone are worth the log odds of their candidate, and in
-/// a cycle that closes every further pair adds. Pairs do not err independently, so each counts for less than
-/// the stronger ones; and where it is asked whether the groups belong together at all, rather than how they
-/// lie, a pair counts by the share of what its maps have in common of which no stronger pair has spoken: maps
-/// that look alike in one place agree with each other there however many they are.
+/// a cycle that closes every further pair adds. But pairs do not err independently: maps that look alike in
+/// one place agree with each other there, however many they are. So a pair counts by how much of what its
+/// maps have in common no stronger pair has spoken of; the rest counts less, and not at all where it is asked
+/// whether the groups belong together, rather than how they lie.
 ///
-/// Starting from single maps, the two groups whose join is most probable are joined, as long as it is at least
-/// `accept_probability`: against lying otherwise, and against not belonging together. Then every map is
+/// Starting from single maps, the two groups whose join is most probable are joined, as long as it is at
+/// least `accept_probability`: against lying otherwise, and against not belonging together. Then every map is
 /// taken out and put where it is worth most, which takes back what was joined too early, until nothing
 /// changes. At last a group is cut where its two parts could not be joined as surely as asked for.
 ///

@@ -24,9 +24,9 @@ struct MergeOptions {
 
 /// Merges `maps` by what all pairs of them say together.
 ///
-/// Every pair is matched, and all hypotheses are kept. The arrangement of all maps that they speak for most is
-/// chosen (see arrange()): a weak pair that agrees with the others is used, a strong one that contradicts them
-/// is not. Then all poses are adjusted together, to what the pairs and the maps' walls say (robust least
+/// Every pair is matched, and all hypotheses are kept. The arrangement of all maps that they speak for most
+/// is chosen (see arrange()): a weak pair that agrees with the others is used, a strong one that contradicts
+/// them is not. Then all poses are adjusted together, to what the pairs and the maps' walls say (robust least
 /// squares), and the maps of each component are fused in one pass. Maps that nothing joins surely enough are
 /// left out; groups between which nothing is sure are components of their own.
 ///

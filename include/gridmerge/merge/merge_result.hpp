@@ -58,9 +58,9 @@ struct Component {
 };
 
 struct MergeResult {
-  std::vector<Component> components;  ///< of two or more maps each, most members first
-  std::vector<Join> joins;            ///< every comparison made, whatever its outcome
-  std::vector<std::size_t> left_out;  ///< maps that joined nothing, ascending
+  std::vector<Component> components;     ///< of two or more maps each, most members first
+  std::vector<Join> joins;               ///< every comparison made, whatever its outcome
+  std::vector<std::size_t> left_out;     ///< maps that joined nothing, ascending
   std::vector<Reason> left_out_reasons;  ///< why, one for each that was left out
 };
 

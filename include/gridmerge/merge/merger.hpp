@@ -10,9 +10,9 @@
 
 namespace gridmerge {
 
-/// merge() for maps that come one after the other, or grow: pairs that have not changed are not matched again.
-/// The result is the same as that of merge() with all the maps that are in it, in the order in which they were
-/// added.
+/// merge() for maps that come one after the other, or grow: pairs that have not changed are not matched
+/// again. The result is the same as that of merge() with all the maps that are in it, in the order in which
+/// they were added.
 class Merger {
  public:
   using MapId = std::size_t;
@@ -27,8 +27,8 @@ class Merger {
   /// std::invalid_argument for an invalid map or pose, and is then as before.
   MapId add(OccupancyGrid map, std::optional<KnownPose> known_pose = {});
 
-  /// Another map in the place of one that was added: of the same robot, later. Throws std::out_of_range for an
-  /// unknown id, and as add().
+  /// Another map in the place of one that was added: of the same robot, later. Throws std::out_of_range for
+  /// an unknown id, and as add().
   void update(MapId id, OccupancyGrid map);
 
   /// What is known of a map's pose. Throws as update().
@@ -37,12 +37,12 @@ class Merger {
   /// Throws std::out_of_range for an unknown id.
   void remove(MapId id);
 
-  /// The maps that are in it, in the order in which they were added: MergeResult speaks of them by their place
-  /// in this list.
+  /// The maps that are in it, in the order in which they were added: MergeResult speaks of them by their
+  /// place in this list.
   std::vector<MapId> maps() const;
 
-  /// Matches the pairs that are new or have changed, and merges. Throws std::invalid_argument when a merged map
-  /// would exceed 2^28 cells.
+  /// Matches the pairs that are new or have changed, and merges. Throws std::invalid_argument when a merged
+  /// map would exceed 2^28 cells.
   MergeResult result();
 
  private:

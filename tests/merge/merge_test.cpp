@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/merge/merge.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "gridmerge/merge/merger.hpp"
+#include "support/building.hpp"
+
+namespace gridmerge {
+namespace {
+
+/// Robots that each saw a part of one building, 18 m x 13 m, from frames of their own; the last map is of
+/// another building.
+struct Team {
+  Team() {
+    const OccupancyGrid building = test::draw_building(1);
+    const std::vector<test::Window> windows{{0, 0, 11, 13}, {5, 0, 18, 13}, {0, 4, 18, 13}, {0, 0, 18, 8}};
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+      T_map_building.push_back({3.0 * static_cast<double>(i), -2.0, 0.7 * static_cast<double>(i) - 1.0});
+      maps.push_back(test::map_part(building, windows[i], T_map_building.back()));
+    }
+    maps.push_back(test::draw_building(2));
+  }
+
+  SE2 T(std::size_t fixed, std::size_t moving) const {
+    return T_map_building[fixed] * inverse(T_map_building[moving]);
+  }
+
+  /// All but the last in one component, where they belong.
+  void expect_merged(const MergeResult& result, double tolerance = 0.1) const {
+    ASSERT_EQ(result.components.size(), 1u);
+    const std::vector<Member>& members = result.components[0].members;
+    ASSERT_EQ(members.size(), 4u);
+    const SE2 T_frame_first = members[0].T_component_map;
+    for (const Member& member : members) {
+      const SE2 found = inverse(T_frame_first) * member.T_component_map;
+      const SE2 expected = T(members[0].map, member.map);
+      EXPECT_NEAR(found.x, expected.x, tolerance);
+      EXPECT_NEAR(found.y, expected.y, tolerance);
+      EXPECT_NEAR(normalize_angle(found.theta - expected.theta), 0.0, 0.02);
+    }
+    EXPECT_EQ(result.left_out, std::vector<std::size_t>{4});
+  }
+
+  std::vector<OccupancyGrid> maps;
+  std::vector<SE2> T_map_building;
+};
+
+void expect_same(const MergeResult& a, const MergeResult& b) {
+  ASSERT_EQ(a.components.size(), b.components.size());
+  for (std::size_t i = 0; i < a.components.size(); ++i) {
+    ASSERT_EQ(a.components[i].members.size(), b.components[i].members.size());
+    for (std::size_t k = 0; k < a.components[i].members.size(); ++k) {
+      const Member &one = a.components[i].members[k], &two = b.components[i].members[k];
+      EXPECT_EQ(one.map, two.map);
+      EXPECT_EQ(one.T_component_map, two.T_component_map);
+      EXPECT_EQ(one.probability, two.probability);
+    }
+    EXPECT_EQ(a.components[i].fused.grid.cells, b.components[i].fused.grid.cells);
+  }
+  ASSERT_EQ(a.joins.size(), b.joins.size());
+  for (std::size_t i = 0; i < a.joins.size(); ++i) {
+    EXPECT_EQ(a.joins[i].outcome, b.joins[i].outcome);
+    EXPECT_EQ(a.joins[i].T_fixed_moving, b.joins[i].T_fixed_moving);
+  }
+  EXPECT_EQ(a.left_out, b.left_out);
+}
+
+TEST(Merge, PutsEveryMapWhereItBelongsAndLeavesOutTheStranger) {
+  const Team team;
+  const MergeResult result = merge(team.maps);
+  team.expect_merged(result);
+  EXPECT_EQ(result.joins.size(), 10u);
+  EXPECT_EQ(result.left_out_reasons.size(), 1u);
+  EXPECT_EQ(result.components[0].members[0].T_component_map, SE2{});
+  for (const Member& member : result.components[0].members) {
+    EXPECT_GE(member.probability.value(), 0.8);
+    EXPECT_LT(member.sd.value().position, 1.0);
+  }
+  EXPECT_EQ(result.components[0].members[0].sd->position, 0.0);
+  EXPECT_GT(result.components[0].members[1].sd->position, 0.0);
+}
+
+TEST(Merge, OfNoneOneOrTheSameMap) {
+  const Team team;
+  const MergeResult none = merge({});
+  EXPECT_TRUE(none.components.empty() && none.joins.empty() && none.left_out.empty());
+  EXPECT_EQ(merge({team.maps[0]}).left_out, std::vector<std::size_t>{0});
+  EXPECT_EQ(merge({team.maps[0]}).left_out_reasons, std::vector<Reason>{Reason::nothing_to_compare});
+  const MergeResult same = merge({team.maps[0], team.maps[0], team.maps[0]});
+  ASSERT_EQ(same.components.size(), 1u);
+  EXPECT_EQ(same.components[0].members.size(), 3u);
+  EXPECT_EQ(same.components[0].fused.conflicting, 0u);
+}
+
+TEST(Merge, OneMapInsideAnother) {
+  const OccupancyGrid building = test::draw_building(1);
+  const MergeResult result = merge({building, test::map_part(building, {3, 2, 13, 11}, {1.0, 2.0, 2.0})});
+  ASSERT_EQ(result.components.size(), 1u);
+  EXPECT_EQ(result.components[0].fused.grid.width, building.width);
+}
+
+TEST(Merge, ManyTinyMapsAreAllLeftOut) {
+  std::vector<OccupancyGrid> maps;
+  std::mt19937 random(1);
+  for (int i = 0; i < 100; ++i) {
+    OccupancyGrid map = make_grid(6, 6, 0.1, {}, Cell::free);
+    for (Cell& cell : map.cells) cell = random() % 4 == 0 ? Cell::occupied : Cell::free;
+    maps.push_back(std::move(map));
+  }
+  const MergeResult result = merge(maps);
+  EXPECT_EQ(result.left_out.size(), 100u);
+  EXPECT_EQ(result.joins.size(), 4950u);
+}
+
+TEST(Merge, DoesNotDependOnThreads) {
+  const Team team;
+  MergeOptions one, four;
+  one.match.threads = 1;
+  four.match.threads = 4;
+  expect_same(merge(team.maps, one), merge(team.maps, four));
+}
+
+TEST(Merge, OrderOfTheMapsDecidesNothingButTheFrame) {
+  const Team team;
+  std::vector<OccupancyGrid> reversed(team.maps.rbegin(), team.maps.rend());
+  const MergeResult result = merge(reversed), usual = merge(team.maps);
+  ASSERT_EQ(result.components.size(), 1u);
+  EXPECT_EQ(result.left_out, std::vector<std::size_t>{0});
+  const auto pose = [](const MergeResult& of, std::size_t map) {
+    const std::vector<Member>& members = of.components[0].members;
+    return std::find_if(members.begin(), members.end(),
+                        [&](const Member& member) { return member.map == map; })
+        ->T_component_map;
+  };
+  for (std::size_t map = 1; map < 4; ++map) {
+    const SE2 here = inverse(pose(result, 4)) * pose(result, 4 - map);
+    const SE2 there = inverse(pose(usual, 0)) * pose(usual, map);
+    EXPECT_NEAR(here.x, there.x, 0.005);  // a tenth of a cell, and 0.02 degrees
+    EXPECT_NEAR(here.y, there.y, 0.005);
+    EXPECT_NEAR(normalize_angle(here.theta - there.theta), 0.0, 3.5e-4);
+  }
+}
+
+TEST(Merge, AKnownPoseJoinsMapsThatShareNothing) {
+  const OccupancyGrid building = test::draw_building(1);
+  const std::vector<OccupancyGrid> maps{test::map_part(building, {0, 0, 8, 13}, {}),
+                                        test::map_part(building, {10, 0, 18, 13}, {})};
+  EXPECT_EQ(merge(maps).left_out.size(), 2u);
+  const KnownPose first{{5.0, 5.0, 0.0}, 0.1, 0.01}, second{{5.2, 5.0, 0.0}, 0.1, 0.01};
+  const MergeResult result = merge(maps, {}, {first, second});
+  ASSERT_EQ(result.components.size(), 1u);
+  EXPECT_EQ(result.components[0].members[0].T_component_map, SE2{}) << "the frame is the first map's";
+  EXPECT_NEAR(result.components[0].members[1].T_component_map.x, 0.2, 1e-6);
+  EXPECT_EQ(result.joins[0].outcome, JoinOutcome::rescued);
+}
+
+TEST(Merge, AKnownPoseThatIsAboutRightIsImproved) {
+  const Team team;
+  std::vector<std::optional<KnownPose>> known(5);
+  known[0] = KnownPose{team.T(0, 0) * SE2{0.5, 0.0, 0.0}, 1.0, 0.1};
+  known[1] = KnownPose{team.T(0, 1) * SE2{0.0, -0.6, 0.03}, 1.0, 0.1};
+  team.expect_merged(merge(team.maps, {}, known));
+}
+
+TEST(Merge, FixedPosesAreNotChangedAndMakeTheFrame) {
+  const Team team;
+  const SE2 T_world_first{100.0, 50.0, 1.0};
+  std::vector<std::optional<KnownPose>> known(5);
+  known[1] = KnownPose{T_world_first * team.T(0, 1), 0.0, 0.0, true};
+  const MergeResult result = merge(team.maps, {}, known);
+  team.expect_merged(result);
+  EXPECT_EQ(result.components[0].members[1].T_component_map, known[1]->T_world_map);
+  EXPECT_NEAR(result.components[0].members[0].T_component_map.x, T_world_first.x, 0.1);
+
+  // Two that contradict what the maps say are taken for the truth all the same.
+  known[0] = KnownPose{known[1]->T_world_map * SE2{30.0, 0.0, 0.0}, 0.0, 0.0, true};
+  const MergeResult forced = merge({team.maps[0], team.maps[1]}, {}, {known[0], known[1]});
+  ASSERT_EQ(forced.components.size(), 1u);
+  EXPECT_EQ(forced.components[0].members[0].T_component_map, known[0]->T_world_map);
+  EXPECT_EQ(forced.components[0].members[1].T_component_map, known[1]->T_world_map);
+}
+
+TEST(Merge, RefusesWhatMakesNoSense) {
+  const Team team;
+  MergeOptions options;
+  options.resolution = -1.0;
+  EXPECT_THROW(merge(team.maps, options), std::invalid_argument);
+  options.resolution = 0.0;
+  options.match.accept_probability = 2.0;
+  EXPECT_THROW(merge(team.maps, options), std::invalid_argument);
+  const std::vector<OccupancyGrid> two{team.maps[0], team.maps[1]};
+  EXPECT_THROW(merge(two, {}, {std::nullopt, KnownPose{{}, -1.0, 0.1}}), std::invalid_argument);
+  EXPECT_THROW(merge(two, {}, {KnownPose{{std::nan(""), 0.0, 0.0}, 1.0, 0.1}}), std::invalid_argument);
+  EXPECT_THROW(merge(two, {}, std::vector<std::optional<KnownPose>>(3)), std::invalid_argument);
+  std::vector<OccupancyGrid> broken = two;
+  broken[1].resolution = 0.0;
+  try {
+    merge(broken);
+    FAIL() << "must throw";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("map 1: "), std::string::npos) << error.what();
+  }
+}
+
+TEST(Merger, OneByOneGivesWhatAllAtOnceGives) {
+  const Team team;
+  Merger merger;
+  for (const OccupancyGrid& map : team.maps) {
+    merger.add(map);
+    merger.result();
+  }
+  expect_same(merger.result(), merge(team.maps));
+}
+
+TEST(Merger, MatchesOnlyWhatHasChanged) {
+  const Team team;
+  std::vector<std::size_t> totals;
+  MergeOptions options;
+  options.progress = [&](std::size_t done, std::size_t total) {
+    if (done == total) totals.push_back(total);
+  };
+  Merger merger(options);
+  const auto first = merger.add(team.maps[0]);
+  merger.add(team.maps[1]);
+  const auto third = merger.add(team.maps[4]);
+  merger.result();
+  merger.result();
+  EXPECT_EQ(totals, (std::vector<std::size_t>{3}));
+
+  merger.update(third, team.maps[2]);  // the robot was elsewhere after all
+  expect_same(merger.result(), merge({team.maps[0], team.maps[1], team.maps[2]}));
+  EXPECT_EQ(totals, (std::vector<std::size_t>{3, 2}));
+
+  merger.remove(first);
+  expect_same(merger.result(), merge({team.maps[1], team.maps[2]}));
+  EXPECT_EQ(totals.size(), 2u);
+  EXPECT_EQ(merger.maps(), (std::vector<Merger::MapId>{1, 2}));
+}
+
+TEST(Merger, IsAsItWasAfterAnError) {
+  const Team team;
+  Merger merger;
+  const auto id = merger.add(team.maps[0]);
+  OccupancyGrid broken = team.maps[1];
+  broken.cells.pop_back();
+  EXPECT_THROW(merger.add(broken), std::invalid_argument);
+  EXPECT_THROW(merger.update(id, broken), std::invalid_argument);
+  EXPECT_THROW(merger.update(id + 7, team.maps[1]), std::out_of_range);
+  EXPECT_THROW(merger.remove(id + 7), std::out_of_range);
+  EXPECT_THROW(merger.set_known_pose(id, KnownPose{{}, 0.0, 0.0}), std::invalid_argument);
+  EXPECT_EQ(merger.maps(), std::vector<Merger::MapId>{id});
+  EXPECT_EQ(merger.result().left_out, std::vector<std::size_t>{0});
+}
+
+}  // namespace
+}  // namespace gridmerge
