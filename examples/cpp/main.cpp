@@ -16,9 +16,9 @@ int main(int argc, char** argv) try {
   for (const gridmerge::Component& component : result.components) {
     std::printf("one map of %zu inputs, %d x %d cells\n", component.members.size(),
                 component.fused.grid.width, component.fused.grid.height);
-    for (const auto& [map, T_component_map] : component.members) {
-      std::printf("  %s at x %.2f m, y %.2f m, %.2f rad\n", argv[map + 1], T_component_map.x,
-                  T_component_map.y, T_component_map.theta);
+    for (const gridmerge::Member& member : component.members) {
+      const gridmerge::SE2& T = member.T_component_map;
+      std::printf("  %s at x %.2f m, y %.2f m, %.2f rad\n", argv[member.map + 1], T.x, T.y, T.theta);
     }
   }
   for (const std::size_t map : result.left_out) std::printf("left out: %s\n", argv[map + 1]);

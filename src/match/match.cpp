@@ -49,16 +49,6 @@ double longer_side(const OccupancyGrid& grid) {
   return std::max(grid.width, grid.height) * grid.resolution;
 }
 
-/// The coarser map's resolution, or a multiple of it for large maps.
-double working_cell(const OccupancyGrid& a, const OccupancyGrid& b) {
-  const double resolution = std::max(a.resolution, b.resolution);
-  const double side = std::max(longer_side(a), longer_side(b)) / resolution;
-  const double wanted = std::ceil(side / kCellsAlongSide);
-  const double least = std::ceil(side / kMaxCellsAlongSide);
-  const double most = std::floor(kCoarsestCell / resolution + 1e-9);
-  return resolution * std::max({1.0, least, std::min(wanted, most)});
-}
-
 /// Whether `a` should be searched as the moving map: the one with fewer known cells, so that its walls have
 /// the best chance to be met in the other. Any further difference breaks ties, so that the answer does not
 /// depend on which map the caller called fixed.
@@ -151,7 +141,7 @@ VerdictFeatures describe_walls(const std::vector<RankedPose>& ranked, const Wall
 /// `moving` is the map that is_smaller() picked.
 FoundHypotheses find_hypotheses(const PreparedMap& fixed, const PreparedMap& moving,
                                 const std::vector<SE2>& guesses, const MatchOptions& options) {
-  const double cell = working_cell(fixed.known(), moving.known());
+  const double cell = working_cell(fixed, moving);
   const WallMap& fixed_walls = fixed.walls(cell);
   const WallMap& moving_walls = moving.walls(cell);
   report(options, 0.1);
@@ -254,6 +244,15 @@ MatchResult match(const PreparedMap& fixed, const PreparedMap& moving, const Mat
   MatchResult result = match_in_arena(fixed, moving, options);
   result.seconds = seconds_since(start);
   return result;
+}
+
+double working_cell(const PreparedMap& fixed, const PreparedMap& moving) {
+  const double resolution = std::max(fixed.known().resolution, moving.known().resolution);
+  const double side = std::max(longer_side(fixed.known()), longer_side(moving.known())) / resolution;
+  const double wanted = std::ceil(side / kCellsAlongSide);
+  const double least = std::ceil(side / kMaxCellsAlongSide);
+  const double most = std::floor(kCoarsestCell / resolution + 1e-9);
+  return resolution * std::max({1.0, least, std::min(wanted, most)});
 }
 
 void validate(const MatchOptions& options) {

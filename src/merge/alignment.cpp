@@ -7,8 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
+#include "gridmerge/match/match.hpp"
 #include "relative_pose_error.hpp"
+#include "wall_error.hpp"
 
 namespace gridmerge {
 
@@ -61,6 +64,23 @@ class Adjustment {
                               parameters_[relative.fixed].data(), parameters_[relative.moving].data());
   }
 
+  void add_walls(const RelativePose& relative) {
+    const PreparedMap &fixed = *maps_[relative.fixed].map, &moving = *maps_[relative.moving].map;
+    const double cell = working_cell(fixed, moving);
+    const WallMap &fixed_walls = fixed.walls(cell), &moving_walls = moving.walls(cell);
+    const double sd = std::max(1.0, relative.sd_position / cell);
+    add_walls(relative.fixed, relative.moving, fixed_walls, moving_walls, sd);
+    add_walls(relative.moving, relative.fixed, moving_walls, fixed_walls, sd);
+  }
+
+  void add_walls(std::size_t fixed, std::size_t moving, const WallMap& fixed_walls,
+                 const WallMap& moving_walls, double sd) {
+    auto error = std::make_unique<WallError>(fixed_walls, moving_walls, sd);
+    if (error->empty()) return;
+    problem_.AddResidualBlock(error.release(), nullptr, parameters_[fixed].data(),
+                              parameters_[moving].data());
+  }
+
   /// In the world's frame a known pose pulls by itself. Otherwise only what two of them say of each other
   /// counts: each is held against the first one.
   void add_known_poses() {
@@ -101,8 +121,7 @@ class Adjustment {
       std::array<double, 9> block{};
       covariance.GetCovarianceBlock(parameters_[i].data(), parameters_[i].data(), block.data());
       // Of the map's centre, where the pose is known best, not of the frame's origin.
-      const SE2& T = poses[i].T_frame_map;
-      const Point2 turned = SE2{0.0, 0.0, T.theta} * maps_[i].extent.centre;
+      const Point2 turned = SE2{0.0, 0.0, parameters_[i][2]} * maps_[i].extent.centre;
       const double dx = -turned.y, dy = turned.x;  // of the centre, by theta
       const double xx = block[0] + 2.0 * dx * block[2] + dx * dx * block[8];
       const double yy = block[4] + 2.0 * dy * block[5] + dy * dy * block[8];
@@ -121,7 +140,7 @@ class Adjustment {
 
 std::vector<AdjustedPose> align(const std::vector<AlignedMap>& maps,
                                 const std::vector<RelativePose>& measured) {
-  return Adjustment(maps, measured).solved();
+  return Adjustment(maps, measured).solved(measured);
 }
 
 }  // namespace gridmerge

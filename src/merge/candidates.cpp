@@ -9,7 +9,7 @@ namespace gridmerge {
 namespace {
 
 constexpr double kLeastProbability = 1e-3;
-constexpr double kLeastRest = 1e-5;  // that none of them is true: the model is not surer of anything
+constexpr double kLeastDoubt = 1e-5;  // the model is not surer of anything
 
 /// A pose is off by about so many standard deviations of the walls that agree on it: bent maps have no exact
 /// one.
@@ -18,13 +18,11 @@ constexpr double kDeviationsOfWalls = 2.0;
 }  // namespace
 
 std::vector<CandidateJoin> candidate_joins(const MatchResult& match) {
-  double rest = 1.0;
-  for (const Hypothesis& hypothesis : match.hypotheses) rest -= hypothesis.probability;
-  rest = std::max(rest, kLeastRest);
   std::vector<CandidateJoin> candidates;
   for (const Hypothesis& hypothesis : match.hypotheses) {
     if (hypothesis.probability < kLeastProbability) continue;
-    candidates.push_back({hypothesis.T_fixed_moving, std::log(hypothesis.probability / rest),
+    const double doubt = std::max(1.0 - hypothesis.probability, kLeastDoubt);
+    candidates.push_back({hypothesis.T_fixed_moving, std::log(hypothesis.probability / doubt),
                           kDeviationsOfWalls * match.features.sigma});
   }
   return candidates;

@@ -11,8 +11,8 @@ namespace gridmerge {
 /// How many hypotheses of a pair are kept for the arrangement.
 inline constexpr std::size_t kKeptHypotheses = 12;
 
-/// The hypotheses of a match, with the odds that their probabilities give them against none being true. Those
-/// that are less likely than one in a thousand are left out.
+/// The hypotheses of a match, with the odds that their probabilities give them. Those that are less likely
+/// than one in a thousand are left out.
 std::vector<CandidateJoin> candidate_joins(const MatchResult& match);
 
 }  // namespace gridmerge

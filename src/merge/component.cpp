@@ -41,10 +41,11 @@ double finest(const NodeGroup& group, const std::vector<const OccupancyGrid*>& g
 
 Component make_component(const NodeGroup& group, const ArrangementProblem& problem,
                          const Arrangement& arrangement, const std::vector<const OccupancyGrid*>& grids,
+                         const std::vector<const PreparedMap*>& prepared,
                          const std::vector<std::optional<KnownPose>>& known_poses, double resolution) {
   std::vector<AlignedMap> maps;
   for (const PlacedNode& node : group)
-    maps.push_back({node.T_group_map, problem.maps[node.map], known_poses[node.map]});
+    maps.push_back({prepared[node.map], node.T_group_map, problem.maps[node.map], known_poses[node.map]});
   const std::vector<AdjustedPose> poses = align(maps, measured_in(group, problem, arrangement));
 
   Component component;

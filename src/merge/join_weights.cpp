@@ -15,8 +15,8 @@ namespace {
 
 /// What it is worth that a pose which others chose is among a pair's candidates, beyond what the pair itself
 /// thinks of it: the dozen candidates of an unrelated pair are spread over thousands of square metres and a
-/// turn, but walls are parallel nearly everywhere, so that about one in 50 agrees by chance.
-constexpr double kPoseNats = 4.0;
+/// turn, but walls are parallel nearly everywhere, so that about one in 150 agrees by chance.
+constexpr double kPoseNats = 5.0;
 /// No single pair says more than this about two maps: their errors have causes in common with other pairs'.
 constexpr double kMostLogOdds = 6.0;
 /// Where the strongest pair has spoken, the second counts by so much, the third by the square of that...
@@ -33,6 +33,10 @@ constexpr double kLeastLogOdds = -6.0;
 constexpr double kMissNats = 3.3;
 constexpr double kMissFrom = 0.12;
 constexpr double kMissWhole = 0.45;
+
+/// Poses nearer to each other than this many tolerances are one way to join: the same candidate may agree
+/// with both.
+constexpr double kDistinct = 2.0;
 
 MapExtent extent_of(const NodeGroup& group, const std::vector<MapExtent>& maps) {
   MapExtent all;
@@ -193,7 +197,7 @@ std::vector<WeighedJoin> JoinWeights::ways_to_join(const NodeGroup& a, const Nod
     return x.worth.against_other_poses > y.worth.against_other_poses;
   });
   const MapExtent of_a = extent_of(a, problem_.maps), of_b = extent_of(b, problem_.maps);
-  const double distinct = agreement_tolerance(of_a, of_b);
+  const double distinct = kDistinct * agreement_tolerance(of_a, of_b);
   std::vector<WeighedJoin> kept;
   for (const WeighedJoin& way : ways) {
     const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const WeighedJoin& other) {
@@ -214,7 +218,7 @@ WeighedJoin JoinWeights::best_join(const NodeGroup& a, const NodeGroup& b) const
 
 double JoinWeights::probability_of_lying_so(const NodeGroup& a, const NodeGroup& b) const {
   const MapExtent of_a = extent_of(a, problem_.maps), of_b = extent_of(b, problem_.maps);
-  const double distinct = agreement_tolerance(of_a, of_b);
+  const double distinct = kDistinct * agreement_tolerance(of_a, of_b);
   std::vector<WeighedJoin> ways{{{}, worth_of(a, b, {}), 0.0}};
   for (const WeighedJoin& way : ways_to_join(a, b)) {
     if (difference(of_a, of_b, way.T_a_b, {}) >= distinct) ways.push_back(way);

@@ -181,7 +181,11 @@ class Merger::State {
   void add_components(const ArrangementProblem& problem, const Arrangement& arrangement,
                       MergeResult& result) const {
     std::vector<const OccupancyGrid*> grids;
-    for (const auto& [id, input] : inputs_) grids.push_back(input.grid.get());
+    std::vector<const PreparedMap*> prepared;
+    for (const auto& [id, input] : inputs_) {
+      grids.push_back(input.grid.get());
+      prepared.push_back(&input.prepared);
+    }
     const std::vector<std::optional<KnownPose>> known = known_poses();
     for (const NodeGroup& group : arrangement.groups) {
       if (group.size() == 1) {
@@ -189,7 +193,7 @@ class Merger::State {
         result.left_out_reasons.push_back(why_left_out(result.joins, group.front().map));
       } else {
         result.components.push_back(
-            make_component(group, problem, arrangement, grids, known, options_.resolution));
+            make_component(group, problem, arrangement, grids, prepared, known, options_.resolution));
       }
     }
     std::stable_sort(

@@ -51,6 +51,10 @@ MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const
 /// `options.threads` changes nothing; may be called by several threads at once.
 MatchResult match(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options = {});
 
+/// The side of the cells in which two maps are compared [m]: the coarser map's, or a multiple of it for large
+/// maps.
+double working_cell(const PreparedMap& fixed, const PreparedMap& moving);
+
 /// Throws std::invalid_argument for options that make no sense.
 void validate(const MatchOptions& options);
 

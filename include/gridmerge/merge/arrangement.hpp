@@ -12,7 +12,7 @@ namespace gridmerge {
 /// One way in which two maps may lie, from what they say of each other alone.
 struct CandidateJoin {
   SE2 T_fixed_moving;     ///< between the map frames
-  double log_odds = 0.0;  ///< of being true against none of the pair's candidates being true [nats]
+  double log_odds = 0.0;  ///< of being true, from these two maps alone [nats]
   double sd = 1.0;        ///< if it is true: standard deviation of the displacement from the true pose [m]
 };
 
