@@ -49,12 +49,17 @@ class Adjustment {
     }
   }
 
-  std::vector<AdjustedPose> solved() {
+  std::vector<AdjustedPose> solved(const std::vector<RelativePose>& measured) {
     solve(problem_);
-    std::vector<AdjustedPose> poses;
-    for (const Parameters& pose : parameters_)
-      poses.push_back({{pose[0], pose[1], normalize_angle(pose[2])}});
+    // Before the walls have their say: each of them is precise, but where maps are bent all are off together.
+    std::vector<AdjustedPose> poses(parameters_.size());
     add_deviations(poses);
+    for (const RelativePose& relative : measured) add_walls(relative);
+    solve(problem_);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const Parameters& pose = parameters_[i];
+      poses[i].T_frame_map = {pose[0], pose[1], normalize_angle(pose[2])};
+    }
     return poses;
   }
 

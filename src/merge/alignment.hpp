@@ -29,7 +29,7 @@ struct AdjustedPose {
 /// poses beforehand: robust least squares (Ceres). The walls of every two maps between which something is
 /// measured are drawn to each other (WallError). In the world's frame, with the fixed maps where they are
 /// known to be, if there are any; otherwise in the frame of the first map. Standard deviations are of the
-/// linearised problem, relative to what holds the frame.
+/// linearised problem without the walls, relative to what holds the frame.
 std::vector<AdjustedPose> align(const std::vector<AlignedMap>& maps,
                                 const std::vector<RelativePose>& measured);
 
