@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include "gridmerge/grid/parallel.hpp"
@@ -47,20 +46,6 @@ constexpr std::size_t kRankedPoses = 12;
 
 double longer_side(const OccupancyGrid& grid) {
   return std::max(grid.width, grid.height) * grid.resolution;
-}
-
-/// Whether `a` should be searched as the moving map: the one with fewer known cells, so that its walls have
-/// the best chance to be met in the other. Any further difference breaks ties, so that the answer does not
-/// depend on which map the caller called fixed.
-bool is_smaller(const PreparedMap& a, const PreparedMap& b) {
-  const auto key = [](const PreparedMap& map) {
-    const OccupancyGrid& grid = map.known();
-    return std::tuple(static_cast<double>(map.counts().known()) * grid.resolution * grid.resolution,
-                      map.counts().occupied, grid.width, grid.height);
-  };
-  const auto key_a = key(a);
-  const auto key_b = key(b);
-  return key_a != key_b ? key_a < key_b : a.known().cells < b.known().cells;
 }
 
 /// A hypothesis between map frames, from one between grid frames in cells.
@@ -189,6 +174,8 @@ void assign_probabilities(std::vector<Hypothesis>& hypotheses, const VerdictFeat
 }
 
 MatchResult match_in_arena(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options) {
+  // The smaller map's walls have the best chance to be met in the other one; and so the answer does not
+  // depend on which map the caller called fixed.
   const bool swapped = is_smaller(fixed, moving);
   const PreparedMap& larger = swapped ? moving : fixed;
   const PreparedMap& smaller = swapped ? fixed : moving;

@@ -19,28 +19,30 @@ namespace {
 
 using Parameters = std::array<double, 3>;  // x, y, theta
 
-/// Where the first map with a fixed pose says that the group's frame lies in the world; the first map's own
-/// frame if there is none.
-SE2 find_frame(const std::vector<AlignedMap>& maps) {
+/// Where the first map with a fixed pose says that the group's frame lies in the world; the frame of the map
+/// at `held` if there is none.
+SE2 find_frame(const std::vector<AlignedMap>& maps, std::size_t held) {
   for (const AlignedMap& map : maps) {
     if (map.known_pose && map.known_pose->fixed)
       return map.known_pose->T_world_map * inverse(map.T_group_map);
   }
-  return inverse(maps.front().T_group_map);
+  return inverse(maps[held].T_group_map);
 }
 
 class Adjustment {
  public:
-  Adjustment(const std::vector<AlignedMap>& maps, const std::vector<RelativePose>& measured) : maps_(maps) {
-    const SE2 T_frame_group = find_frame(maps);
+  /// Without a fixed map, the one at `held` holds the frame.
+  Adjustment(const std::vector<AlignedMap>& maps, const std::vector<RelativePose>& measured, std::size_t held)
+      : maps_(maps) {
+    const SE2 T_frame_group = find_frame(maps, held);
     for (const AlignedMap& map : maps) {
-      const bool held = map.known_pose && map.known_pose->fixed;
-      const SE2 pose = held ? map.known_pose->T_world_map : T_frame_group * map.T_group_map;
-      held_.push_back(held);
+      const bool is_fixed = map.known_pose && map.known_pose->fixed;
+      const SE2 pose = is_fixed ? map.known_pose->T_world_map : T_frame_group * map.T_group_map;
+      held_.push_back(is_fixed);
       parameters_.push_back({pose.x, pose.y, pose.theta});
     }
     is_world_ = std::find(held_.begin(), held_.end(), true) != held_.end();
-    if (!is_world_) held_.front() = true;
+    if (!is_world_) held_[held] = true;
     for (Parameters& pose : parameters_) problem_.AddParameterBlock(pose.data(), 3);
     for (const RelativePose& relative : measured) add(relative);
     add_known_poses();
@@ -49,18 +51,33 @@ class Adjustment {
     }
   }
 
-  std::vector<AdjustedPose> solved(const std::vector<RelativePose>& measured) {
-    solve(problem_);
-    // Before the walls have their say: each of them is precise, but where maps are bent all are off together.
-    std::vector<AdjustedPose> poses(parameters_.size());
-    add_deviations(poses);
+  void add_walls(const std::vector<RelativePose>& measured) {
     for (const RelativePose& relative : measured) add_walls(relative);
+  }
+
+  std::vector<SE2> poses() {
     solve(problem_);
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const Parameters& pose = parameters_[i];
-      poses[i].T_frame_map = {pose[0], pose[1], normalize_angle(pose[2])};
-    }
+    std::vector<SE2> poses;
+    for (const Parameters& pose : parameters_) poses.push_back({pose[0], pose[1], normalize_angle(pose[2])});
     return poses;
+  }
+
+  std::vector<PoseDeviation> deviations() {
+    solve(problem_);
+    std::vector<PoseDeviation> deviations(parameters_.size());
+    std::vector<std::pair<const double*, const double*>> blocks;
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+      if (!held_[i]) blocks.emplace_back(parameters_[i].data(), parameters_[i].data());
+    }
+    ceres::Covariance::Options options;
+    options.algorithm_type = ceres::DENSE_SVD;
+    options.num_threads = 1;
+    ceres::Covariance covariance(options);
+    if (blocks.empty() || !covariance.Compute(blocks, &problem_)) return deviations;
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+      if (!held_[i]) deviations[i] = deviation_of(covariance, i);
+    }
+    return deviations;
   }
 
  private:
@@ -111,27 +128,16 @@ class Adjustment {
     return std::hypot(known.sd_position, known.sd_theta * maps_[place].extent.radius);
   }
 
-  void add_deviations(std::vector<AdjustedPose>& poses) {
-    std::vector<std::pair<const double*, const double*>> blocks;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      if (!held_[i]) blocks.emplace_back(parameters_[i].data(), parameters_[i].data());
-    }
-    ceres::Covariance::Options options;
-    options.algorithm_type = ceres::DENSE_SVD;
-    options.num_threads = 1;
-    ceres::Covariance covariance(options);
-    if (blocks.empty() || !covariance.Compute(blocks, &problem_)) return;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      if (held_[i]) continue;
-      std::array<double, 9> block{};
-      covariance.GetCovarianceBlock(parameters_[i].data(), parameters_[i].data(), block.data());
-      // Of the map's centre, where the pose is known best, not of the frame's origin.
-      const Point2 turned = SE2{0.0, 0.0, parameters_[i][2]} * maps_[i].extent.centre;
-      const double dx = -turned.y, dy = turned.x;  // of the centre, by theta
-      const double xx = block[0] + 2.0 * dx * block[2] + dx * dx * block[8];
-      const double yy = block[4] + 2.0 * dy * block[5] + dy * dy * block[8];
-      poses[i].sd = PoseDeviation{std::sqrt(std::max(0.0, xx + yy)), std::sqrt(std::max(0.0, block[8]))};
-    }
+  /// Of the map's centre, where the pose is known best, not of the frame's origin.
+  PoseDeviation deviation_of(const ceres::Covariance& covariance, std::size_t place) const {
+    const double* pose = parameters_[place].data();
+    std::array<double, 9> block{};
+    covariance.GetCovarianceBlock(pose, pose, block.data());
+    const Point2 turned = SE2{0.0, 0.0, pose[2]} * maps_[place].extent.centre;
+    const double dx = -turned.y, dy = turned.x;  // of the centre, by theta
+    const double xx = block[0] + 2.0 * dx * block[2] + dx * dx * block[8];
+    const double yy = block[4] + 2.0 * dy * block[5] + dy * dy * block[8];
+    return {std::sqrt(std::max(0.0, xx + yy)), std::sqrt(std::max(0.0, block[8]))};
   }
 
   const std::vector<AlignedMap>& maps_;
@@ -143,9 +149,15 @@ class Adjustment {
 
 }  // namespace
 
-std::vector<AdjustedPose> align(const std::vector<AlignedMap>& maps,
-                                const std::vector<RelativePose>& measured) {
-  return Adjustment(maps, measured).solved(measured);
+std::vector<SE2> align(const std::vector<AlignedMap>& maps, const std::vector<RelativePose>& measured) {
+  Adjustment adjustment(maps, measured, 0);
+  adjustment.add_walls(measured);
+  return adjustment.poses();
+}
+
+std::vector<PoseDeviation> find_deviations(const std::vector<AlignedMap>& maps,
+                                           const std::vector<RelativePose>& measured, std::size_t held) {
+  return Adjustment(maps, measured, held).deviations();
 }
 
 }  // namespace gridmerge

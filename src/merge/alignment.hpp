@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -20,17 +21,16 @@ struct AlignedMap {
   std::optional<KnownPose> known_pose;
 };
 
-struct AdjustedPose {
-  SE2 T_frame_map;
-  PoseDeviation sd = {};  ///< 0 for a pose that is held
-};
-
 /// The poses that fit best to what is measured between them, to the maps' walls, and to what is known of the
 /// poses beforehand: robust least squares (Ceres). The walls of every two maps between which something is
 /// measured are drawn to each other (WallError). In the world's frame, with the fixed maps where they are
-/// known to be, if there are any; otherwise in the frame of the first map. Standard deviations are of the
-/// linearised problem without the walls, relative to what holds the frame.
-std::vector<AdjustedPose> align(const std::vector<AlignedMap>& maps,
-                                const std::vector<RelativePose>& measured);
+/// known to be, if there are any; otherwise in the frame of the first map.
+std::vector<SE2> align(const std::vector<AlignedMap>& maps, const std::vector<RelativePose>& measured);
+
+/// How well the poses are known: standard deviations of the linearised problem, relative to the fixed maps
+/// or, if there are none, to the map at `held`; 0 for those. Without the walls: each of them is precise, but
+/// where maps are bent all are off together.
+std::vector<PoseDeviation> find_deviations(const std::vector<AlignedMap>& maps,
+                                           const std::vector<RelativePose>& measured, std::size_t held);
 
 }  // namespace gridmerge

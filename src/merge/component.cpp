@@ -31,30 +31,41 @@ std::vector<RelativePose> measured_in(const NodeGroup& group, const ArrangementP
   return measured;
 }
 
-double finest(const NodeGroup& group, const std::vector<const OccupancyGrid*>& grids) {
-  double resolution = grids[group.front().map]->resolution;
-  for (const PlacedNode& node : group) resolution = std::min(resolution, grids[node.map]->resolution);
+double finest(const NodeGroup& group, const MergeInputs& inputs) {
+  double resolution = inputs.grids[group.front().map]->resolution;
+  for (const PlacedNode& node : group) resolution = std::min(resolution, inputs.grids[node.map]->resolution);
   return resolution;
 }
 
 }  // namespace
 
 Component make_component(const NodeGroup& group, const ArrangementProblem& problem,
-                         const Arrangement& arrangement, const std::vector<const OccupancyGrid*>& grids,
-                         const std::vector<const PreparedMap*>& prepared,
-                         const std::vector<std::optional<KnownPose>>& known_poses, double resolution) {
+                         const Arrangement& arrangement, const MergeInputs& inputs, double resolution) {
   std::vector<AlignedMap> maps;
-  for (const PlacedNode& node : group)
-    maps.push_back({prepared[node.map], node.T_group_map, problem.maps[node.map], known_poses[node.map]});
-  const std::vector<AdjustedPose> poses = align(maps, measured_in(group, problem, arrangement));
+  std::size_t first = 0;  // of the result
+  bool is_world = false;
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    const std::size_t map = group[i].map;
+    maps.push_back({inputs.prepared[map], group[i].T_group_map, problem.maps[map], inputs.known_poses[map]});
+    if (inputs.index[map] < inputs.index[group[first].map]) first = i;
+    is_world = is_world || (inputs.known_poses[map] && inputs.known_poses[map]->fixed);
+  }
+  const std::vector<RelativePose> measured = measured_in(group, problem, arrangement);
+  const std::vector<SE2> poses = align(maps, measured);
+  const std::vector<PoseDeviation> deviations = find_deviations(maps, measured, first);
 
   Component component;
-  std::vector<PlacedMap> placed;
+  const SE2 T_frame_aligned = is_world ? SE2{} : inverse(poses[first]);
   for (std::size_t i = 0; i < group.size(); ++i) {
-    component.members.push_back({group[i].map, poses[i].T_frame_map, group[i].probability, poses[i].sd});
-    placed.push_back({grids[group[i].map], poses[i].T_frame_map});
+    const SE2 T = is_world ? poses[i] : i == first ? SE2{} : T_frame_aligned * poses[i];
+    component.members.push_back({inputs.index[group[i].map], T, group[i].probability, deviations[i]});
   }
-  component.fused = fuse(placed, resolution > 0.0 ? resolution : finest(group, grids));
+  std::vector<PlacedMap> placed;
+  for (std::size_t i = 0; i < group.size(); ++i)
+    placed.push_back({inputs.grids[group[i].map], component.members[i].T_component_map});
+  std::sort(component.members.begin(), component.members.end(),
+            [](const Member& a, const Member& b) { return a.map < b.map; });
+  component.fused = fuse(placed, resolution > 0.0 ? resolution : finest(group, inputs));
   return component;
 }
 

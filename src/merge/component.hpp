@@ -11,11 +11,17 @@
 
 namespace gridmerge {
 
-/// One merged map of the group: its poses adjusted to all that holds it together, in the frame that is asked
-/// for, and its maps fused.
+/// All maps of a merge in one order, whatever is known of each.
+struct MergeInputs {
+  std::vector<const OccupancyGrid*> grids;
+  std::vector<const PreparedMap*> prepared;
+  std::vector<std::optional<KnownPose>> known_poses;
+  std::vector<std::size_t> index;  ///< of the map in the result
+};
+
+/// One merged map of the group: its poses adjusted to all that holds it together, in the world's frame if one
+/// of them is fixed and in that of the member with the lowest index if not, and its maps fused.
 Component make_component(const NodeGroup& group, const ArrangementProblem& problem,
-                         const Arrangement& arrangement, const std::vector<const OccupancyGrid*>& grids,
-                         const std::vector<const PreparedMap*>& prepared,
-                         const std::vector<std::optional<KnownPose>>& known_poses, double resolution);
+                         const Arrangement& arrangement, const MergeInputs& inputs, double resolution);
 
 }  // namespace gridmerge

@@ -9,7 +9,7 @@ namespace gridmerge {
 namespace {
 
 constexpr double kCellsAlongSide = 100.0;
-constexpr std::size_t kMostCentres = 500;
+constexpr std::size_t kMostCentres = 200;
 
 }  // namespace
 
@@ -64,34 +64,29 @@ MapExtent Coverage::extent() const {
   return extent_;
 }
 
-bool Coverage::knows(const Point2& at) const {
-  const Point2 p = T_grid_map_ * at;
-  const double x = p.x / cell_, y = p.y / cell_;
-  if (!(x >= 0.0 && y >= 0.0 && x < width_ && y < height_)) return false;
-  return known_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                static_cast<std::size_t>(x)] != 0;
-}
-
-std::vector<Point2> Coverage::in_common(const Coverage& other, const SE2& T_this_other) const {
-  std::vector<Point2> common;
-  if (other.area_ <= area_) {
-    for (const Point2& centre : other.centres_) {
-      const Point2 here = T_this_other * centre;
-      if (knows(here)) common.push_back(here);
-    }
-  } else {
-    const SE2 T_other_this = inverse(T_this_other);
-    for (const Point2& centre : centres_) {
-      if (other.knows(T_other_this * centre)) common.push_back(centre);
-    }
+InCommon Coverage::in_common(const Coverage& other, const SE2& T_this_other, const SE2& T_frame_this) const {
+  const bool other_is_smaller = other.area_ <= area_;
+  const Coverage& smaller = other_is_smaller ? other : *this;
+  const Coverage& larger = other_is_smaller ? *this : other;
+  if (smaller.centres_.empty()) return {};
+  const SE2 T_larger_smaller = other_is_smaller ? T_this_other : inverse(T_this_other);
+  const SE2 to_grid = larger.T_grid_map_ * T_larger_smaller;
+  const SE2 to_frame = other_is_smaller ? T_frame_this * T_this_other : T_frame_this;
+  const double cg = std::cos(to_grid.theta), sg = std::sin(to_grid.theta);
+  const double cf = std::cos(to_frame.theta), sf = std::sin(to_frame.theta);
+  InCommon common;
+  for (const Point2& centre : smaller.centres_) {
+    const double x = (cg * centre.x - sg * centre.y + to_grid.x) / larger.cell_;
+    const double y = (sg * centre.x + cg * centre.y + to_grid.y) / larger.cell_;
+    if (!(x >= 0.0 && y >= 0.0 && x < larger.width_ && y < larger.height_)) continue;
+    const std::size_t at =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(larger.width_) + static_cast<std::size_t>(x);
+    if (larger.known_[at] == 0) continue;
+    common.places.push_back(
+        {cf * centre.x - sf * centre.y + to_frame.x, sf * centre.x + cf * centre.y + to_frame.y});
   }
+  common.share = static_cast<double>(common.places.size()) / static_cast<double>(smaller.centres_.size());
   return common;
-}
-
-double Coverage::share_in_common(const Coverage& other, const SE2& T_this_other) const {
-  const std::size_t all = other.area_ <= area_ ? other.centres_.size() : centres_.size();
-  return all == 0 ? 0.0
-                  : static_cast<double>(in_common(other, T_this_other).size()) / static_cast<double>(all);
 }
 
 }  // namespace gridmerge

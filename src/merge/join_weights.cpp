@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
-#include <set>
 #include <utility>
 
 #include "pose_graph.hpp"
@@ -70,29 +70,32 @@ double sum_of_dependent(std::vector<double> losses) {
 /// A pair across two groups that speaks for joining them.
 struct Witness {
   double worth;
-  const PlacedNode* in_a;
-  const PlacedNode* in_b;
-  SE2 T_a_b;  // between the two maps
+  std::vector<Point2> places;  // of which it speaks [m, frame of the first group]
 };
 
 /// The places of which pairs have spoken, in cells wide enough that none that has been is missed by chance.
 class SpokenOf {
  public:
-  /// The share of the places, given in a map's frame, that are new; 1 if there are none to tell by.
-  double add(const std::vector<Point2>& places, const SE2& T_group_map) {
-    std::set<std::pair<int, int>> cells;
-    for (const Point2& place : places) {
-      const Point2 at = T_group_map * place;
-      cells.emplace(static_cast<int>(std::floor(at.x / kSide)), static_cast<int>(std::floor(at.y / kSide)));
-    }
-    std::size_t fresh = 0;
-    for (const auto& cell : cells) fresh += cells_.insert(cell).second ? 1 : 0;
-    return cells.empty() ? 1.0 : static_cast<double>(fresh) / static_cast<double>(cells.size());
+  /// The share of the places that are new; 1 if there are none to tell by.
+  double add(const std::vector<Point2>& places) {
+    std::vector<Place> cells;
+    for (const Point2& at : places)
+      cells.emplace_back(static_cast<int>(std::floor(at.x / kSide)),
+                         static_cast<int>(std::floor(at.y / kSide)));
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    std::vector<Place> fresh, all;
+    std::set_difference(cells.begin(), cells.end(), spoken_of_.begin(), spoken_of_.end(),
+                        std::back_inserter(fresh));
+    std::merge(spoken_of_.begin(), spoken_of_.end(), fresh.begin(), fresh.end(), std::back_inserter(all));
+    spoken_of_ = std::move(all);
+    return cells.empty() ? 1.0 : static_cast<double>(fresh.size()) / static_cast<double>(cells.size());
   }
 
  private:
-  static constexpr double kSide = 2.0;  // [m]
-  std::set<std::pair<int, int>> cells_;
+  using Place = std::pair<int, int>;
+  static constexpr double kSide = 4.0;  // [m]
+  std::vector<Place> spoken_of_;        // ascending
 };
 
 /// Of the first of several ways: against the others, and against being apart, which is worth 0.
@@ -136,22 +139,20 @@ std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t a,
   return best;
 }
 
-double JoinWeights::loss_of_missing(std::size_t a, std::size_t b, const SE2& T_a_b) const {
-  if (problem_.coverage.empty()) return 0.0;
-  const double share = problem_.coverage[a]->share_in_common(*problem_.coverage[b], T_a_b);
-  return -kMissNats * std::clamp((share - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
-}
-
 JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE2& T_a_b) const {
   std::vector<double> losses;
   std::vector<Witness> witnesses;
   for (const PlacedNode& in_a : a) {
     for (const PlacedNode& in_b : b) {
       const SE2 T = inverse(in_a.T_group_map) * T_a_b * in_b.T_group_map;
-      const double loss = loss_of_missing(in_a.map, in_b.map, T);
+      InCommon common;
+      if (!problem_.coverage.empty())
+        common = problem_.coverage[in_a.map]->in_common(*problem_.coverage[in_b.map], T, in_a.T_group_map);
+      const double loss =
+          -kMissNats * std::clamp((common.share - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
       const std::optional<Agreement> agreement = find_agreement(in_a.map, in_b.map, T);
       if (agreement && agreement->worth > std::max(loss, 0.0)) {
-        witnesses.push_back({agreement->worth, &in_a, &in_b, T});
+        witnesses.push_back({agreement->worth, std::move(common.places)});
       } else {
         losses.push_back(agreement ? std::max(loss, agreement->worth) : loss);
       }
@@ -164,13 +165,7 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
   SpokenOf spoken_of;
   double dependence = 1.0;
   for (const Witness& witness : witnesses) {
-    double fresh = 1.0;
-    if (!problem_.coverage.empty()) {
-      const Coverage& in_a = *problem_.coverage[witness.in_a->map];
-      const Coverage& in_b = *problem_.coverage[witness.in_b->map];
-      fresh = std::pow(spoken_of.add(in_a.in_common(in_b, witness.T_a_b), witness.in_a->T_group_map),
-                       kFreshPower);
-    }
+    const double fresh = std::pow(spoken_of.add(witness.places), kFreshPower);
     worth.against_apart += fresh * witness.worth;
     worth.against_other_poses += (fresh + (1.0 - fresh) * dependence) * witness.worth;
     dependence *= kDependence;
@@ -178,8 +173,14 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
   return worth;
 }
 
-std::vector<WeighedJoin> JoinWeights::ways_to_join(const NodeGroup& a, const NodeGroup& b) const {
-  std::vector<WeighedJoin> ways;
+/// The distinct poses that candidates of pairs across the groups propose, those first that most pairs agree
+/// with: weighing a pose in full takes a hundred times as long.
+std::vector<SE2> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) const {
+  struct Proposal {
+    SE2 T_a_b;
+    double agreement = 0.0;
+  };
+  std::vector<Proposal> all;
   for (const PlacedNode& in_a : a) {
     for (const PlacedNode& in_b : b) {
       const std::optional<std::size_t>& index = pair_of(in_a.map, in_b.map);
@@ -188,24 +189,40 @@ std::vector<WeighedJoin> JoinWeights::ways_to_join(const NodeGroup& a, const Nod
       for (const CandidateJoin& candidate : pair.candidates) {
         if (candidate.log_odds < kLeastLogOdds) continue;
         const SE2 T = pair.fixed == in_a.map ? candidate.T_fixed_moving : inverse(candidate.T_fixed_moving);
-        const SE2 T_a_b = in_a.T_group_map * T * inverse(in_b.T_group_map);
-        ways.push_back({T_a_b, worth_of(a, b, T_a_b), 0.0});
+        all.push_back({in_a.T_group_map * T * inverse(in_b.T_group_map)});
       }
     }
   }
+  for (Proposal& proposal : all) {
+    for (const PlacedNode& in_a : a) {
+      for (const PlacedNode& in_b : b) {
+        const SE2 T = inverse(in_a.T_group_map) * proposal.T_a_b * in_b.T_group_map;
+        if (const auto agreement = find_agreement(in_a.map, in_b.map, T))
+          proposal.agreement += agreement->worth;
+      }
+    }
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Proposal& x, const Proposal& y) { return x.agreement > y.agreement; });
+  const MapExtent of_a = extent_of(a, problem_.maps), of_b = extent_of(b, problem_.maps);
+  const double distinct = kDistinct * agreement_tolerance(of_a, of_b);
+  std::vector<SE2> kept;
+  for (const Proposal& proposal : all) {
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const SE2& other) {
+      return difference(of_a, of_b, proposal.T_a_b, other) < distinct;
+    });
+    if (is_new) kept.push_back(proposal.T_a_b);
+  }
+  return kept;
+}
+
+std::vector<WeighedJoin> JoinWeights::ways_to_join(const NodeGroup& a, const NodeGroup& b) const {
+  std::vector<WeighedJoin> ways;
+  for (const SE2& T_a_b : proposals(a, b)) ways.push_back({T_a_b, worth_of(a, b, T_a_b), 0.0});
   std::stable_sort(ways.begin(), ways.end(), [](const WeighedJoin& x, const WeighedJoin& y) {
     return x.worth.against_other_poses > y.worth.against_other_poses;
   });
-  const MapExtent of_a = extent_of(a, problem_.maps), of_b = extent_of(b, problem_.maps);
-  const double distinct = kDistinct * agreement_tolerance(of_a, of_b);
-  std::vector<WeighedJoin> kept;
-  for (const WeighedJoin& way : ways) {
-    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const WeighedJoin& other) {
-      return difference(of_a, of_b, way.T_a_b, other.T_a_b) < distinct;
-    });
-    if (is_new) kept.push_back(way);
-  }
-  return kept;
+  return ways;
 }
 
 WeighedJoin JoinWeights::best_join(const NodeGroup& a, const NodeGroup& b) const {

@@ -67,7 +67,7 @@ class JoinWeights {
   const std::optional<std::size_t>& pair_of(std::size_t a, std::size_t b) const;
   /// T takes points of map b to map a.
   std::optional<Agreement> find_agreement(std::size_t a, std::size_t b, const SE2& T_a_b) const;
-  double loss_of_missing(std::size_t a, std::size_t b, const SE2& T_a_b) const;
+  std::vector<SE2> proposals(const NodeGroup& a, const NodeGroup& b) const;
   std::vector<WeighedJoin> ways_to_join(const NodeGroup& a, const NodeGroup& b) const;
   std::vector<Edge> edges_of(const NodeGroup& group) const;
 

@@ -47,6 +47,37 @@ Join make_join(std::size_t fixed, std::size_t moving, MatchResult match) {
   return join;
 }
 
+Join make_join(std::size_t fixed, std::size_t moving, MatchResult match, const CandidateJoin* used) {
+  Join join = make_join(fixed, moving, std::move(match));
+  const bool is_believed = join.outcome == JoinOutcome::accepted;
+  if (used == nullptr) {
+    join.outcome = is_believed ? JoinOutcome::rejected : JoinOutcome::refused;
+    return join;
+  }
+  const bool is_best = used->T_fixed_moving == join.match.T_fixed_moving;
+  join.outcome = is_believed && is_best ? JoinOutcome::accepted : JoinOutcome::rescued;
+  join.T_fixed_moving = used->T_fixed_moving;
+  join.probability = 0.0;  // the maps themselves say nothing of what is known beforehand
+  for (const Hypothesis& hypothesis : join.match.hypotheses) {
+    if (hypothesis.T_fixed_moving == used->T_fixed_moving) join.probability = hypothesis.probability;
+  }
+  return join;
+}
+
+MatchResult inverted(MatchResult match) {
+  match.T_fixed_moving = inverse(match.T_fixed_moving);
+  for (Hypothesis& hypothesis : match.hypotheses)
+    hypothesis.T_fixed_moving = inverse(hypothesis.T_fixed_moving);
+  return match;
+}
+
+Join inverted(Join join) {
+  std::swap(join.fixed, join.moving);
+  join.match = inverted(std::move(join.match));
+  join.T_fixed_moving = inverse(join.T_fixed_moving);
+  return join;
+}
+
 Reason why_left_out(const std::vector<Join>& joins, std::size_t map) {
   const Join* nearest = nullptr;
   for (const Join& join : joins) {

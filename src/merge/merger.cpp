@@ -31,11 +31,6 @@ struct Input {
   Coverage coverage;
 };
 
-JoinOutcome outcome_of(const MatchResult& match, bool is_used) {
-  if (match.verdict == Verdict::accepted) return is_used ? JoinOutcome::accepted : JoinOutcome::rejected;
-  return is_used ? JoinOutcome::rescued : JoinOutcome::refused;
-}
-
 }  // namespace
 
 class Merger::State {
@@ -87,16 +82,23 @@ class Merger::State {
     MergeResult result;
     with_threads(options_.match.threads, [&] {
       match_new_pairs();
-      const ArrangementProblem problem = make_problem();
+      const std::vector<MapId> maps = in_canonical_order();
+      const ArrangementProblem problem = make_problem(maps);
       const Arrangement arrangement = arrange(problem, options_.match.accept_probability);
-      result.joins = make_joins(problem, arrangement);
-      add_components(problem, arrangement, result);
+      result.joins = make_joins(maps, problem, arrangement);
+      add_components(maps, problem, arrangement, result);
     });
     return result;
   }
 
  private:
   using Pair = std::pair<MapId, MapId>;  // the lower id first
+
+  /// A match as it was made.
+  struct Made {
+    MapId fixed;
+    MatchResult match;
+  };
 
   void require(MapId id) const {
     if (!inputs_.contains(id)) throw std::out_of_range("there is no map " + std::to_string(id));
@@ -107,105 +109,127 @@ class Merger::State {
                   [&](const auto& match) { return match.first.first == id || match.first.second == id; });
   }
 
+  /// An order that depends on the maps alone, so that sums are made in the same order whatever order they
+  /// came in.
+  std::vector<MapId> in_canonical_order() const {
+    std::vector<MapId> maps = ids();
+    std::stable_sort(maps.begin(), maps.end(), [&](MapId a, MapId b) {
+      return is_smaller(inputs_.at(a).prepared, inputs_.at(b).prepared);
+    });
+    return maps;
+  }
+
   void match_new_pairs() {
     std::vector<Pair> pairs;
-    for (auto a = inputs_.begin(); a != inputs_.end(); ++a) {
-      for (auto b = std::next(a); b != inputs_.end(); ++b) {
-        const Pair pair{a->first, b->first};
-        if (!matches_.contains(pair)) pairs.push_back(pair);
+    const std::vector<MapId> maps = in_canonical_order();
+    for (auto a = maps.begin(); a != maps.end(); ++a) {
+      for (auto b = std::next(a); b != maps.end(); ++b) {
+        if (!matches_.contains(std::minmax(*a, *b))) pairs.emplace_back(*a, *b);
       }
     }
     std::vector<MatchResult> results(pairs.size());
     std::mutex reporting;
     std::size_t done = 0;
     parallel_for(pairs.size(), [&](std::size_t i) {
-      const auto [a, b] = pairs[i];
-      results[i] = match(inputs_.at(a).prepared, inputs_.at(b).prepared, options_.match);
+      const auto [fixed, moving] = pairs[i];
+      results[i] = match(inputs_.at(fixed).prepared, inputs_.at(moving).prepared, options_.match);
       const std::lock_guard lock(reporting);
       ++done;
       if (options_.progress) options_.progress(done, pairs.size());
     });
-    for (std::size_t i = 0; i < pairs.size(); ++i) matches_[pairs[i]] = std::move(results[i]);
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      matches_[std::minmax(pairs[i].first, pairs[i].second)] = {pairs[i].first, std::move(results[i])};
   }
 
-  std::vector<std::optional<KnownPose>> known_poses() const {
-    std::vector<std::optional<KnownPose>> poses;
-    for (const auto& [id, input] : inputs_) {
-      const auto known = known_poses_.find(id);
-      poses.push_back(known == known_poses_.end() ? std::nullopt : std::optional(known->second));
-    }
-    return poses;
+  MatchResult match_between(MapId fixed, MapId moving) const {
+    const Made& made = matches_.at(std::minmax(fixed, moving));
+    return made.fixed == fixed ? made.match : inverted(made.match);
   }
 
-  ArrangementProblem make_problem() const {
+  std::optional<KnownPose> known_pose(MapId id) const {
+    const auto known = known_poses_.find(id);
+    return known == known_poses_.end() ? std::nullopt : std::optional(known->second);
+  }
+
+  ArrangementProblem make_problem(const std::vector<MapId>& maps) const {
     ArrangementProblem problem;
-    for (const auto& [id, input] : inputs_) {
-      problem.coverage.push_back(&input.coverage);
-      problem.maps.push_back(input.coverage.extent());
+    for (const MapId id : maps) {
+      problem.coverage.push_back(&inputs_.at(id).coverage);
+      problem.maps.push_back(inputs_.at(id).coverage.extent());
     }
-    const std::vector<MapId> by_place = ids();
-    const std::vector<std::optional<KnownPose>> known = known_poses();
-    for (std::size_t a = 0; a < by_place.size(); ++a) {
-      for (std::size_t b = a + 1; b < by_place.size(); ++b) {
-        PairCandidates pair{a, b, candidate_joins(matches_.at({by_place[a], by_place[b]}))};
-        if (known[a] && known[b])
-          apply_known_poses(*known[a], *known[b], problem.maps[a], problem.maps[b], pair);
+    for (std::size_t a = 0; a < maps.size(); ++a) {
+      for (std::size_t b = a + 1; b < maps.size(); ++b) {
+        PairCandidates pair{a, b, candidate_joins(match_between(maps[a], maps[b]))};
+        const std::optional<KnownPose> of_a = known_pose(maps[a]), of_b = known_pose(maps[b]);
+        if (of_a && of_b) apply_known_poses(*of_a, *of_b, problem.maps[a], problem.maps[b], pair);
         problem.pairs.push_back(std::move(pair));
       }
     }
     return problem;
   }
 
-  std::vector<Join> make_joins(const ArrangementProblem& problem, const Arrangement& arrangement) const {
-    const std::vector<MapId> by_place = ids();
+  /// In the order in which the maps were added.
+  std::vector<Join> make_joins(const std::vector<MapId>& maps, const ArrangementProblem& problem,
+                               const Arrangement& arrangement) const {
+    std::map<std::size_t, std::size_t> used;  // candidate by pair
+    for (const UsedCandidate& one : arrangement.used) used[one.pair] = one.candidate;
+    const std::vector<std::size_t> index = places_of(maps);
     std::vector<Join> joins;
-    for (const PairCandidates& pair : problem.pairs) {
-      Join join =
-          make_join(pair.fixed, pair.moving, matches_.at({by_place[pair.fixed], by_place[pair.moving]}));
-      join.outcome = outcome_of(join.match, false);
-      joins.push_back(std::move(join));
+    for (std::size_t i = 0; i < problem.pairs.size(); ++i) {
+      const PairCandidates& pair = problem.pairs[i];
+      const MatchResult match = match_between(maps[pair.fixed], maps[pair.moving]);
+      const CandidateJoin* candidate = used.contains(i) ? &pair.candidates[used.at(i)] : nullptr;
+      Join join = make_join(index[pair.fixed], index[pair.moving], match, candidate);
+      joins.push_back(join.fixed < join.moving ? std::move(join) : inverted(join));
     }
-    for (const UsedCandidate& used : arrangement.used) {
-      Join& join = joins[used.pair];
-      join.T_fixed_moving = problem.pairs[used.pair].candidates[used.candidate].T_fixed_moving;
-      bool is_best = join.T_fixed_moving == join.match.T_fixed_moving;
-      join.outcome = is_best ? outcome_of(join.match, true) : JoinOutcome::rescued;
-      join.probability = 0.0;  // of what is known beforehand the maps say nothing
-      for (const Hypothesis& hypothesis : join.match.hypotheses) {
-        if (hypothesis.T_fixed_moving == join.T_fixed_moving) join.probability = hypothesis.probability;
-      }
-    }
+    std::sort(joins.begin(), joins.end(), [](const Join& a, const Join& b) {
+      return std::pair(a.fixed, a.moving) < std::pair(b.fixed, b.moving);
+    });
     return joins;
   }
 
-  void add_components(const ArrangementProblem& problem, const Arrangement& arrangement,
-                      MergeResult& result) const {
-    std::vector<const OccupancyGrid*> grids;
-    std::vector<const PreparedMap*> prepared;
-    for (const auto& [id, input] : inputs_) {
-      grids.push_back(input.grid.get());
-      prepared.push_back(&input.prepared);
+  /// Where each of these maps stands among all in the order in which they were added.
+  std::vector<std::size_t> places_of(const std::vector<MapId>& maps) const {
+    const std::vector<MapId> order = ids();
+    std::vector<std::size_t> places;
+    for (const MapId id : maps)
+      places.push_back(
+          static_cast<std::size_t>(std::lower_bound(order.begin(), order.end(), id) - order.begin()));
+    return places;
+  }
+
+  void add_components(const std::vector<MapId>& maps, const ArrangementProblem& problem,
+                      const Arrangement& arrangement, MergeResult& result) const {
+    MergeInputs inputs;
+    inputs.index = places_of(maps);
+    for (const MapId id : maps) {
+      inputs.grids.push_back(inputs_.at(id).grid.get());
+      inputs.prepared.push_back(&inputs_.at(id).prepared);
+      inputs.known_poses.push_back(known_pose(id));
     }
-    const std::vector<std::optional<KnownPose>> known = known_poses();
     for (const NodeGroup& group : arrangement.groups) {
       if (group.size() == 1) {
-        result.left_out.push_back(group.front().map);
-        result.left_out_reasons.push_back(why_left_out(result.joins, group.front().map));
+        result.left_out.push_back(inputs.index[group.front().map]);
       } else {
-        result.components.push_back(
-            make_component(group, problem, arrangement, grids, prepared, known, options_.resolution));
+        result.components.push_back(make_component(group, problem, arrangement, inputs, options_.resolution));
       }
     }
-    std::stable_sort(
-        result.components.begin(), result.components.end(),
-        [](const Component& a, const Component& b) { return a.members.size() > b.members.size(); });
+    std::sort(result.left_out.begin(), result.left_out.end());
+    for (const std::size_t map : result.left_out)
+      result.left_out_reasons.push_back(why_left_out(result.joins, map));
+    std::sort(result.components.begin(), result.components.end(), [](const Component& a, const Component& b) {
+      const auto key = [](const Component& c) {
+        return std::pair(-std::ssize(c.members), c.members.front().map);
+      };
+      return key(a) < key(b);
+    });
   }
 
   MergeOptions options_;
   MapId next_ = 0;
   std::map<MapId, Input> inputs_;
   std::map<MapId, KnownPose> known_poses_;
-  std::map<Pair, MatchResult> matches_;
+  std::map<Pair, Made> matches_;
 };
 
 Merger::Merger(MergeOptions options) : state_(std::make_unique<State>(std::move(options))) {}

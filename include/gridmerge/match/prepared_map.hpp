@@ -30,4 +30,8 @@ class PreparedMap {
   mutable std::map<double, std::unique_ptr<const WallMap>> walls_;  // by cell
 };
 
+/// Orders maps by what they hold, not by where they come from: by their known area, and what differs between
+/// maps of the same area. Of two maps the smaller is searched in the larger one.
+bool is_smaller(const PreparedMap& a, const PreparedMap& b);
+
 }  // namespace gridmerge

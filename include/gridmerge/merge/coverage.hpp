@@ -15,6 +15,12 @@ struct MapExtent {
   double side = 0.0;    ///< of the known cells, the longer one [m]
 };
 
+/// What two maps both know.
+struct InCommon {
+  double share = 0.0;          ///< of the smaller map's known area
+  std::vector<Point2> places;  ///< evenly drawn, at most 200 [m]
+};
+
 /// Where a map knows anything, coarsely: about 100 cells to its longer side.
 class Coverage {
  public:
@@ -23,16 +29,11 @@ class Coverage {
 
   MapExtent extent() const;
 
-  /// The share of the smaller map's known area that both know when they lie so, to a few per cent. O(1).
-  double share_in_common(const Coverage& other, const SE2& T_this_other) const;
-
-  /// Places that both know when they lie so, evenly drawn of the smaller map's [m, this map's frame]; at most
-  /// 500. O(1).
-  std::vector<Point2> in_common(const Coverage& other, const SE2& T_this_other) const;
+  /// What both know when they lie so, to a few per cent of it; the places in the frame to which
+  /// `T_frame_this` takes this map's. O(1).
+  InCommon in_common(const Coverage& other, const SE2& T_this_other, const SE2& T_frame_this = {}) const;
 
  private:
-  bool knows(const Point2& at) const;
-
   SE2 T_grid_map_;  // map frame to coarse cells' frame [m]
   double cell_ = 1.0;
   int width_ = 0, height_ = 0;
