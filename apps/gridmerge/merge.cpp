@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -36,7 +37,7 @@ struct MergeCommandOptions {
 
 struct Inputs {
   std::vector<OccupancyGrid> maps;
-  std::vector<std::filesystem::path> files;  // that they were read from
+  std::vector<std::filesystem::path> files;  // that all of it was read from
 };
 
 Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
@@ -61,8 +62,9 @@ MergeResult merge_up_tree_named(const std::vector<OccupancyGrid>& maps, const Me
   return merge_up_tree(maps, match_named, engine);
 }
 
-MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeCommandOptions& options,
-                       PairMatcher& matcher, Console& console) {
+MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
+                       const std::vector<std::optional<KnownPose>>& known_poses,
+                       const MergeCommandOptions& options, PairMatcher& matcher, Console& console) {
   const auto progress = [&](std::size_t done, std::size_t total) {
     console.progress(static_cast<double>(done) / static_cast<double>(total));
   };
@@ -73,7 +75,7 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps, const MergeComman
     engine.match = match_options(options.common, options.search);
     engine.resolution = options.output_resolution;
     engine.progress = progress;
-    return merge(maps, engine, load_known_poses(options.known, options.maps));
+    return merge(maps, engine, known_poses);
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one
     throw FileError(options.output, error.what());
   }
@@ -129,11 +131,13 @@ void try_trace(const MergeCommandOptions& options, const std::vector<std::filesy
 
 int run_merge(const MergeCommandOptions& options) {
   Console console(options.common);
-  const Inputs inputs = load_inputs(options, console);
+  const std::vector<std::optional<KnownPose>> known_poses = load_known_poses(options.known, options.maps);
+  Inputs inputs = load_inputs(options, console);
+  if (!options.known.init.empty()) inputs.files.push_back(options.known.init);
   prepare_merge_output(options.output, inputs.files);
   PairMatcher matcher(options.common, options.search);
   if (!options.search.trace.empty()) try_trace(options, inputs.files);
-  const MergeResult result = merge_maps(inputs.maps, options, matcher, console);
+  const MergeResult result = merge_maps(inputs.maps, known_poses, options, matcher, console);
   console.clear();
   write_merge_output(options.output, inputs.files, options.maps, inputs.maps, result);
   matcher.write_trace();
@@ -169,8 +173,16 @@ void add_merge(CLI::App& app, Action& action) {
   command->footer(
       "Writes merged.yaml and merged.pgm for map_server, transforms.json, preview.png and report.html. Maps\n"
       "that do not fit are left out and the exit code is 3.\n\n"
-      "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged");
-  command->callback([options, &action] { action = [options] { return run_merge(*options); }; });
+      "Every pair is matched, and what all pairs say together decides: a weak pair that agrees with the\n"
+      "others is used (rescued), a strong one that contradicts them is not (rejected).\n\n"
+      "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged\n"
+      "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged");
+  command->callback([options, &action] {
+    const bool knows_poses = !options->known.init.empty() || !options->known.fix.empty();
+    if (knows_poses && options->search.up_the_tree())
+      throw CLI::ValidationError(options->known.init.empty() ? "--fix" : "--init", "needs --strategy joint");
+    action = [options] { return run_merge(*options); };
+  });
 }
 
 }  // namespace gridmerge::cli

@@ -23,7 +23,7 @@ constexpr double kMostLogOdds = 6.0;
 constexpr double kDependence = 0.3;
 /// A pair of whose places a share is fresh speaks of them with this power of the share: what borders on known
 /// places is not independent of them either.
-constexpr double kFreshPower = 3.0;
+constexpr double kFreshPower = 2.0;
 /// Candidates less likely than this propose no join, though they may agree with one.
 constexpr double kLeastLogOdds = -6.0;
 /// The loss when two maps that would have much in common have no candidate that agrees, and the shares of the

@@ -143,6 +143,66 @@ TEST_F(Merge, ReplacesAnEarlierResult) {
   EXPECT_EQ(Json::parse(read_file(output + "/transforms.json")).at("left_out"), Json::array());
 }
 
+TEST_F(Merge, BothStrategiesPutTheMapsInTheSamePlace) {
+  for (const std::string strategy : {"joint", "tree"}) {
+    ASSERT_EQ(run({"merge", left, right, "-o", output, "--strategy", strategy}).exit_code, 0);
+    const Json json = Json::parse(read_file(output + "/transforms.json"));
+    const Json& member = json.at("components").at(0).at("members").at(1);
+    expect_near(member.at("transform"), T_left_right, 0.1, 0.007);
+    EXPECT_EQ(member.at("probability").is_null(), strategy == "tree");
+  }
+}
+
+TEST_F(Merge, FixedMapsMakeTheFrame) {
+  ASSERT_EQ(run({"merge", left, right, "-o", output, "--fix", right}).exit_code, 0);
+  Json members = Json::parse(read_file(output + "/transforms.json")).at("components").at(0).at("members");
+  expect_near(members.at(1).at("transform"), {}, 1e-12, 1e-12);
+  expect_near(members.at(0).at("transform"), inverse(T_left_right), 0.1, 0.007);
+
+  const std::string poses = directory.write("poses.tsv", "map\tx\ty\ttheta\nright.yaml\t100\t-50\t1.5\n");
+  ASSERT_EQ(run({"merge", left, right, "-o", output, "--fix", right, "--init", poses}).exit_code, 0);
+  members = Json::parse(read_file(output + "/transforms.json")).at("components").at(0).at("members");
+  expect_near(members.at(1).at("transform"), {100.0, -50.0, 1.5}, 1e-12, 1e-12);
+}
+
+TEST_F(Merge, InitialPosesJoinWhatTheMapsAloneDoNot) {
+  const std::string poses =
+      directory.write("poses.tsv", "map\tx\ty\ttheta\tsd\tsd_theta\n" + left +
+                                       "\t0\t0\t0\t0.1\t0.01\nother.yaml\t30\t0\t0\t0.1\t0.01\n");
+  const Outcome outcome = run({"merge", left, other, "-o", output, "--init", poses});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Json json = Json::parse(read_file(output + "/transforms.json"));
+  EXPECT_EQ(json.at("joins").at(0).at("outcome"), "rescued");
+  expect_near(json.at("components").at(0).at("members").at(1).at("transform"), {30.0, 0.0, 0.0}, 0.5, 0.05);
+}
+
+TEST_F(Merge, SaysWhatIsWrongWithInitialPoses) {
+  const auto expect_bad = [&](const std::string& table, const std::string& cause) {
+    const std::string poses = directory.write("poses.tsv", table);
+    expect_error(run({"merge", left, right, "-o", output, "--init", poses}), poses, cause);
+    EXPECT_FALSE(std::filesystem::exists(output));
+  };
+  const std::string head = "map\tx\ty\ttheta\n";
+  expect_bad("map\tx\ty\n", "theta");
+  expect_bad(head + "nowhere.yaml\t0\t0\t0\n", "none of the maps");
+  expect_bad(head + "left.yaml\tnan\t0\t0\n", "finite");
+  expect_bad(head + "left.yaml\t0\t0\t0\nleft.yaml\t1\t0\t0\n", "a second time");
+  expect_bad(head + "left.yaml\t0\t0\t0\n" + left + "\t1\t0\t0\n", "named before");
+  expect_bad("map\tx\ty\ttheta\tsd\nleft.yaml\t0\t0\t0\t-1\n", "positive");
+  const std::string poses = directory.write("poses.tsv", head + "left.yaml\t0\t0\t0\n");
+  expect_error(run({"merge", left, right, "-o", output, "--init", poses, "--fix", right}), right, "no pose");
+  expect_error(run({"merge", left, right, "-o", output, "--fix", other}), other, "none of the maps");
+  expect_error(run({"merge", left, right, "-o", output, "--fix", left, "--fix", right}), left, "no pose");
+}
+
+TEST_F(Merge, OptionsThatDoNotGoTogetherAreAUsageError) {
+  EXPECT_EQ(run({"merge", left, right, "-o", output, "--strategy", "tree", "--fix", left}).exit_code, 2);
+  EXPECT_EQ(
+      run({"merge", left, right, "-o", output, "--search", "random-walk", "--strategy", "joint"}).exit_code,
+      2);
+  EXPECT_EQ(run({"merge", left, right, "-o", output, "--strategy", "best"}).exit_code, 2);
+}
+
 TEST_F(Merge, AnOutputDirectoryThatCannotBeWrittenIsAnError) {
   const std::string file = directory.write("file", "not a directory");
   expect_error(run({"merge", left, right, "-o", file}), file, "");

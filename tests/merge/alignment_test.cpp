@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "merge/alignment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "gridmerge/merge/coverage.hpp"
+#include "merge/wall_error.hpp"
+#include "support/building.hpp"
+
+namespace gridmerge {
+namespace {
+
+/// A map that knows nothing, so that only what is measured counts.
+struct Blank {
+  OccupancyGrid grid = make_grid(4, 4, 0.1);
+  PreparedMap prepared{grid};
+  MapExtent extent{{1.0, 2.0}, 5.0, 20.0};
+};
+
+TEST(Align, MeetsWhatIsMeasured) {
+  const Blank blank;
+  const SE2 T01{3.0, 1.0, 0.5}, T12{-2.0, 4.0, 1.0};
+  const std::vector<AlignedMap> maps(3, {&blank.prepared, {}, blank.extent, {}});
+  const std::vector<RelativePose> measured{measured_between(0, 1, T01, blank.extent, blank.extent, 0.1),
+                                           measured_between(1, 2, T12, blank.extent, blank.extent, 0.1)};
+  const std::vector<SE2> poses = align(maps, measured);
+  EXPECT_EQ(poses[0], SE2{});
+  EXPECT_LT(displacement(blank.extent, poses[1], T01), 1e-6);
+  EXPECT_LT(displacement(blank.extent, poses[2], T01 * T12), 1e-6);
+}
+
+TEST(FindDeviations, AddUpAlongAChainAndShrinkInACycle) {
+  const Blank blank;
+  const std::vector<AlignedMap> maps(3, {&blank.prepared, {}, blank.extent, {}});
+  std::vector<RelativePose> measured{measured_between(0, 1, {}, blank.extent, blank.extent, 0.1),
+                                     measured_between(1, 2, {}, blank.extent, blank.extent, 0.1)};
+  const std::vector<PoseDeviation> chain = find_deviations(maps, measured, 0);
+  EXPECT_EQ(chain[0].position, 0.0);
+  EXPECT_NEAR(chain[1].position, 0.1 * std::sqrt(2.0), 1e-6);  // in x and in y
+  EXPECT_NEAR(chain[1].theta, 0.1 / 5.0, 1e-6);
+  EXPECT_NEAR(chain[2].position, 0.2, 1e-6);
+  EXPECT_NEAR(find_deviations(maps, measured, 2)[0].position, 0.2, 1e-6);
+  measured.push_back(measured_between(0, 2, {}, blank.extent, blank.extent, 0.1));
+  EXPECT_NEAR(find_deviations(maps, measured, 0)[2].position, 0.1 * std::sqrt(2.0 * 2.0 / 3.0), 1e-6);
+}
+
+TEST(Align, DrawsTheWallsOfTheMapsToEachOther) {
+  const OccupancyGrid building = test::draw_building(1);
+  const PreparedMap prepared(building);
+  const Coverage coverage(prepared.known());
+  const SE2 off{0.2, -0.15, 0.01};
+  const std::vector<AlignedMap> maps(2, {&prepared, {}, coverage.extent(), {}});
+  const std::vector<RelativePose> measured{
+      measured_between(0, 1, off, coverage.extent(), coverage.extent(), 0.3)};
+  const std::vector<SE2> poses = align(maps, measured);
+  EXPECT_GT(displacement(coverage.extent(), off, {}), 0.15);
+  EXPECT_LT(displacement(coverage.extent(), poses[1], {}), 0.05);
+}
+
+TEST(WallError, ItsDerivativesAreThoseOfItsResiduals) {
+  const WallMap fixed = make_wall_map(test::draw_building(1), 0.1);
+  OccupancyGrid elsewhere = test::draw_building(1);
+  elsewhere.origin = {3.0, -1.0, 0.7};
+  const WallMap moving = make_wall_map(elsewhere, 0.1);
+  const WallError error(fixed, moving, 2.0);
+  const auto count = static_cast<std::size_t>(error.num_residuals());
+  ASSERT_GT(count, 100u);
+  double poses[2][3] = {{0.5, -0.25, 0.1}, {0.0, 0.0, 0.0}};
+  const SE2 T = SE2{0.5, -0.25, 0.1} * inverse(elsewhere.origin) * SE2{0.13, 0.07, 0.01};
+  poses[1][0] = T.x;
+  poses[1][1] = T.y;
+  poses[1][2] = T.theta;
+  std::vector<double> residuals(count), jacobian_fixed(3 * count), jacobian_moving(3 * count);
+  double* jacobians[2] = {jacobian_fixed.data(), jacobian_moving.data()};
+  const double* both[2] = {poses[0], poses[1]};
+  ASSERT_TRUE(error.Evaluate(both, residuals.data(), jacobians));
+  constexpr double kStep = 1e-6;
+  for (int block = 0; block < 2; ++block) {
+    for (int k = 0; k < 3; ++k) {
+      std::vector<double> above(count), below(count);
+      const double here = poses[block][k];
+      poses[block][k] = here + kStep;
+      error.Evaluate(both, above.data(), nullptr);
+      poses[block][k] = here - kStep;
+      error.Evaluate(both, below.data(), nullptr);
+      poses[block][k] = here;
+      std::size_t differing = 0;  // a wall that crosses from cell to cell has none
+      for (std::size_t i = 0; i < count; ++i) {
+        const double numeric = (above[i] - below[i]) / (2.0 * kStep);
+        if (std::abs(numeric - jacobians[block][3 * i + static_cast<std::size_t>(k)]) >
+            1e-4 * (1.0 + std::abs(numeric)))
+          ++differing;
+      }
+      EXPECT_LE(differing, count / 100) << block << ' ' << k;
+    }
+  }
+}
+
+TEST(Coverage, SharesAreThoseOfTheSmallerMap) {
+  const OccupancyGrid building = test::draw_building(1);  // 18 m x 13 m
+  const Coverage whole(building);
+  const Coverage half(test::map_part(building, {0, 0, 9, 13}, {}));
+  EXPECT_NEAR(whole.in_common(half, {}).share, 1.0, 0.02);
+  EXPECT_NEAR(half.in_common(whole, {}).share, 1.0, 0.02);
+  EXPECT_NEAR(half.in_common(half, {4.5, 0.0, 0.0}).share, 0.5, 0.05);
+  EXPECT_EQ(half.in_common(half, {100.0, 0.0, 0.0}).share, 0.0);
+  EXPECT_NEAR(half.extent().side, 13.0, 0.3);
+  for (const Point2& place : half.in_common(half, {4.5, 0.0, 0.0}, {0.0, 100.0, 0.0}).places) {
+    EXPECT_GT(place.x, 4.0);
+    EXPECT_GT(place.y, 99.0);
+  }
+}
+
+}  // namespace
+}  // namespace gridmerge
