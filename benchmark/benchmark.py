@@ -5,7 +5,7 @@ there are any. Writes OUTPUT/report.md with plots beside it.
 
 usage: benchmark/benchmark.py --gridmerge BINARY --output DIR [--data DIR] [--full]
 
-By default about ten minutes on two cores; --full takes eight times as many cases.
+By default about a quarter of an hour on two cores; --full takes eight times as many cases.
 """
 
 import argparse
@@ -17,11 +17,7 @@ import os
 import pathlib
 import subprocess
 import sys
-
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+import time
 
 BASE = {"--kind": "office", "--size": "40x25", "--robots": "2", "--overlap": "0.5", "--drift": "0.3", "--others": "1"}
 
@@ -39,7 +35,8 @@ FAMILIES = {
     "size": ("side of the building [m]", [({"--size": f"{v}x{v}"}, v) for v in (10, 20, 40, 80, 160, 200)]),
 }
 RATIOS = (1, 2, 3, 4, 6)          # of the two maps' cells
-TEAMS = (2, 4, 6, 8)              # robots
+TEAM_KINDS = ("office", "hall", "loop", "apartment")
+TEAM_SIZES = (2, 5, 10, 20, 30)   # robots of one floor of 100 m x 60 m
 WALK_OVERLAPS = ("0.9", "0.6", "0.3")
 
 
@@ -116,18 +113,38 @@ class Bench:
         return run([self.gridmerge, "simulate", "-o", folder, "--threads", 1, "--quiet", *words])[0] == 0
 
     def teams(self) -> list[dict]:
-        rows = []
-        for robots in TEAMS:
-            counts = {"maps": 0, "correct": 0, "wrong": 0, "left out": 0, "complete sets": 0, "sets": 0}
-            for seed in range(1, max(2, self.repeats // 4) + 1):
-                folder = self.output / "cases" / f"team_{robots}_{seed}"
-                if not self.simulate(folder, {"--robots": str(robots), "--overlap": "0.4", "--size": "50x35"}, seed):
+        """Teams of six with a map of another building among theirs, merged jointly and up the tree."""
+        rows = [{"strategy": strategy, "maps": 0, "right": 0, "wrong": 0, "left out": 0} for strategy in ("joint", "tree")]
+        for kind in TEAM_KINDS:
+            for seed in range(1, max(2, self.repeats // 2) + 1):
+                folder = self.output / "cases" / f"team_{kind}_{seed}"
+                size = "18x13" if kind == "apartment" else "45x30"
+                if not self.simulate(folder, {"--kind": kind, "--robots": "6", "--size": size}, seed):
                     continue
-                sets = self.evaluate(folder, "--sets", folder / "sets.tsv")[0]["sets"]
-                for key, name in (("maps", "maps"), ("correct", "maps_correct"), ("wrong", "maps_wrong"),
-                                  ("left out", "maps_left_out"), ("complete sets", "complete"), ("sets", "total")):
-                    counts[key] += sets[name]
-            rows.append({"robots": robots} | counts)
+                for row in rows:
+                    sets = self.evaluate(folder, "--sets", folder / "sets.tsv", "--strategy", row["strategy"])[0]["sets"]
+                    for key, name in (("maps", "maps"), ("right", "maps_correct"), ("wrong", "maps_wrong"),
+                                      ("left out", "maps_left_out")):
+                        row[key] += sets[name]
+        return rows
+
+    def team_sizes(self) -> list[dict]:
+        """The first k of 30 robots of one floor: time and memory of gridmerge merge, both threads."""
+        folder = self.output / "cases" / "team_30"
+        if not self.simulate(folder, {"--robots": "30", "--size": "100x60", "--overlap": "0.8", "--others": "0"}, 1):
+            return []
+        rows = []
+        for robots in TEAM_SIZES:
+            maps = [folder / f"robot_{i}.yaml" for i in range(1, robots + 1)]
+            start = time.monotonic()
+            code, memory = run([self.gridmerge, "merge", *maps, "-o", folder / "merged", "--quiet"])
+            seconds = time.monotonic() - start
+            if code not in (0, 3):
+                sys.exit(f"benchmark: merging {robots} maps failed")
+            merged = json.loads((folder / "merged" / "transforms.json").read_text())
+            rows.append({"maps": robots, "pairs": robots * (robots - 1) // 2, "seconds": f"{seconds:.1f}",
+                         "peak MB": f"{memory:.0f}", "components": len(merged["components"]),
+                         "left out": len(merged["left_out"])})
         return rows
 
     def walk(self) -> list[dict]:
@@ -175,7 +192,18 @@ def share(row: dict, key: str) -> float:
     return row[key] / row["pairs"] if row["pairs"] else 0.0
 
 
+def pyplot():
+    """Imported late: a child's peak memory counts from that of the process that started it."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot
+
+    return matplotlib.pyplot
+
+
 def plot_family(rows: list[dict], label: str, path: pathlib.Path) -> None:
+    plt = pyplot()
     figure, axes = plt.subplots(figsize=(5, 3))
     numbers = [row["value"] for row in rows]
     for key, colour, marker in (("best right", "#0072b2", "o"), ("accepted right", "#009e73", "s"),
@@ -193,6 +221,7 @@ def plot_family(rows: list[dict], label: str, path: pathlib.Path) -> None:
 
 def plot_cost(rows: list[dict], label: str, path: pathlib.Path) -> None:
     """Time and memory of a match; memory is the process's, two maps and all."""
+    plt = pyplot()
     figure, axes = plt.subplots(figsize=(5, 3))
     values = [str(row["value"]) for row in rows]
     axes.plot(values, [math.nan if row["median s"] == "–" else float(row["median s"]) for row in rows], color="#0072b2", marker="o")
@@ -213,6 +242,7 @@ def plot_probability(cases: list[dict], path: pathlib.Path) -> float:
     judged = sorted(((case["probability"], bool(case["correct"])) for case in cases), reverse=True)
     right = sum(r for _, r in judged) or 1
     wrong = len(judged) - right or 1
+    plt = pyplot()
     figure, (roc, reliability) = plt.subplots(1, 2, figsize=(8, 3.4))
     xs, ys, seen = [0.0], [0.0], [0, 0]
     for _, is_right in judged:
@@ -262,24 +292,32 @@ def main() -> None:
     bench = Bench(arguments.gridmerge, arguments.output, 64 if arguments.full else 8)
     (arguments.output / "cases").mkdir(parents=True, exist_ok=True)
 
-    report = "# Where the engine works, and where it breaks\n"
-    report += f"Simulated maps; in each table one factor is swept, the others are {' '.join(f'{k} {v}' for k, v in BASE.items())}.\n"
+    # All measurements first: see pyplot().
+    families = {}
     for family, (label, values) in FAMILIES.items():
         print(f"{family} ...", flush=True)
-        rows = bench.sweep(family, values)
+        families[family] = bench.sweep(family, values)
+    print("ratio, teams, walk, real maps ...", flush=True)
+    ratios, teams, sizes, walk = bench.ratios(), bench.teams(), bench.team_sizes(), bench.walk()
+    real = real_maps(bench, arguments.data)
+
+    report = "# Where the engine works, and where it breaks\n"
+    report += f"Simulated maps; in each table one factor is swept, the others are {' '.join(f'{k} {v}' for k, v in BASE.items())}.\n"
+    for family, rows in families.items():
+        label = FAMILIES[family][0]
         plot_family(rows, label, arguments.output / f"{family}.png")
         report += f"\n## {family}\n![{label}]({family}.png)\n\n{table(rows, label)}"
         if family == "size":
             plot_cost(rows, label, arguments.output / "cost.png")
             report += "\n![Time and memory](cost.png)\n"
-    print("ratio, teams, walk ...", flush=True)
-    report += "\n## Ratio of the two maps' cells\n" + table(bench.ratios(), "ratio")
-    report += "\n## Teams, merged up the tree\n" + table(bench.teams())
+    report += "\n## Ratio of the two maps' cells\n" + table(ratios, "ratio")
+    report += "\n## Teams of six\n" + table(teams)
+    report += "\n## Size of the team\n" + (table(sizes) if sizes else "The team could not be simulated.\n")
     error = plot_probability(bench.cases, arguments.output / "probability.png")
     report += f"\n## The probability\n![ROC and reliability](probability.png)\n\nExpected calibration error {error:.3f} over "
     report += f"{len(bench.cases)} cases of all families.\n"
-    report += "\n## Beside the paper's random walk\n" + table(bench.walk())
-    report += real_maps(bench, arguments.data)
+    report += "\n## Beside the paper's random walk\n" + table(walk)
+    report += real
     (arguments.output / "report.md").write_text(report)
     print(f"wrote {arguments.output / 'report.md'}")
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "gridmerge/grid/parallel.hpp"
 #include "join_weights.hpp"
 
 namespace gridmerge {
@@ -42,6 +43,11 @@ class Arranger {
   /// Joins the two groups that belong together most surely, until none do surely enough.
   void join_all() {
     while (true) {
+      std::vector<Sides> sides;
+      for (std::size_t a = 0; a < groups_.size(); ++a) {
+        for (std::size_t b = a + 1; b < groups_.size(); ++b) sides.emplace_back(groups_[a], groups_[b]);
+      }
+      weigh(sides);
       std::optional<std::pair<std::size_t, std::size_t>> best;
       WeighedJoin best_join;
       for (std::size_t a = 0; a < groups_.size(); ++a) {
@@ -67,6 +73,7 @@ class Arranger {
 
   /// Takes out the map that gains most by lying elsewhere, or alone, and puts it there; false if none gains.
   bool move_one() {
+    weigh_moves();
     double most = kLeastGain;
     std::optional<std::pair<std::size_t, std::size_t>> which;  // group, place in it
     for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -130,6 +137,37 @@ class Arranger {
       return true;
     }
     return false;
+  }
+
+  void weigh_moves() {
+    std::vector<Sides> sides;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      for (std::size_t i = 0; groups_[g].size() > 1 && i < groups_[g].size(); ++i) {
+        const auto [rest, alone] = taken_out(groups_[g], i);
+        sides.emplace_back(rest, alone);
+        for (std::size_t other = 0; other < groups_.size(); ++other) {
+          if (other != g) sides.emplace_back(groups_[other], alone);
+        }
+      }
+    }
+    weigh(sides);
+  }
+
+  using Sides = std::pair<NodeGroup, NodeGroup>;
+
+  /// Works out several joins at once, for best_join_of() to know them.
+  void weigh(const std::vector<Sides>& all) {
+    std::vector<const Sides*> unknown;
+    std::vector<WeighedJoin*> results;
+    for (const Sides& sides : all) {
+      const auto [found, is_new] = weighed_.try_emplace({key_of(sides.first), key_of(sides.second)});
+      if (!is_new) continue;
+      unknown.push_back(&sides);
+      results.push_back(&found->second);
+    }
+    parallel_for(unknown.size(), [&](std::size_t i) {
+      *results[i] = weights_.best_join(unknown[i]->first, unknown[i]->second);
+    });
   }
 
   /// Remembered by which maps the groups hold and where: groups change little from round to round.

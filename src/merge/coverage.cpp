@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace gridmerge {
 
@@ -69,6 +70,10 @@ InCommon Coverage::in_common(const Coverage& other, const SE2& T_this_other, con
   const Coverage& smaller = other_is_smaller ? other : *this;
   const Coverage& larger = other_is_smaller ? *this : other;
   if (smaller.centres_.empty()) return {};
+  const Point2 there = T_this_other * other.extent_.centre;
+  const double apart = std::hypot(there.x - extent_.centre.x, there.y - extent_.centre.y);
+  // No known cell is farther from the centre than the diagonal of a square about all of them.
+  if (apart > std::numbers::sqrt2 * (extent_.side + other.extent_.side)) return {};
   const SE2 T_larger_smaller = other_is_smaller ? T_this_other : inverse(T_this_other);
   const SE2 to_grid = larger.T_grid_map_ * T_larger_smaller;
   const SE2 to_frame = other_is_smaller ? T_frame_this * T_this_other : T_frame_this;

@@ -114,7 +114,16 @@ JoinWeights::JoinWeights(const ArrangementProblem& problem)
     const PairCandidates& pair = problem.pairs[i];
     pair_index_[pair.fixed * problem.maps.size() + pair.moving] = i;
     pair_index_[pair.moving * problem.maps.size() + pair.fixed] = i;
+    std::vector<Mark>& marks = marks_.emplace_back();
+    for (const CandidateJoin& candidate : pair.candidates)
+      marks.push_back(mark_of(candidate.T_fixed_moving, problem.maps[pair.fixed], problem.maps[pair.moving]));
   }
+}
+
+JoinWeights::Mark JoinWeights::mark_of(const SE2& T_fixed_moving, const MapExtent& fixed,
+                                       const MapExtent& moving) {
+  return {T_fixed_moving * moving.centre, inverse(T_fixed_moving) * fixed.centre,
+          std::cos(T_fixed_moving.theta), std::sin(T_fixed_moving.theta)};
 }
 
 const std::optional<std::size_t>& JoinWeights::pair_of(std::size_t a, std::size_t b) const {
@@ -129,12 +138,22 @@ std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t a,
   const SE2 T = pair.fixed == a ? T_a_b : inverse(T_a_b);
   const MapExtent& fixed = problem_.maps[pair.fixed];
   const MapExtent& moving = problem_.maps[pair.moving];
+  // As difference() to each candidate, without a sine or cosine for each.
+  const Mark here = mark_of(T, fixed, moving);
+  const double tolerance = agreement_tolerance(fixed, moving);
+  const std::vector<Mark>& marks = marks_[*index];
   std::optional<Agreement> best;
-  for (std::size_t i = 0; i < pair.candidates.size(); ++i) {
-    const CandidateJoin& candidate = pair.candidates[i];
-    if (difference(fixed, moving, T, candidate.T_fixed_moving) > agreement_tolerance(fixed, moving)) continue;
-    if (best && candidate.log_odds <= pair.candidates[best->candidate].log_odds) continue;
-    best = {*index, i, std::min(candidate.log_odds, kMostLogOdds) + kPoseNats};
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    const double turned = 2.0 * (1.0 - here.cos * marks[i].cos - here.sin * marks[i].sin);
+    const auto squared = [&](const Point2& p, const Point2& q, double radius) {
+      return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) + turned * radius * radius;
+    };
+    const double off = std::min(squared(here.moving_centre, marks[i].moving_centre, moving.radius),
+                                squared(here.fixed_centre, marks[i].fixed_centre, fixed.radius));
+    const double log_odds = pair.candidates[i].log_odds;
+    if (off > tolerance * tolerance || (best && log_odds <= pair.candidates[best->candidate].log_odds))
+      continue;
+    best = {*index, i, std::min(log_odds, kMostLogOdds) + kPoseNats};
   }
   return best;
 }
@@ -143,8 +162,9 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
   std::vector<double> losses;
   std::vector<Witness> witnesses;
   for (const PlacedNode& in_a : a) {
+    const SE2 T_map_b = inverse(in_a.T_group_map) * T_a_b;
     for (const PlacedNode& in_b : b) {
-      const SE2 T = inverse(in_a.T_group_map) * T_a_b * in_b.T_group_map;
+      const SE2 T = T_map_b * in_b.T_group_map;
       InCommon common;
       if (!problem_.coverage.empty())
         common = problem_.coverage[in_a.map]->in_common(*problem_.coverage[in_b.map], T, in_a.T_group_map);
@@ -195,9 +215,9 @@ std::vector<SE2> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) 
   }
   for (Proposal& proposal : all) {
     for (const PlacedNode& in_a : a) {
+      const SE2 T_map_b = inverse(in_a.T_group_map) * proposal.T_a_b;
       for (const PlacedNode& in_b : b) {
-        const SE2 T = inverse(in_a.T_group_map) * proposal.T_a_b * in_b.T_group_map;
-        if (const auto agreement = find_agreement(in_a.map, in_b.map, T))
+        if (const auto agreement = find_agreement(in_a.map, in_b.map, T_map_b * in_b.T_group_map))
           proposal.agreement += agreement->worth;
       }
     }

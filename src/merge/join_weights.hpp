@@ -59,6 +59,14 @@ class JoinWeights {
     double worth;
   };
 
+  /// A candidate made ready for finding out, many times, whether poses agree with it.
+  struct Mark {
+    Point2 moving_centre;  // in the fixed frame
+    Point2 fixed_centre;   // in the moving frame
+    double cos, sin;
+  };
+  static Mark mark_of(const SE2& T_fixed_moving, const MapExtent& fixed, const MapExtent& moving);
+
   struct Edge {
     std::size_t a, b;  // places in the group
     Agreement agreement;
@@ -72,6 +80,7 @@ class JoinWeights {
   std::vector<Edge> edges_of(const NodeGroup& group) const;
 
   const ArrangementProblem& problem_;
+  std::vector<std::vector<Mark>> marks_;                // by pair, one a candidate
   std::vector<std::optional<std::size_t>> pair_index_;  // by map * maps + map
 };
 
