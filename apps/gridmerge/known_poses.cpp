@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 
@@ -29,14 +30,19 @@ std::optional<std::size_t> find_map(const std::vector<std::string>& maps, const 
 
 void fix(const KnownPoseOptions& options, const std::vector<std::string>& maps,
          std::vector<std::optional<KnownPose>>& known) {
+  std::set<std::size_t> fixed;
   for (const std::string& name : options.fix) {
     const std::optional<std::size_t> map = find_map(maps, name, name);
     if (!map) throw std::runtime_error(fmt::format("--fix {}: is none of the maps", escape_controls(name)));
-    const bool only_its_own_frame = !known[*map] && options.fix.size() == 1 && options.init.empty();
-    if (!known[*map] && !only_its_own_frame)
-      throw std::runtime_error(fmt::format("--fix {}: has no pose in --init", escape_controls(name)));
-    if (!known[*map]) known[*map] = KnownPose{};
-    known[*map]->fixed = true;
+    fixed.insert(*map);
+  }
+  for (const std::size_t map : fixed) {
+    // A single map holds its own frame; how several lie to each other has to be said.
+    if (!known[map] && (fixed.size() > 1 || !options.init.empty()))
+      throw std::runtime_error(
+          fmt::format("--fix {}: needs a pose in a table that --init names", escape_controls(maps[map])));
+    if (!known[map]) known[map] = KnownPose{};
+    known[map]->fixed = true;
   }
 }
 

@@ -19,9 +19,9 @@ struct KnownPoseOptions {
 /// --init and --fix.
 void add_known_pose_options(CLI::App& command, KnownPoseOptions& options);
 
-/// For each map what is known of its pose. Throws FileError when the file is no table of poses or names none
-/// of the maps, and std::runtime_error when a map that is to be fixed is none of them, or several are and one
-/// has no pose.
+/// For each map what is known of its pose. Throws FileError when the file is no table of poses or names a map
+/// that is not among these, and std::runtime_error when a map that is to be fixed is not, or needs a pose and
+/// has none.
 std::vector<std::optional<KnownPose>> load_known_poses(const KnownPoseOptions& options,
                                                        const std::vector<std::string>& maps);
 

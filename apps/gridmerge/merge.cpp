@@ -109,10 +109,16 @@ std::string describe(const std::vector<std::string>& names, const MergeResult& r
                    explain_left_out(result.left_out_reasons[i]));
   }
   for (const Join& join : result.joins) {
-    if (join.outcome != JoinOutcome::rescued && join.outcome != JoinOutcome::rejected) continue;
-    fmt::format_to(out, "{}: {} and {}, {:.3f} by themselves, but the others {}\n", name_of(join.outcome),
-                   escape_controls(names[join.fixed]), escape_controls(names[join.moving]), join.probability,
-                   join.outcome == JoinOutcome::rescued ? "agree" : "contradict");
+    const std::string pair =
+        fmt::format("{} and {}", escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
+    if (join.outcome == JoinOutcome::rescued)
+      fmt::format_to(out, "rescued: {}, {:.3f} by themselves, but the others agree\n", pair,
+                     join.probability);
+    if (join.outcome == JoinOutcome::rejected)
+      fmt::format_to(out, "rejected: {}, {:.3f} by themselves, but the others contradict\n", pair,
+                     join.probability);
+    if (join.outcome == JoinOutcome::known)
+      fmt::format_to(out, "known: {}, from their initial poses\n", pair);
   }
   return text;
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/io/initial_poses.hpp"
 
-#include <algorithm>
+#include <cmath>
+#include <string>
+#include <unordered_set>
 
 #include "file_reader.hpp"
 #include "gridmerge/io/text_table.hpp"
@@ -12,10 +14,19 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{16} << 20;  // bounds what a wrong argument makes us read
 
+constexpr double kFarthest = 1e7;  // [m]: what is farther off is a mistake
+constexpr double kLeastDeviation = 1e-6;
+
+double place(const TextTable& table, std::size_t row, std::string_view column) {
+  const double value = table.number(row, column);
+  if (std::abs(value) > kFarthest) table.fail(row, std::string(column) + " is farther off than 10000 km");
+  return value;
+}
+
 double deviation(const TextTable& table, std::size_t row, std::string_view column, double usual) {
   if (!table.has(column)) return usual;
   const double value = table.number(row, column);
-  if (value <= 0.0) table.fail(row, std::string(column) + " must be positive");
+  if (value < kLeastDeviation) table.fail(row, std::string(column) + " must be positive, 0.000001 at least");
   return value;
 }
 
@@ -24,15 +35,14 @@ double deviation(const TextTable& table, std::size_t row, std::string_view colum
 std::vector<InitialPose> parse_initial_poses(const std::filesystem::path& path, std::string_view text) {
   const TextTable table(path, text, {"map", "x", "y", "theta"}, {"sd", "sd_theta"});
   std::vector<InitialPose> poses;
+  std::unordered_set<std::string> names;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     InitialPose pose;
     pose.name = table.text(row, "map");
     if (pose.name.find('\0') != std::string::npos) table.fail(row, "map holds a NUL character");
-    const bool is_known = std::any_of(poses.begin(), poses.end(),
-                                      [&](const InitialPose& other) { return other.name == pose.name; });
-    if (is_known) table.fail(row, "names '" + pose.name + "' a second time");
+    if (!names.insert(pose.name).second) table.fail(row, "names '" + pose.name + "' a second time");
     pose.path = path.parent_path() / pose.name;
-    pose.T_world_map = {table.number(row, "x"), table.number(row, "y"),
+    pose.T_world_map = {place(table, row, "x"), place(table, row, "y"),
                         normalize_angle(table.number(row, "theta"))};
     pose.sd = deviation(table, row, "sd", pose.sd);
     pose.sd_theta = deviation(table, row, "sd_theta", pose.sd_theta);

@@ -165,9 +165,12 @@ void assign_probabilities(std::vector<Hypothesis>& hypotheses, const VerdictFeat
   hypotheses[0].probability = probability_of(features);
   double among_those_before = hypotheses[0].probability;
   for (std::size_t i = 1; i < hypotheses.size(); ++i) {
-    const double among_these = i + 1 < hypotheses.size()
-                                   ? probability_among(features, hypotheses[0].score, hypotheses[i + 1].score)
-                                   : among_those_before;
+    const bool last = i + 1 == hypotheses.size();
+    // What comes after the last of the poses that are ranked is not known; after fewer there is nothing.
+    const bool unknown = last && hypotheses.size() >= kRankedPoses;
+    const double next = last ? 0.0 : hypotheses[i + 1].score;
+    const double among_these =
+        unknown ? among_those_before : probability_among(features, hypotheses[0].score, next);
     hypotheses[i].probability = std::min(hypotheses[0].probability, among_these - among_those_before);
     among_those_before = among_these;
   }

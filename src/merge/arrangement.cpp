@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
+#include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "gridmerge/grid/parallel.hpp"
@@ -27,7 +28,15 @@ class Arranger {
  public:
   Arranger(const ArrangementProblem& problem, double accept_probability)
       : weights_(problem), accept_(accept_probability) {
-    for (std::size_t map = 0; map < problem.maps.size(); ++map) groups_.push_back({PlacedNode{map, {}}});
+    NodeGroup fixed;
+    for (std::size_t map = 0; map < problem.maps.size(); ++map) {
+      if (weights_.is_fixed(map)) {
+        fixed.push_back({map, *problem.fixed[map]});
+      } else {
+        groups_.push_back({PlacedNode{map, {}}});
+      }
+    }
+    if (!fixed.empty()) groups_.push_back(std::move(fixed));
   }
 
   NodeGroups settle() {
@@ -53,7 +62,7 @@ class Arranger {
       for (std::size_t a = 0; a < groups_.size(); ++a) {
         for (std::size_t b = a + 1; b < groups_.size(); ++b) {
           const WeighedJoin& join = best_join_of(groups_[a], groups_[b]);
-          if (join.probability < accept_) continue;
+          if (!join.is_proposed || join.probability < accept_) continue;
           if (best && join.worth.against_apart <= best_join.worth.against_apart) continue;
           best = {a, b};
           best_join = join;
@@ -79,6 +88,7 @@ class Arranger {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (groups_[g].size() < 2) continue;
       for (std::size_t i = 0; i < groups_[g].size(); ++i) {
+        if (weights_.is_fixed(groups_[g][i].map)) continue;
         const double gain = gain_of_moving(g, i);
         if (gain <= most) continue;
         most = gain;
@@ -120,29 +130,42 @@ class Arranger {
     return elsewhere - stays;
   }
 
-  /// Cuts a group where its parts belong together least surely, if that is not surely enough.
+  /// Cuts a group where its parts belong together least surely, if that is not surely enough, or where
+  /// nothing holds them together.
   bool cut_one() {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      double least = accept_;
-      std::optional<std::pair<NodeGroup, NodeGroup>> weakest;
-      for (auto& parts : weights_.halves(groups_[g])) {
-        const double probability = weights_.probability_of_lying_so(parts.first, parts.second);
-        if (probability >= least) continue;
-        least = probability;
-        weakest = std::move(parts);
+      if (groups_[g].size() < 2 || sure_.contains(key_of(groups_[g]))) continue;
+      NodeGroups parts = weights_.connected(groups_[g]);
+      if (parts.size() == 1) parts = weakest_halves(groups_[g]);
+      if (parts.size() == 1) {
+        sure_.insert(key_of(groups_[g]));
+        continue;
       }
-      if (!weakest) continue;
-      groups_[g] = weights_.adjusted(std::move(weakest->first));
-      groups_.push_back(weights_.adjusted(std::move(weakest->second)));
+      groups_.erase(groups_.begin() + static_cast<std::ptrdiff_t>(g));
+      for (NodeGroup& part : parts) groups_.push_back(weights_.adjusted(std::move(part)));
       return true;
     }
     return false;
+  }
+
+  /// The group itself if all its halves belong together surely enough.
+  NodeGroups weakest_halves(const NodeGroup& group) const {
+    const std::vector<std::pair<NodeGroup, NodeGroup>> halves = weights_.halves(group);
+    std::vector<double> probabilities(halves.size());
+    parallel_for(halves.size(), [&](std::size_t i) {
+      probabilities[i] = weights_.probability_of_lying_so(halves[i].first, halves[i].second);
+    });
+    const auto least = std::min_element(probabilities.begin(), probabilities.end());
+    if (least == probabilities.end() || *least >= accept_) return {group};
+    const auto& weakest = halves[static_cast<std::size_t>(least - probabilities.begin())];
+    return {weakest.first, weakest.second};
   }
 
   void weigh_moves() {
     std::vector<Sides> sides;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       for (std::size_t i = 0; groups_[g].size() > 1 && i < groups_[g].size(); ++i) {
+        if (weights_.is_fixed(groups_[g][i].map)) continue;
         const auto [rest, alone] = taken_out(groups_[g], i);
         sides.emplace_back(rest, alone);
         for (std::size_t other = 0; other < groups_.size(); ++other) {
@@ -191,7 +214,20 @@ class Arranger {
   double accept_;
   NodeGroups groups_;
   std::map<std::pair<Key, Key>, WeighedJoin> weighed_;
+  std::set<Key> sure_;  // groups that need no cut
 };
+
+void validate(const ArrangementProblem& problem, double accept_probability) {
+  const std::size_t maps = problem.maps.size();
+  if (!(accept_probability >= 0.0 && accept_probability <= 1.0))
+    throw std::invalid_argument("accept_probability must lie in [0, 1]");
+  if ((!problem.coverage.empty() && problem.coverage.size() != maps) || problem.fixed.size() > maps)
+    throw std::invalid_argument("coverage and fixed poses must be those of the maps");
+  for (const PairCandidates& pair : problem.pairs) {
+    if (pair.fixed >= pair.moving || pair.moving >= maps)
+      throw std::invalid_argument("a pair must be of two maps, the lower index first");
+  }
+}
 
 /// In the frame of the lowest map, maps ascending.
 NodeGroup in_order(NodeGroup group) {
@@ -221,6 +257,7 @@ double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b, cons
 }
 
 Arrangement arrange(const ArrangementProblem& problem, double accept_probability) {
+  validate(problem, accept_probability);
   Arrangement arrangement;
   for (NodeGroup& group : Arranger(problem, accept_probability).settle())
     arrangement.groups.push_back(in_order(std::move(group)));
@@ -230,6 +267,7 @@ Arrangement arrange(const ArrangementProblem& problem, double accept_probability
   for (NodeGroup& group : arrangement.groups) {
     if (group.size() > 1) {
       for (std::size_t i = 0; i < group.size(); ++i) {
+        if (weights.is_fixed(group[i].map)) continue;
         const auto [rest, alone] = taken_out(group, i);
         group[i].probability = weights.probability_of_lying_so(rest, alone);
       }

@@ -25,6 +25,7 @@ std::vector<RelativePose> measured_in(const NodeGroup& group, const ArrangementP
     const PairCandidates& pair = problem.pairs[used.pair];
     if (!places[pair.fixed] || !places[pair.moving]) continue;
     const CandidateJoin& candidate = pair.candidates[used.candidate];
+    if (candidate.is_known) continue;  // the known poses speak for themselves
     measured.push_back(measured_between(*places[pair.fixed], *places[pair.moving], candidate.T_fixed_moving,
                                         problem.maps[pair.fixed], problem.maps[pair.moving], candidate.sd));
   }
@@ -52,9 +53,10 @@ Component make_component(const NodeGroup& group, const ArrangementProblem& probl
   }
   const std::vector<RelativePose> measured = measured_in(group, problem, arrangement);
   const std::vector<SE2> poses = align(maps, measured);
-  const std::vector<PoseDeviation> deviations = find_deviations(maps, measured, first);
+  const std::vector<std::optional<PoseDeviation>> deviations = find_deviations(maps, measured, first);
 
   Component component;
+  component.in_world_frame = is_world;
   const SE2 T_frame_aligned = is_world ? SE2{} : inverse(poses[first]);
   for (std::size_t i = 0; i < group.size(); ++i) {
     const SE2 T = is_world ? poses[i] : i == first ? SE2{} : T_frame_aligned * poses[i];

@@ -24,6 +24,8 @@ constexpr double kDependence = 0.3;
 /// A pair of whose places a share is fresh speaks of them with this power of the share: what borders on known
 /// places is not independent of them either.
 constexpr double kFreshPower = 2.0;
+/// So many poses are weighed in full for two groups: those with which most pairs agree.
+constexpr std::size_t kMostProposals = 50;
 /// Candidates less likely than this propose no join, though they may agree with one.
 constexpr double kLeastLogOdds = -6.0;
 /// The loss when two maps that would have much in common have no candidate that agrees, and the shares of the
@@ -79,9 +81,7 @@ class SpokenOf {
   /// The share of the places that are new; 1 if there are none to tell by.
   double add(const std::vector<Point2>& places) {
     std::vector<Place> cells;
-    for (const Point2& at : places)
-      cells.emplace_back(static_cast<int>(std::floor(at.x / kSide)),
-                         static_cast<int>(std::floor(at.y / kSide)));
+    for (const Point2& at : places) cells.emplace_back(std::floor(at.x / kSide), std::floor(at.y / kSide));
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     std::vector<Place> fresh, all;
@@ -93,9 +93,9 @@ class SpokenOf {
   }
 
  private:
-  using Place = std::pair<int, int>;
-  static constexpr double kSide = 4.0;  // [m]
-  std::vector<Place> spoken_of_;        // ascending
+  using Place = std::pair<double, double>;  // whole numbers, which may be larger than integers hold
+  static constexpr double kSide = 4.0;      // [m]
+  std::vector<Place> spoken_of_;            // ascending
 };
 
 /// Of the first of several ways: against the others, and against being apart, which is worth 0.
@@ -151,7 +151,7 @@ std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t a,
     const double off = std::min(squared(here.moving_centre, marks[i].moving_centre, moving.radius),
                                 squared(here.fixed_centre, marks[i].fixed_centre, fixed.radius));
     const double log_odds = pair.candidates[i].log_odds;
-    if (off > tolerance * tolerance || (best && log_odds <= pair.candidates[best->candidate].log_odds))
+    if (!(off <= tolerance * tolerance) || (best && log_odds <= pair.candidates[best->candidate].log_odds))
       continue;
     best = {*index, i, std::min(log_odds, kMostLogOdds) + kPoseNats};
   }
@@ -232,31 +232,52 @@ std::vector<SE2> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) 
       return difference(of_a, of_b, proposal.T_a_b, other) < distinct;
     });
     if (is_new) kept.push_back(proposal.T_a_b);
+    if (kept.size() == kMostProposals) break;
   }
   return kept;
 }
 
 std::vector<WeighedJoin> JoinWeights::ways_to_join(const NodeGroup& a, const NodeGroup& b) const {
   std::vector<WeighedJoin> ways;
-  for (const SE2& T_a_b : proposals(a, b)) ways.push_back({T_a_b, worth_of(a, b, T_a_b), 0.0});
+  for (const SE2& T_a_b : proposals(a, b)) ways.push_back({T_a_b, worth_of(a, b, T_a_b), 0.0, true});
   std::stable_sort(ways.begin(), ways.end(), [](const WeighedJoin& x, const WeighedJoin& y) {
     return x.worth.against_other_poses > y.worth.against_other_poses;
   });
   return ways;
 }
 
+/// Two maps alone lie as their pair says, which has weighed all that there is.
+WeighedJoin JoinWeights::join_of_pair(const PlacedNode& a, const PlacedNode& b) const {
+  const std::optional<std::size_t>& index = pair_of(a.map, b.map);
+  if (!index || problem_.pairs[*index].candidates.empty()) return {};
+  const PairCandidates& pair = problem_.pairs[*index];
+  const CandidateJoin& best = *std::max_element(
+      pair.candidates.begin(), pair.candidates.end(),
+      [](const CandidateJoin& x, const CandidateJoin& y) { return x.log_odds < y.log_odds; });
+  const auto probability = [](double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); };
+  double sum = 0.0;  // above 1 where candidates were made likelier by what is known beforehand
+  for (const CandidateJoin& candidate : pair.candidates) sum += probability(candidate.log_odds);
+  const SE2 T = pair.fixed == a.map ? best.T_fixed_moving : inverse(best.T_fixed_moving);
+  return {a.T_group_map * T * inverse(b.T_group_map),
+          {best.log_odds, best.log_odds},
+          probability(best.log_odds) / std::max(1.0, sum),
+          true};
+}
+
 WeighedJoin JoinWeights::best_join(const NodeGroup& a, const NodeGroup& b) const {
+  if (a.size() == 1 && b.size() == 1) return join_of_pair(a.front(), b.front());
   const std::vector<WeighedJoin> ways = ways_to_join(a, b);
-  if (ways.empty()) return {{}, {-kPoseNats, -kPoseNats}, 0.0};
+  if (ways.empty()) return {};
   WeighedJoin best = ways.front();
   best.probability = probability_of_first(ways);
   return best;
 }
 
 double JoinWeights::probability_of_lying_so(const NodeGroup& a, const NodeGroup& b) const {
+  if (a.size() == 1 && b.size() == 1) return join_of_pair(a.front(), b.front()).probability;
   const MapExtent of_a = extent_of(a, problem_.maps), of_b = extent_of(b, problem_.maps);
   const double distinct = kDistinct * agreement_tolerance(of_a, of_b);
-  std::vector<WeighedJoin> ways{{{}, worth_of(a, b, {}), 0.0}};
+  std::vector<WeighedJoin> ways{{{}, worth_of(a, b, {}), 0.0, true}};
   for (const WeighedJoin& way : ways_to_join(a, b)) {
     if (difference(of_a, of_b, way.T_a_b, {}) >= distinct) ways.push_back(way);
   }
@@ -281,28 +302,19 @@ std::vector<UsedCandidate> JoinWeights::used_in(const NodeGroup& group) const {
   return used;
 }
 
-namespace {
-
-/// Labels of places that edges hold together.
-class Labels {
- public:
-  explicit Labels(std::size_t count) : labels_(count) { std::iota(labels_.begin(), labels_.end(), 0); }
-
-  bool same(std::size_t a, std::size_t b) const { return labels_[a] == labels_[b]; }
-  void unite(std::size_t a, std::size_t b) {
-    const std::size_t from = labels_[b], to = labels_[a];
-    std::replace(labels_.begin(), labels_.end(), from, to);
+void JoinWeights::unite_fixed(const NodeGroup& group, Labels& labels) const {
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    if (!is_fixed(group[i].map)) continue;
+    if (first) labels.unite(*first, i);
+    first = i;
   }
-
- private:
-  std::vector<std::size_t> labels_;
-};
-
-}  // namespace
+}
 
 NodeGroups JoinWeights::connected(const NodeGroup& group) const {
   Labels labels(group.size());
   for (const Edge& edge : edges_of(group)) labels.unite(edge.a, edge.b);
+  unite_fixed(group, labels);
   NodeGroups parts;
   std::vector<std::size_t> first;  // place of each part's first node
   for (std::size_t i = 0; i < group.size(); ++i) {
@@ -323,6 +335,7 @@ std::vector<std::pair<NodeGroup, NodeGroup>> JoinWeights::halves(const NodeGroup
   std::stable_sort(edges.begin(), edges.end(),
                    [](const Edge& a, const Edge& b) { return a.agreement.worth > b.agreement.worth; });
   Labels labels(group.size());
+  unite_fixed(group, labels);
   std::vector<Edge> tree;
   for (const Edge& edge : edges) {
     if (labels.same(edge.a, edge.b)) continue;
@@ -332,6 +345,7 @@ std::vector<std::pair<NodeGroup, NodeGroup>> JoinWeights::halves(const NodeGroup
   std::vector<std::pair<NodeGroup, NodeGroup>> all;
   for (std::size_t cut = 0; cut < tree.size(); ++cut) {
     Labels sides(group.size());
+    unite_fixed(group, sides);
     for (std::size_t i = 0; i < tree.size(); ++i) {
       if (i != cut) sides.unite(tree[i].a, tree[i].b);
     }
@@ -345,19 +359,23 @@ std::vector<std::pair<NodeGroup, NodeGroup>> JoinWeights::halves(const NodeGroup
 
 NodeGroup JoinWeights::adjusted(NodeGroup group) const {
   if (group.size() < 3) return group;  // two maps lie as their candidate says
-  std::vector<SE2> poses;
-  for (const PlacedNode& node : group) poses.push_back(node.T_group_map);
-  std::vector<RelativePose> relative;
+  const bool any_fixed =
+      std::any_of(group.begin(), group.end(), [&](const PlacedNode& node) { return is_fixed(node.map); });
+  std::vector<AdjustablePose> poses;
+  for (std::size_t i = 0; i < group.size(); ++i)
+    poses.push_back({group[i].T_group_map, problem_.maps[group[i].map].centre,
+                     any_fixed ? is_fixed(group[i].map) : i == 0});
+  std::vector<RelativePose> measured;
   for (const Edge& edge : edges_of(group)) {
     const PairCandidates& pair = problem_.pairs[edge.agreement.pair];
     const bool in_order = pair.fixed == group[edge.a].map;
     const MapExtent &fixed = problem_.maps[pair.fixed], &moving = problem_.maps[pair.moving];
-    relative.push_back(measured_between(in_order ? edge.a : edge.b, in_order ? edge.b : edge.a,
+    measured.push_back(measured_between(in_order ? edge.a : edge.b, in_order ? edge.b : edge.a,
                                         pair.candidates[edge.agreement.candidate].T_fixed_moving, fixed,
                                         moving, agreement_tolerance(fixed, moving)));
   }
-  poses = adjust_poses(std::move(poses), relative);
-  for (std::size_t i = 0; i < group.size(); ++i) group[i].T_group_map = poses[i];
+  const std::vector<SE2> adjusted = adjust_poses(poses, measured);
+  for (std::size_t i = 0; i < group.size(); ++i) group[i].T_group_map = adjusted[i];
   return group;
 }
 

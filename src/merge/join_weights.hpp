@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,6 +13,21 @@
 namespace gridmerge {
 
 using NodeGroups = std::vector<NodeGroup>;
+
+/// Labels of places that edges hold together.
+class Labels {
+ public:
+  explicit Labels(std::size_t count) : labels_(count) { std::iota(labels_.begin(), labels_.end(), 0); }
+
+  bool same(std::size_t a, std::size_t b) const { return labels_[a] == labels_[b]; }
+  void unite(std::size_t a, std::size_t b) {
+    const std::size_t from = labels_[b], to = labels_[a];
+    std::replace(labels_.begin(), labels_.end(), from, to);
+  }
+
+ private:
+  std::vector<std::size_t> labels_;
+};
 
 /// What it is worth to two groups of maps to lie together so [nats].
 struct JoinWorth {
@@ -21,7 +39,8 @@ struct JoinWorth {
 struct WeighedJoin {
   SE2 T_a_b;  ///< between the groups' frames
   JoinWorth worth;
-  double probability = 0.0;  ///< against lying otherwise, and apart; 0 if there is no way to join them
+  double probability = 0.0;  ///< against lying otherwise, and apart
+  bool is_proposed = false;  ///< by some candidate; otherwise there is no way to join them
 };
 
 /// What the candidates of all pairs say of groups of maps: see arrange() for what an arrangement is worth.
@@ -29,6 +48,11 @@ class JoinWeights {
  public:
   /// `problem` must outlive this. O(k^2).
   explicit JoinWeights(const ArrangementProblem& problem);
+
+  /// Whether the map's pose is the truth, whatever pairs say.
+  bool is_fixed(std::size_t map) const {
+    return map < problem_.fixed.size() && problem_.fixed[map].has_value();
+  }
 
   /// The best of all ways to join two groups that some candidate proposes.
   WeighedJoin best_join(const NodeGroup& a, const NodeGroup& b) const;
@@ -42,14 +66,14 @@ class JoinWeights {
   /// The candidates that agree with the poses of a group.
   std::vector<UsedCandidate> used_in(const NodeGroup& group) const;
 
-  /// The parts of a group that candidates which agree with its poses hold together.
+  /// The parts of a group that candidates which agree with its poses, or being fixed, hold together.
   NodeGroups connected(const NodeGroup& group) const;
 
   /// The ways to cut a group in two along the strongest candidates that hold it together: one for each edge
   /// of their maximum spanning tree.
   std::vector<std::pair<NodeGroup, NodeGroup>> halves(const NodeGroup& group) const;
 
-  /// The group with the poses that fit its candidates best.
+  /// The group with the poses that fit its candidates best; fixed ones are as they were.
   NodeGroup adjusted(NodeGroup group) const;
 
  private:
@@ -75,6 +99,8 @@ class JoinWeights {
   const std::optional<std::size_t>& pair_of(std::size_t a, std::size_t b) const;
   /// T takes points of map b to map a.
   std::optional<Agreement> find_agreement(std::size_t a, std::size_t b, const SE2& T_a_b) const;
+  void unite_fixed(const NodeGroup& group, Labels& labels) const;
+  WeighedJoin join_of_pair(const PlacedNode& a, const PlacedNode& b) const;
   std::vector<SE2> proposals(const NodeGroup& a, const NodeGroup& b) const;
   std::vector<WeighedJoin> ways_to_join(const NodeGroup& a, const NodeGroup& b) const;
   std::vector<Edge> edges_of(const NodeGroup& group) const;

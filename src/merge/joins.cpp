@@ -16,6 +16,8 @@ const char* name_of(JoinOutcome outcome) {
       return "rescued";
     case JoinOutcome::rejected:
       return "rejected";
+    case JoinOutcome::known:
+      return "known";
     case JoinOutcome::refused:
       break;
   }
@@ -47,19 +49,23 @@ Join make_join(std::size_t fixed, std::size_t moving, MatchResult match) {
   return join;
 }
 
-Join make_join(std::size_t fixed, std::size_t moving, MatchResult match, const CandidateJoin* used) {
+Join make_join(std::size_t fixed, std::size_t moving, MatchResult match, const Company& company) {
   Join join = make_join(fixed, moving, std::move(match));
   const bool is_believed = join.outcome == JoinOutcome::accepted;
-  if (used == nullptr) {
-    join.outcome = is_believed ? JoinOutcome::rejected : JoinOutcome::refused;
+  if (company.used == nullptr) {
+    join.outcome = is_believed && company.is_placed ? JoinOutcome::rejected : JoinOutcome::refused;
     return join;
   }
-  const bool is_best = used->T_fixed_moving == join.match.T_fixed_moving;
-  join.outcome = is_believed && is_best ? JoinOutcome::accepted : JoinOutcome::rescued;
-  join.T_fixed_moving = used->T_fixed_moving;
-  join.probability = 0.0;  // the maps themselves say nothing of what is known beforehand
+  const SE2& T = company.used->T_fixed_moving;
+  join.T_fixed_moving = T;
+  if (company.used->is_known) {
+    join.outcome = JoinOutcome::known;
+    join.probability = 0.0;  // the maps themselves say nothing of it
+    return join;
+  }
+  join.outcome = is_believed && T == join.match.T_fixed_moving ? JoinOutcome::accepted : JoinOutcome::rescued;
   for (const Hypothesis& hypothesis : join.match.hypotheses) {
-    if (hypothesis.T_fixed_moving == used->T_fixed_moving) join.probability = hypothesis.probability;
+    if (hypothesis.T_fixed_moving == T) join.probability = hypothesis.probability;
   }
   return join;
 }
@@ -85,7 +91,9 @@ Reason why_left_out(const std::vector<Join>& joins, std::size_t map) {
     if (nearest == nullptr || join.match.probability > nearest->match.probability) nearest = &join;
   }
   if (nearest == nullptr) return Reason::nothing_to_compare;
-  return nearest->outcome == JoinOutcome::rejected ? Reason::contradicts_others : nearest->match.reason;
+  if (nearest->outcome == JoinOutcome::rejected) return Reason::contradicts_others;
+  // Believed by itself, but so is another way to lie.
+  return nearest->match.verdict == Verdict::accepted ? Reason::ambiguous : nearest->match.reason;
 }
 
 }  // namespace gridmerge

@@ -16,8 +16,14 @@ void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution);
 /// A join that means what its own verdict says.
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match);
 
-/// The same when other maps had a say: `used` is the candidate that the arrangement agrees with, or null.
-Join make_join(std::size_t fixed, std::size_t moving, MatchResult match, const CandidateJoin* used);
+/// What other maps have to do with a pair.
+struct Company {
+  const CandidateJoin* used = nullptr;  ///< the candidate that the arrangement agrees with, if any
+  bool is_placed = false;               ///< at least one of the two maps lies together with others
+};
+
+/// The same when other maps had a say.
+Join make_join(std::size_t fixed, std::size_t moving, MatchResult match, const Company& company);
 
 /// The same with the other map as the fixed one.
 MatchResult inverted(MatchResult match);

@@ -45,17 +45,18 @@ class Merger::State {
 
   MapId add(std::shared_ptr<const OccupancyGrid> map, std::optional<KnownPose> known_pose) {
     if (known_pose) validate_known_pose(*known_pose);
-    inputs_.emplace(next_, std::move(map));  // throws for an invalid map
-    if (known_pose) known_poses_[next_] = *known_pose;
-    return next_++;
+    auto input = std::make_unique<const Input>(std::move(map));  // throws for an invalid map
+    const MapId id = next_++;
+    inputs_.emplace(id, std::move(input));
+    if (known_pose) known_poses_[id] = *known_pose;
+    return id;
   }
 
   void update(MapId id, std::shared_ptr<const OccupancyGrid> map) {
     require(id);
-    Input changed(std::move(map));
+    auto input = std::make_unique<const Input>(std::move(map));
     forget(id);
-    inputs_.erase(id);
-    inputs_.emplace(id, changed.grid);
+    inputs_.at(id) = std::move(input);
   }
 
   void set_known_pose(MapId id, std::optional<KnownPose> known_pose) {
@@ -114,7 +115,7 @@ class Merger::State {
   std::vector<MapId> in_canonical_order() const {
     std::vector<MapId> maps = ids();
     std::stable_sort(maps.begin(), maps.end(), [&](MapId a, MapId b) {
-      return is_smaller(inputs_.at(a).prepared, inputs_.at(b).prepared);
+      return is_smaller(inputs_.at(a)->prepared, inputs_.at(b)->prepared);
     });
     return maps;
   }
@@ -132,7 +133,7 @@ class Merger::State {
     std::size_t done = 0;
     parallel_for(pairs.size(), [&](std::size_t i) {
       const auto [fixed, moving] = pairs[i];
-      results[i] = match(inputs_.at(fixed).prepared, inputs_.at(moving).prepared, options_.match);
+      results[i] = match(inputs_.at(fixed)->prepared, inputs_.at(moving)->prepared, options_.match);
       const std::lock_guard lock(reporting);
       ++done;
       if (options_.progress) options_.progress(done, pairs.size());
@@ -154,14 +155,17 @@ class Merger::State {
   ArrangementProblem make_problem(const std::vector<MapId>& maps) const {
     ArrangementProblem problem;
     for (const MapId id : maps) {
-      problem.coverage.push_back(&inputs_.at(id).coverage);
-      problem.maps.push_back(inputs_.at(id).coverage.extent());
+      problem.coverage.push_back(&inputs_.at(id)->coverage);
+      problem.maps.push_back(inputs_.at(id)->coverage.extent());
+      const std::optional<KnownPose> known = known_pose(id);
+      problem.fixed.push_back(known && known->fixed ? std::optional(known->T_world_map) : std::nullopt);
     }
     for (std::size_t a = 0; a < maps.size(); ++a) {
       for (std::size_t b = a + 1; b < maps.size(); ++b) {
         PairCandidates pair{a, b, candidate_joins(match_between(maps[a], maps[b]))};
         const std::optional<KnownPose> of_a = known_pose(maps[a]), of_b = known_pose(maps[b]);
-        if (of_a && of_b) apply_known_poses(*of_a, *of_b, problem.maps[a], problem.maps[b], pair);
+        if (of_a && of_b && !(of_a->fixed && of_b->fixed))
+          apply_known_poses(*of_a, *of_b, problem.maps[a], problem.maps[b], pair);
         problem.pairs.push_back(std::move(pair));
       }
     }
@@ -173,13 +177,18 @@ class Merger::State {
                                const Arrangement& arrangement) const {
     std::map<std::size_t, std::size_t> used;  // candidate by pair
     for (const UsedCandidate& one : arrangement.used) used[one.pair] = one.candidate;
+    std::vector<bool> is_placed(maps.size());
+    for (const NodeGroup& group : arrangement.groups) {
+      for (const PlacedNode& node : group) is_placed[node.map] = group.size() > 1;
+    }
     const std::vector<std::size_t> index = places_of(maps);
     std::vector<Join> joins;
     for (std::size_t i = 0; i < problem.pairs.size(); ++i) {
       const PairCandidates& pair = problem.pairs[i];
       const MatchResult match = match_between(maps[pair.fixed], maps[pair.moving]);
       const CandidateJoin* candidate = used.contains(i) ? &pair.candidates[used.at(i)] : nullptr;
-      Join join = make_join(index[pair.fixed], index[pair.moving], match, candidate);
+      const bool is_in_company = is_placed[pair.fixed] || is_placed[pair.moving];
+      Join join = make_join(index[pair.fixed], index[pair.moving], match, {candidate, is_in_company});
       joins.push_back(join.fixed < join.moving ? std::move(join) : inverted(join));
     }
     std::sort(joins.begin(), joins.end(), [](const Join& a, const Join& b) {
@@ -203,8 +212,8 @@ class Merger::State {
     MergeInputs inputs;
     inputs.index = places_of(maps);
     for (const MapId id : maps) {
-      inputs.grids.push_back(inputs_.at(id).grid.get());
-      inputs.prepared.push_back(&inputs_.at(id).prepared);
+      inputs.grids.push_back(inputs_.at(id)->grid.get());
+      inputs.prepared.push_back(&inputs_.at(id)->prepared);
       inputs.known_poses.push_back(known_pose(id));
     }
     for (const NodeGroup& group : arrangement.groups) {
@@ -227,7 +236,7 @@ class Merger::State {
 
   MergeOptions options_;
   MapId next_ = 0;
-  std::map<MapId, Input> inputs_;
+  std::map<MapId, std::unique_ptr<const Input>> inputs_;
   std::map<MapId, KnownPose> known_poses_;
   std::map<Pair, Made> matches_;
 };

@@ -9,46 +9,58 @@ namespace gridmerge {
 
 namespace {
 
-/// What it is worth to lie where it is known to: as much as the most that two maps say by themselves.
+/// What it is worth to lie where it is known to, if that is known as well as a match tells a pose: as much as
+/// the most that two maps say by themselves.
 constexpr double kKnownNats = 6.0;
-constexpr double kFixedNats = 50.0;
-constexpr double kExact = 1e-3;      // [m]
 constexpr double kDeviations = 3.0;  // a true pose lies within so many of what is known
+constexpr double kFarthest = 1e7;    // [m]
+constexpr double kLeastDeviation = 1e-6;
+
+/// The standard deviation with which two known poses tell how their maps lie to each other, as a displacement
+/// of the maps' cells [m].
+double sd_between(const KnownPose& fixed, const KnownPose& moving, const MapExtent& fixed_extent,
+                  const MapExtent& moving_extent) {
+  const Point2 there = moving.T_world_map * moving_extent.centre;
+  const Point2 here = fixed.T_world_map * fixed_extent.centre;
+  const double apart = std::hypot(there.x - here.x, there.y - here.y);
+  const double radius = std::min(fixed_extent.radius, moving_extent.radius);
+  double squares = 0.0;
+  for (const KnownPose* known : {&fixed, &moving}) {
+    if (known->fixed) continue;
+    // An error of one map's direction turns the other one about it.
+    squares += std::pow(known->sd_position, 2) +
+               std::pow(known->sd_theta, 2) * (radius * radius + 0.25 * apart * apart);
+  }
+  return std::sqrt(squares);
+}
 
 }  // namespace
 
 void validate_known_pose(const KnownPose& known) {
   const SE2& T = known.T_world_map;
-  if (!std::isfinite(T.x) || !std::isfinite(T.y) || !std::isfinite(T.theta))
-    throw std::invalid_argument("a known pose must be finite");
+  if (!(std::abs(T.x) <= kFarthest && std::abs(T.y) <= kFarthest && std::isfinite(T.theta)))
+    throw std::invalid_argument("a known pose must be finite, and within 10000 km");
   if (known.fixed) return;
-  if (!(std::isfinite(known.sd_position) && known.sd_position > 0.0 && std::isfinite(known.sd_theta) &&
-        known.sd_theta > 0.0))
+  const auto is_deviation = [](double sd) { return std::isfinite(sd) && sd >= kLeastDeviation; };
+  if (!is_deviation(known.sd_position) || !is_deviation(known.sd_theta))
     throw std::invalid_argument(
-        "the standard deviations of a known pose must be positive, unless it is fixed");
-}
-
-double sd_of(const KnownPose& known, const MapExtent& extent) {
-  return known.fixed ? 0.0 : std::hypot(known.sd_position, known.sd_theta * extent.radius);
+        "the standard deviations of a known pose must be at least 0.000001, unless it is fixed");
 }
 
 void apply_known_poses(const KnownPose& fixed, const KnownPose& moving, const MapExtent& fixed_extent,
                        const MapExtent& moving_extent, PairCandidates& pair) {
   const SE2 T_fixed_moving = inverse(fixed.T_world_map) * moving.T_world_map;
-  if (fixed.fixed && moving.fixed) {
-    pair.candidates = {{T_fixed_moving, kFixedNats, kExact}};
-    return;
-  }
-  const double sd = std::hypot(sd_of(fixed, fixed_extent), sd_of(moving, moving_extent));
-  const double near = agreement_tolerance(fixed_extent, moving_extent) + kDeviations * sd;
-  bool is_found = false;
+  const double sd = sd_between(fixed, moving, fixed_extent, moving_extent);
+  const double tolerance = agreement_tolerance(fixed_extent, moving_extent);
+  // In x, y and theta each, what is known singles out so much less than a match does.
+  const double nats = std::clamp(kKnownNats - 3.0 * std::log(sd / tolerance), 0.0, kKnownNats);
+  const double near = tolerance + kDeviations * sd;
   for (CandidateJoin& candidate : pair.candidates) {
     const bool is_near =
         difference(fixed_extent, moving_extent, candidate.T_fixed_moving, T_fixed_moving) <= near;
-    candidate.log_odds += is_near ? kKnownNats : -kKnownNats;
-    is_found = is_found || is_near;
+    candidate.log_odds += is_near ? nats : -nats;
   }
-  if (!is_found) pair.candidates.push_back({T_fixed_moving, kKnownNats, std::max(sd, kExact)});
+  if (sd <= tolerance) pair.candidates.push_back({T_fixed_moving, nats, sd, true});
 }
 
 }  // namespace gridmerge

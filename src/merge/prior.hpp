@@ -6,16 +6,13 @@
 
 namespace gridmerge {
 
-/// Throws std::invalid_argument for a pose that is not finite or a deviation that is not positive; those of a
-/// fixed pose may be 0.
+/// Throws std::invalid_argument for a pose that is not finite or farther off than 10^7 m, or a deviation that
+/// is less than 10^-6; those of a fixed pose may be 0.
 void validate_known_pose(const KnownPose& known);
 
-/// The standard deviation of a known pose as a displacement of the map's cells [m].
-double sd_of(const KnownPose& known, const MapExtent& extent);
-
-/// What two known poses say of how their maps lie to each other: candidates near it become likelier, others
-/// less likely; if there is none near it, what is known is a candidate itself. Of two fixed poses it is the
-/// only one.
+/// What two known poses, not both fixed, say of how their maps lie to each other: candidates near it become
+/// likelier, others less likely, by more the better the poses are known; and if they are known as well as a
+/// match tells a pose, what is known is one more candidate.
 void apply_known_poses(const KnownPose& fixed, const KnownPose& moving, const MapExtent& fixed_extent,
                        const MapExtent& moving_extent, PairCandidates& pair);
 

@@ -140,8 +140,9 @@ std::string component_section(const std::vector<std::string>& names, const Merge
                       grid.width, grid.height, grid.resolution, count(component.fused.agreeing, "cell"),
                       component.fused.conflicting);
   html +=
-      fmt::format(R"(<p class="soft">A transform takes a point of the map's frame to the frame of {}.</p>)",
-                  text(names.at(component.members.front().map)));
+      fmt::format(R"(<p class="soft">A transform takes a point of the map's frame to {}.</p>)",
+                  component.in_world_frame ? "the frame in which poses were fixed"
+                                           : "the frame of " + text(names.at(component.members.front().map)));
   html += fmt::format("\n<div class=\"table\"><table>\n<tr><th>map</th>{}{}</tr>\n", kTransformHeads,
                       kCertaintyHeads);
   for (const Member& member : component.members) {
@@ -159,7 +160,8 @@ constexpr const char* kJoinsText =
     "what "
     "the other maps say. <strong>rejected</strong>: would be believed by itself, but contradicts the other "
     "maps. "
-    "<strong>refused</strong>: not believed. The probability is that the transform, which takes the moving "
+    "<strong>known</strong>: they lie so because their poses were given. <strong>refused</strong>: not "
+    "believed. The probability is that the transform, which takes the moving "
     "frame to "
     "the "
     "fixed one, is the true one, by these two maps alone (of a random walk, which knows no probability, it "

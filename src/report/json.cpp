@@ -68,7 +68,11 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
     for (const Member& member : result.components[i].members) {
       members.push_back(member_json(names.at(member.map), member));
     }
-    components.push_back({{"map", component_file(i)}, {"members", std::move(members)}});
+    const Component& component = result.components[i];
+    components.push_back(
+        {{"map", component_file(i)},
+         {"frame", component.in_world_frame ? Json() : Json(names.at(component.members.front().map))},
+         {"members", std::move(members)}});
   }
   Json joins = Json::array();
   for (const Join& join : result.joins) {

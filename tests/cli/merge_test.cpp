@@ -31,7 +31,7 @@ TEST_F(Merge, WritesTheFilesOfTheContract) {
   expect_keys(json, {"components", "joins", "left_out", "left_out_reasons"});
   EXPECT_EQ(json.at("left_out"), Json::array());
   ASSERT_EQ(json.at("components").size(), 1u);
-  expect_keys(json.at("components").at(0), {"map", "members"});
+  expect_keys(json.at("components").at(0), {"map", "frame", "members"});
   EXPECT_EQ(json.at("components").at(0).at("map"), "merged.yaml");
   ASSERT_EQ(json.at("components").at(0).at("members").size(), 2u);
   const Json& members = json.at("components").at(0).at("members");
@@ -163,6 +163,8 @@ TEST_F(Merge, FixedMapsMakeTheFrame) {
   ASSERT_EQ(run({"merge", left, right, "-o", output, "--fix", right, "--init", poses}).exit_code, 0);
   members = Json::parse(read_file(output + "/transforms.json")).at("components").at(0).at("members");
   expect_near(members.at(1).at("transform"), {100.0, -50.0, 1.5}, 1e-12, 1e-12);
+  EXPECT_TRUE(
+      Json::parse(read_file(output + "/transforms.json")).at("components").at(0).at("frame").is_null());
 }
 
 TEST_F(Merge, InitialPosesJoinWhatTheMapsAloneDoNot) {
@@ -172,7 +174,7 @@ TEST_F(Merge, InitialPosesJoinWhatTheMapsAloneDoNot) {
   const Outcome outcome = run({"merge", left, other, "-o", output, "--init", poses});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const Json json = Json::parse(read_file(output + "/transforms.json"));
-  EXPECT_EQ(json.at("joins").at(0).at("outcome"), "rescued");
+  EXPECT_EQ(json.at("joins").at(0).at("outcome"), "known");
   expect_near(json.at("components").at(0).at("members").at(1).at("transform"), {30.0, 0.0, 0.0}, 0.5, 0.05);
 }
 
@@ -190,9 +192,11 @@ TEST_F(Merge, SaysWhatIsWrongWithInitialPoses) {
   expect_bad(head + "left.yaml\t0\t0\t0\n" + left + "\t1\t0\t0\n", "named before");
   expect_bad("map\tx\ty\ttheta\tsd\nleft.yaml\t0\t0\t0\t-1\n", "positive");
   const std::string poses = directory.write("poses.tsv", head + "left.yaml\t0\t0\t0\n");
-  expect_error(run({"merge", left, right, "-o", output, "--init", poses, "--fix", right}), right, "no pose");
+  expect_error(run({"merge", left, right, "-o", output, "--init", poses, "--fix", right}), right,
+               "needs a pose");
   expect_error(run({"merge", left, right, "-o", output, "--fix", other}), other, "none of the maps");
-  expect_error(run({"merge", left, right, "-o", output, "--fix", left, "--fix", right}), left, "no pose");
+  expect_error(run({"merge", left, right, "-o", output, "--fix", left, "--fix", right}), left,
+               "needs a pose");
 }
 
 TEST_F(Merge, OptionsThatDoNotGoTogetherAreAUsageError) {

@@ -47,6 +47,7 @@ TEST(InitialPoses, ErrorsNameFileLineAndCause) {
   expect("map\tx\ty\n", "poses.tsv:1", "theta");
   expect("map\tx\ty\ttheta\tz\n", "poses.tsv:1", "'z'");
   expect(head + "a\t0\t0\n", "poses.tsv:2", "3 fields");
+  expect(head + "a\t0\t1e8\t0\n", "poses.tsv:2", "y is farther off");
   expect(head + "a\t0\tinf\t0\n", "poses.tsv:2", "finite");
   expect(head + "a\t0\t0\t0\n\na\t0\t0\t0\n", "poses.tsv:4", "a second time");
   expect(head + std::string("a\0b\t0\t0\t0\n", 10), "poses.tsv:2", "NUL");

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
+#include <optional>
 
 #include "gridmerge/merge/coverage.hpp"
 #include "merge/wall_error.hpp"
@@ -37,14 +37,36 @@ TEST(FindDeviations, AddUpAlongAChainAndShrinkInACycle) {
   const std::vector<AlignedMap> maps(3, {&blank.prepared, {}, blank.extent, {}});
   std::vector<RelativePose> measured{measured_between(0, 1, {}, blank.extent, blank.extent, 0.1),
                                      measured_between(1, 2, {}, blank.extent, blank.extent, 0.1)};
-  const std::vector<PoseDeviation> chain = find_deviations(maps, measured, 0);
-  EXPECT_EQ(chain[0].position, 0.0);
-  EXPECT_NEAR(chain[1].position, 0.1 * std::sqrt(2.0), 1e-6);  // in x and in y
-  EXPECT_NEAR(chain[1].theta, 0.1 / 5.0, 1e-6);
-  EXPECT_NEAR(chain[2].position, 0.2, 1e-6);
-  EXPECT_NEAR(find_deviations(maps, measured, 2)[0].position, 0.2, 1e-6);
+  const std::vector<std::optional<PoseDeviation>> chain = find_deviations(maps, measured, 0);
+  EXPECT_EQ(chain[0]->position, 0.0);
+  EXPECT_NEAR(chain[1]->position, 0.1 * std::sqrt(2.0), 1e-6);  // in x and in y
+  EXPECT_NEAR(chain[1]->theta, 0.1 / 5.0, 1e-6);
+  EXPECT_NEAR(chain[2]->position, 0.2, 1e-6);
+  EXPECT_NEAR(find_deviations(maps, measured, 2)[0]->position, 0.2, 1e-6);
   measured.push_back(measured_between(0, 2, {}, blank.extent, blank.extent, 0.1));
-  EXPECT_NEAR(find_deviations(maps, measured, 0)[2].position, 0.1 * std::sqrt(2.0 * 2.0 / 3.0), 1e-6);
+  EXPECT_NEAR(find_deviations(maps, measured, 0)[2]->position, 0.1 * std::sqrt(2.0 * 2.0 / 3.0), 1e-6);
+}
+
+TEST(FindDeviations, AreKnownHoweverFarOffTheOriginIs) {
+  const OccupancyGrid blank = make_grid(4, 4, 0.1, {5e5, 5.4e6, 1.0});
+  const PreparedMap prepared(blank);
+  const MapExtent extent{{5e5, 5.4e6}, 5.0, 20.0};
+  const std::vector<AlignedMap> maps(2, {&prepared, {}, extent, {}});
+  const std::vector<RelativePose> measured{measured_between(0, 1, {}, extent, extent, 0.1)};
+  const auto deviations = find_deviations(maps, measured, 0);
+  ASSERT_TRUE(deviations[1].has_value());
+  EXPECT_NEAR(deviations[1]->position, 0.1 * std::sqrt(2.0), 1e-3);
+}
+
+TEST(FindDeviations, OfAKnownPoseAreThoseThatAreSaid) {
+  const Blank blank;
+  std::vector<AlignedMap> maps(2, {&blank.prepared, {}, blank.extent, {}});
+  maps[0].known_pose = KnownPose{{}, 0.0, 0.0, true};
+  maps[1].known_pose = KnownPose{{}, 0.3, 0.05, false};
+  const auto deviations = find_deviations(maps, {}, 0);
+  EXPECT_EQ(deviations[0]->position, 0.0);
+  EXPECT_NEAR(deviations[1]->position, 0.3 * std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(deviations[1]->theta, 0.05, 1e-6);
 }
 
 TEST(Align, DrawsTheWallsOfTheMapsToEachOther) {
@@ -65,11 +87,15 @@ TEST(WallError, ItsDerivativesAreThoseOfItsResiduals) {
   OccupancyGrid elsewhere = test::draw_building(1);
   elsewhere.origin = {3.0, -1.0, 0.7};
   const WallMap moving = make_wall_map(elsewhere, 0.1);
-  const WallError error(fixed, moving, 2.0);
+  const Point2 fixed_middle{1.0, 2.0}, moving_middle{-3.0, 0.5};
+  const WallError error(fixed, fixed_middle, moving, moving_middle, 2.0);
   const auto count = static_cast<std::size_t>(error.num_residuals());
   ASSERT_GT(count, 100u);
   double poses[2][3] = {{0.5, -0.25, 0.1}, {0.0, 0.0, 0.0}};
-  const SE2 T = SE2{0.5, -0.25, 0.1} * inverse(elsewhere.origin) * SE2{0.13, 0.07, 0.01};
+  // The moving map a little off where it belongs.
+  const SE2 T = SE2{0.5, -0.25, 0.1} * SE2{-fixed_middle.x, -fixed_middle.y, 0.0} *
+                inverse(elsewhere.origin) * SE2{0.13, 0.07, 0.01} *
+                SE2{moving_middle.x, moving_middle.y, 0.0};
   poses[1][0] = T.x;
   poses[1][1] = T.y;
   poses[1][2] = T.theta;

@@ -141,9 +141,9 @@ TEST(Merge, OrderOfTheMapsDecidesNothingButTheFrame) {
   for (std::size_t map = 1; map < 4; ++map) {
     const SE2 here = inverse(pose(result, 4)) * pose(result, 4 - map);
     const SE2 there = inverse(pose(usual, 0)) * pose(usual, map);
-    EXPECT_NEAR(here.x, there.x, 0.005);  // a tenth of a cell, and 0.02 degrees
-    EXPECT_NEAR(here.y, there.y, 0.005);
-    EXPECT_NEAR(normalize_angle(here.theta - there.theta), 0.0, 3.5e-4);
+    EXPECT_NEAR(here.x, there.x, 1e-9);
+    EXPECT_NEAR(here.y, there.y, 1e-9);
+    EXPECT_NEAR(normalize_angle(here.theta - there.theta), 0.0, 1e-9);
   }
 }
 
@@ -157,7 +157,7 @@ TEST(Merge, AKnownPoseJoinsMapsThatShareNothing) {
   ASSERT_EQ(result.components.size(), 1u);
   EXPECT_EQ(result.components[0].members[0].T_component_map, SE2{}) << "the frame is the first map's";
   EXPECT_NEAR(result.components[0].members[1].T_component_map.x, 0.2, 1e-6);
-  EXPECT_EQ(result.joins[0].outcome, JoinOutcome::rescued);
+  EXPECT_EQ(result.joins[0].outcome, JoinOutcome::known);
 }
 
 TEST(Merge, AKnownPoseThatIsAboutRightIsImproved) {
@@ -184,6 +184,46 @@ TEST(Merge, FixedPosesAreNotChangedAndMakeTheFrame) {
   ASSERT_EQ(forced.components.size(), 1u);
   EXPECT_EQ(forced.components[0].members[0].T_component_map, known[0]->T_world_map);
   EXPECT_EQ(forced.components[0].members[1].T_component_map, known[1]->T_world_map);
+}
+
+TEST(Merge, FixedMapsStayFixedWhateverOthersSay) {
+  // Four maps of one place, all of which fit; two are fixed where they do not.
+  const Team team;
+  std::vector<std::optional<KnownPose>> known(4);
+  known[0] = KnownPose{{0.0, 0.0, 0.0}, 0.0, 0.0, true};
+  known[1] = KnownPose{{60.0, 0.0, 1.0}, 0.0, 0.0, true};
+  const MergeResult result = merge({team.maps[0], team.maps[1], team.maps[2], team.maps[3]}, {}, known);
+  ASSERT_GE(result.components.size(), 1u);
+  const std::vector<Member>& members = result.components[0].members;
+  ASSERT_GE(members.size(), 2u);
+  EXPECT_TRUE(result.components[0].in_world_frame);
+  EXPECT_EQ(members[0].T_component_map, known[0]->T_world_map);
+  EXPECT_EQ(members[1].T_component_map, known[1]->T_world_map);
+  EXPECT_NE(result.joins[0].outcome, JoinOutcome::accepted);
+}
+
+TEST(Merge, AVagueKnownPoseJoinsNoStrangers) {
+  const Team team;
+  const KnownPose vague{{0.0, 0.0, 0.0}, 1000.0, 3.0};
+  EXPECT_EQ(merge({team.maps[0], team.maps[4]}, {}, {vague, vague}).left_out.size(), 2u);
+}
+
+TEST(Merge, AskingForNoProbabilityStillJoinsNothingUnproposed) {
+  MergeOptions options;
+  options.match.accept_probability = 0.0;
+  const std::vector<OccupancyGrid> blank(2, make_grid(10, 10, 0.1));
+  EXPECT_EQ(merge(blank, options).left_out.size(), 2u);
+}
+
+TEST(Merge, APairThatContradictsTheOthersIsRejectedByName) {
+  // Where the third map is fixed, nothing of it fits the first two, though it does by itself.
+  const Team team;
+  std::vector<std::optional<KnownPose>> known(3);
+  known[0] = KnownPose{{0.0, 0.0, 0.0}, 0.0, 0.0, true};
+  known[2] = KnownPose{{200.0, 0.0, 0.0}, 0.0, 0.0, true};
+  const MergeResult result = merge({team.maps[0], team.maps[1], team.maps[2]}, {}, known);
+  EXPECT_EQ(result.joins[1].outcome, JoinOutcome::rejected);
+  EXPECT_STREQ(name_of(result.joins[1].outcome), "rejected");
 }
 
 TEST(Merge, RefusesWhatMakesNoSense) {

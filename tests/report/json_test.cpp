@@ -94,6 +94,7 @@ TEST(TransformsJson, IsTheDocumentedText) {
   "components": [
     {
       "map": "merged.yaml",
+      "frame": "a.yaml",
       "members": [
         {
           "source": "a.yaml",

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "gridmerge/grid/se2.hpp"
@@ -14,6 +15,7 @@ struct CandidateJoin {
   SE2 T_fixed_moving;     ///< between the map frames
   double log_odds = 0.0;  ///< of being true, from these two maps alone [nats]
   double sd = 1.0;        ///< if it is true: standard deviation of the displacement from the true pose [m]
+  bool is_known = false;  ///< it is not what the maps say, but what is known of their poses beforehand
 };
 
 /// The candidates of two maps.
@@ -30,6 +32,8 @@ struct ArrangementProblem {
   /// Where each map knows anything; without it no two maps are thought to have anything in common, and every
   /// pair is thought to speak of other places than the rest.
   std::vector<const Coverage*> coverage;
+  /// Poses in one frame that are the truth, whatever pairs say; may be shorter than `maps`.
+  std::vector<std::optional<SE2>> fixed;
 };
 
 struct PlacedNode {
@@ -74,13 +78,16 @@ double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b, cons
 /// maps have in common no stronger pair has spoken of; the rest counts less, and not at all where it is asked
 /// whether the groups belong together, rather than how they lie.
 ///
-/// Starting from single maps, the two groups whose join is most probable are joined, as long as it is at
-/// least `accept_probability`: against lying otherwise, and against not belonging together. Then every map is
-/// taken out and put where it is worth most, which takes back what was joined too early, until nothing
-/// changes. At last a group is cut where its two parts could not be joined as surely as asked for.
+/// Starting from single maps, and one group of those that are fixed, the two groups that are worth most
+/// together are joined, as long as that is probable enough (`accept_probability`): against lying otherwise,
+/// and against not belonging together. Then every map is taken out and put where it is worth most, which
+/// takes back what was joined too early, until nothing changes. At last a group is cut where its two parts
+/// could not be joined as surely as asked for. Fixed maps are neither moved nor cut apart.
 ///
-/// Deterministic; the order of maps and pairs plays no part, beyond which map a group's frame is that of.
-/// O(k^2) joins are weighed a round, k rounds.
+/// Deterministic; the order of maps and pairs plays no part beyond rounding, and which map a group's frame is
+/// that of. Runs in the calling TBB arena. O(k^2) joins are weighed a round, k rounds; a join of groups of a
+/// and b maps with c candidates a pair is weighed in O((a b c)^2), but only 50 poses of it in full. Throws
+/// std::invalid_argument for indices, numbers of maps or a probability that make no sense.
 Arrangement arrange(const ArrangementProblem& problem, double accept_probability);
 
 }  // namespace gridmerge

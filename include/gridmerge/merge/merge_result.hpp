@@ -17,9 +17,10 @@ enum class JoinOutcome {
   accepted,  ///< believed by itself, and nothing that the other maps say contradicts it
   rescued,   ///< too weak to be believed by itself, but it agrees with what the other maps say
   rejected,  ///< would be believed by itself, but contradicts what the other maps say
+  known,     ///< the maps lie so because it is known beforehand, whatever they say
 };
 
-/// As outputs spell it: "refused", "accepted", "rescued", "rejected".
+/// As outputs spell it: "refused", "accepted", "rescued", "rejected", "known".
 const char* name_of(JoinOutcome outcome);
 
 /// A comparison of two maps, or up the tree of two groups of maps: then said of the first map of each.
@@ -32,7 +33,7 @@ struct Join {
   double probability = 0.0;  ///< of that hypothesis, from these two maps alone
 
   /// Whether the maps lie so in the result.
-  bool used() const { return outcome == JoinOutcome::accepted || outcome == JoinOutcome::rescued; }
+  bool used() const { return outcome != JoinOutcome::refused && outcome != JoinOutcome::rejected; }
 };
 
 /// How well a pose is known.
@@ -50,11 +51,12 @@ struct Member {
   std::optional<PoseDeviation> sd = {};
 };
 
-/// Maps that were joined. The component's frame is the map frame of its first member, unless poses are fixed
-/// (see KnownPose).
+/// Maps that were joined.
 struct Component {
   std::vector<Member> members;  ///< ascending
   FusedMap fused;
+  /// The frame is that of the first member, or, where a member's pose is fixed, the world's (see KnownPose).
+  bool in_world_frame = false;
 };
 
 struct MergeResult {

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pose_problem.hpp"
+
+#include <ceres/covariance.h>
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace gridmerge {
+
+namespace {
+
+/// Jacobians of more poses than this are kept sparse.
+constexpr std::size_t kDensePoses = 20;
+
+/// How far two poses put the moving frame from where it was measured: the pivot's displacement and the turn,
+/// in standard deviations.
+class RelativePoseError {
+ public:
+  explicit RelativePoseError(const RelativePose& measured) : measured_(measured) {}
+
+  template <typename T>
+  bool operator()(const T* fixed, const T* moving, T* residual) const {
+    const Point2& p = measured_.pivot;
+    const Point2 q = measured_.T_fixed_moving * p;
+    // The pivot in the common frame, by the moving pose, and by the fixed pose and what was measured.
+    const T cm = cos(moving[2]), sm = sin(moving[2]);
+    const T cf = cos(fixed[2]), sf = sin(fixed[2]);
+    const T dx = cm * p.x - sm * p.y + moving[0] - (cf * q.x - sf * q.y + fixed[0]);
+    const T dy = sm * p.x + cm * p.y + moving[1] - (sf * q.x + cf * q.y + fixed[1]);
+    residual[0] = dx / measured_.sd_position;
+    residual[1] = dy / measured_.sd_position;
+    // Twice the sine of half the turn: the same for every whole turn.
+    residual[2] =
+        2.0 * sin(0.5 * (moving[2] - fixed[2] - measured_.T_fixed_moving.theta)) / measured_.sd_theta;
+    return true;
+  }
+
+ private:
+  RelativePose measured_;
+};
+
+SE2 shift(const Point2& by) {
+  return {by.x, by.y, 0.0};
+}
+
+}  // namespace
+
+std::size_t PoseProblem::add_pose(const SE2& pose, const Point2& middle, bool held) {
+  const Point2 place = pose * middle;
+  Block& block = blocks_.emplace_back(Block{{place.x, place.y, pose.theta}, middle, held});
+  problem_.AddParameterBlock(block.values.data(), 3);
+  if (held) problem_.SetParameterBlockConstant(block.values.data());
+  return blocks_.size() - 1;
+}
+
+void PoseProblem::add(const RelativePose& measured) {
+  RelativePose between = measured;
+  const Point2 &fixed = blocks_[measured.fixed].middle, &moving = blocks_[measured.moving].middle;
+  between.T_fixed_moving = inverse(shift(fixed)) * measured.T_fixed_moving * shift(moving);
+  between.pivot = {measured.pivot.x - moving.x, measured.pivot.y - moving.y};
+  problem_.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<RelativePoseError, 3, 3, 3>(new RelativePoseError(between)),
+      new ceres::HuberLoss(1.0), blocks_[measured.fixed].values.data(),
+      blocks_[measured.moving].values.data());
+}
+
+void PoseProblem::add(std::size_t fixed, std::size_t moving, std::unique_ptr<ceres::CostFunction> error) {
+  problem_.AddResidualBlock(error.release(), nullptr, blocks_[fixed].values.data(),
+                            blocks_[moving].values.data());
+}
+
+void PoseProblem::solve() {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  if (blocks_.size() > kDensePoses && ceres::IsSparseLinearAlgebraLibraryTypeAvailable(ceres::EIGEN_SPARSE)) {
+    options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  }
+  options.max_num_iterations = 50;
+  options.function_tolerance = 1e-10;
+  options.parameter_tolerance = 1e-12;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem_, &summary);
+}
+
+SE2 PoseProblem::pose(std::size_t number) const {
+  const Block& block = blocks_[number];
+  const SE2 middle{block.values[0], block.values[1], normalize_angle(block.values[2])};
+  return middle * inverse(shift(block.middle));
+}
+
+std::vector<std::optional<PoseDeviation>> PoseProblem::deviations() {
+  std::vector<std::optional<PoseDeviation>> deviations(blocks_.size());
+  std::vector<std::pair<const double*, const double*>> wanted;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (blocks_[i].held) {
+      deviations[i] = PoseDeviation{};
+    } else {
+      wanted.emplace_back(blocks_[i].values.data(), blocks_[i].values.data());
+    }
+  }
+  ceres::Covariance::Options options;
+  options.algorithm_type = ceres::DENSE_SVD;
+  options.num_threads = 1;
+  ceres::Covariance covariance(options);
+  if (wanted.empty() || !covariance.Compute(wanted, &problem_)) return deviations;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (blocks_[i].held) continue;
+    std::array<double, 9> block{};
+    covariance.GetCovarianceBlock(blocks_[i].values.data(), blocks_[i].values.data(), block.data());
+    deviations[i] = PoseDeviation{std::sqrt(block[0] + block[4]), std::sqrt(block[8])};
+  }
+  return deviations;
+}
+
+}  // namespace gridmerge
