@@ -181,6 +181,13 @@ void add_mapping_options(CLI::App& command, SimulateCommandOptions& options) {
   number("--noise", simulation.sensor.noise, "METRES", "Standard deviation of a range");
   number("--stray", simulation.sensor.stray_share, "SHARE", "Of beams that end before what they should meet");
   number("--missed", simulation.sensor.missed_share, "SHARE", "Of beams that come back with nothing");
+  command
+      .add_option(
+          "--tidy", simulation.tidy,
+          "Without specks, and with walls so much thicker on each side, as hand-held mappers draw them; "
+          "as the range finder left them if not given")
+      ->type_name("METRES")
+      ->check(kNotNegative);
   command.add_flag("--probabilities", options.dataset.probabilities,
                    "Write probabilities (mode raw), not only free, occupied and unknown");
 }

@@ -7,6 +7,7 @@
 
 #include "drift.hpp"
 #include "mapper.hpp"
+#include "tidy.hpp"
 #include "visit.hpp"
 
 namespace gridmerge {
@@ -134,7 +135,7 @@ Survey survey(const SimulateOptions& options, const Visit& visit, const Errand& 
     }
     walkers.walk();
   }
-  result.map.grid = mapper.grid();
+  result.map.grid = options.tidy ? tidied(mapper.grid(), *options.tidy) : mapper.grid();
   const RigidFit fit = fit_rigid(result.places.building_and_map());
   result.map.T_building_map = fit.T_a_b;
   result.map.bend = fit.rms;

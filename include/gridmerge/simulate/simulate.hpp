@@ -36,6 +36,9 @@ struct SimulateOptions {
   /// or chair on every 25 square metres and a walker on every 150.
   double clutter = 1.0;
   double resolution = 0.05;  ///< of the maps [m/cell]
+  /// Draw as mappers do that clean up after themselves: without specks, and with walls so much thicker on
+  /// each side [m]; as the range finder left them, if not given.
+  std::optional<double> tidy;
   std::uint64_t seed = 1;
   int threads = 0;  ///< worker threads; 0 = one a core. The result does not depend on it.
   /// Called now and then with the share of the work that is done, in [0, 1]; never from two threads at once.
