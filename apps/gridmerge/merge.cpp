@@ -139,7 +139,7 @@ int run_merge(const MergeCommandOptions& options) {
   Console console(options.common);
   const std::vector<std::optional<KnownPose>> known_poses = load_known_poses(options.known, options.maps);
   Inputs inputs = load_inputs(options, console);
-  if (!options.known.init.empty()) inputs.files.push_back(options.known.init);
+  if (!options.known.init.empty()) inputs.files.emplace_back(options.known.init);
   prepare_merge_output(options.output, inputs.files);
   PairMatcher matcher(options.common, options.search);
   if (!options.search.trace.empty()) try_trace(options, inputs.files);

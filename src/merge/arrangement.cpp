@@ -252,8 +252,8 @@ double displacement(const MapExtent& moving, const SE2& a, const SE2& b) {
   return std::sqrt((at_a.x - at_b.x) * (at_a.x - at_b.x) + (at_a.y - at_b.y) * (at_a.y - at_b.y) + turned);
 }
 
-double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b, const SE2& other_T_a_b) {
-  return std::min(displacement(b, T_a_b, other_T_a_b), displacement(a, inverse(T_a_b), inverse(other_T_a_b)));
+double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b, const SE2& T_a_b_other) {
+  return std::min(displacement(b, T_a_b, T_a_b_other), displacement(a, inverse(T_a_b), inverse(T_a_b_other)));
 }
 
 Arrangement arrange(const ArrangementProblem& problem, double accept_probability) {

@@ -81,6 +81,7 @@ class SpokenOf {
   /// The share of the places that are new; 1 if there are none to tell by.
   double add(const std::vector<Point2>& places) {
     std::vector<Place> cells;
+    cells.reserve(places.size());
     for (const Point2& at : places) cells.emplace_back(std::floor(at.x / kSide), std::floor(at.y / kSide));
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
@@ -382,7 +383,7 @@ NodeGroup JoinWeights::adjusted(NodeGroup group) const {
 std::pair<NodeGroup, NodeGroup> taken_out(const NodeGroup& group, std::size_t place) {
   NodeGroup rest = group;
   rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(place));
-  return {std::move(rest), {group[place]}};
+  return {rest, {group[place]}};
 }
 
 }  // namespace gridmerge

@@ -201,6 +201,7 @@ class Merger::State {
   std::vector<std::size_t> places_of(const std::vector<MapId>& maps) const {
     const std::vector<MapId> order = ids();
     std::vector<std::size_t> places;
+    places.reserve(maps.size());
     for (const MapId id : maps)
       places.push_back(
           static_cast<std::size_t>(std::lower_bound(order.begin(), order.end(), id) - order.begin()));

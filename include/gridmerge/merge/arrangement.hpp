@@ -65,7 +65,7 @@ double displacement(const MapExtent& moving, const SE2& a, const SE2& b);
 
 /// How far two ways in which maps a and b may lie differ [m]: the displacement of that map which it moves
 /// less. The same whichever of the two is taken for the moving one.
-double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b, const SE2& other_T_a_b);
+double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b, const SE2& T_a_b_other);
 
 /// The arrangement of all maps that the candidates speak for most, as far as it can be believed.
 ///
