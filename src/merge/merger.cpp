@@ -131,13 +131,19 @@ class Merger::State {
     std::vector<MatchResult> results(pairs.size());
     std::mutex reporting;
     std::size_t done = 0;
-    parallel_for(pairs.size(), [&](std::size_t i) {
+    const auto match_pair = [&](std::size_t i) {
       const auto [fixed, moving] = pairs[i];
       results[i] = match(inputs_.at(fixed)->prepared, inputs_.at(moving)->prepared, options_.match);
       const std::lock_guard lock(reporting);
       ++done;
       if (options_.progress) options_.progress(done, pairs.size());
-    });
+    };
+    if (pairs.size() == 1) {
+      match_pair(0);
+    } else {
+      // Each pair by one thread: one that waited within a pair would begin with another one meanwhile.
+      parallel_for(pairs.size(), [&](std::size_t i) { with_threads(1, [&] { match_pair(i); }); });
+    }
     for (std::size_t i = 0; i < pairs.size(); ++i)
       matches_[std::minmax(pairs[i].first, pairs[i].second)] = {pairs[i].first, std::move(results[i])};
   }
