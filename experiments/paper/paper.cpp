@@ -172,11 +172,12 @@ std::string merge_all(const std::vector<RobotMap>& robots) {
       "| method | components | maps placed | of them right | seconds |\n|---|---|---|---|---|\n";
   const auto add = [&](const std::string& method, const Matcher& matcher) {
     double seconds = 0.0;
-    const MergeResult result = merge_up_tree(maps, [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
-      MatchResult match = matcher(fixed, moving);
-      seconds += match.seconds;
-      return match;
-    });
+    const MergeResult result =
+        merge_up_tree(maps, [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+          MatchResult match = matcher(fixed, moving);
+          seconds += match.seconds;
+          return match;
+        });
     table += describe_merge(robots, method, result, seconds);
   };
   for (const std::vector<double>& c_locks : {std::vector<double>{0.0}, std::vector<double>{0.0, 7.5}}) {
