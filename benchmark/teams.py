@@ -18,22 +18,12 @@ import pathlib
 import random
 import subprocess
 
+from poses import Pose, compose, inverse
+
 KINDS = ("office", "hall", "warehouse", "apartment", "loop", "curved", "outdoor", "symmetric")
 ALIKE = ("curved", "symmetric")  # rooms of one building are alike there
 STRANGERS = 2
 RADIUS = 8.0  # at which an angle counts as a displacement [m]
-
-Pose = tuple[float, float, float]
-
-
-def compose(a: Pose, b: Pose) -> Pose:
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return (a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2])
-
-
-def inverse(a: Pose) -> Pose:
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return (-(c * a[0] + s * a[1]), -(-s * a[0] + c * a[1]), -a[2])
 
 
 def draw_teams(count: int) -> list[tuple[str, list[str]]]:

@@ -125,7 +125,7 @@ VerdictFeatures describe_walls(const std::vector<RankedPose>& ranked, const Wall
 
 /// `moving` is the map that is_smaller() picked.
 FoundHypotheses find_hypotheses(const PreparedMap& fixed, const PreparedMap& moving,
-                                const std::vector<SE2>& guesses, const MatchOptions& options) {
+                                const MatchOptions& options) {
   const double cell = working_cell(fixed, moving);
   const WallMap& fixed_walls = fixed.walls(cell);
   const WallMap& moving_walls = moving.walls(cell);
@@ -138,8 +138,7 @@ FoundHypotheses find_hypotheses(const PreparedMap& fixed, const PreparedMap& mov
   const double radius = make_pose_metric(moving_walls).radius / search.coarse_factor;
   search.rotations = std::clamp(static_cast<int>(std::ceil(2.0 * std::numbers::pi * radius / kTurnStep)),
                                 kLeastRotations, kMostRotations);
-  std::vector<PoseCandidate> candidates = search_all_poses(fixed_walls, moving_walls, search);
-  for (const SE2& guess : guesses) candidates.push_back({to_cells(guess, fixed_walls, moving_walls), 0});
+  const std::vector<PoseCandidate> candidates = search_all_poses(fixed_walls, moving_walls, search);
   report(options, 0.5);
 
   RefineOptions refinement;
@@ -182,11 +181,9 @@ MatchResult match_in_arena(const PreparedMap& fixed, const PreparedMap& moving, 
   const bool swapped = is_smaller(fixed, moving);
   const PreparedMap& larger = swapped ? moving : fixed;
   const PreparedMap& smaller = swapped ? fixed : moving;
-  std::vector<SE2> guesses = options.guesses;
-  if (swapped) std::transform(guesses.begin(), guesses.end(), guesses.begin(), inverse);
 
   MatchResult result;
-  FoundHypotheses found = find_hypotheses(larger, smaller, guesses, options);
+  FoundHypotheses found = find_hypotheses(larger, smaller, options);
   result.hypotheses = std::move(found.ranked);
   if (result.hypotheses.empty()) return result;
   const AgreementCounts counts =
@@ -250,11 +247,6 @@ void validate(const MatchOptions& options) {
   if (!(options.accept_probability >= 0.0 && options.accept_probability <= 1.0)) {
     throw std::invalid_argument("accept_probability must lie in [0, 1]");
   }
-  const auto is_finite = [](const SE2& T) {
-    return std::isfinite(T.x) && std::isfinite(T.y) && std::isfinite(T.theta);
-  };
-  if (!std::all_of(options.guesses.begin(), options.guesses.end(), is_finite))
-    throw std::invalid_argument("guesses must be finite");
 }
 
 }  // namespace gridmerge

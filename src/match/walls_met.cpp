@@ -104,9 +104,9 @@ class PatchMatcher {
 
   Meetings rigidly(const Patch& patch) const { return at(patch, start_); }
 
-  Meetings locally(const Patch& patch) const {
-    const Meetings before = rigidly(patch);
-    if (patch.moving.empty() || before.seen * fixed_.cell < kLeastWall) return before;
+  /// `rigid` is what rigidly() says of the patch.
+  Meetings locally(const Patch& patch, const Meetings& rigid) const {
+    if (patch.moving.empty() || rigid.seen * fixed_.cell < kLeastWall) return rigid;
     return at(patch, climb(patch));
   }
 
@@ -176,7 +176,7 @@ WallsMet measure_walls_met(const WallMap& fixed, const WallMap& moving, const SE
   std::vector<Meetings> rigidly(patches.size()), locally(patches.size());
   parallel_for(patches.size(), [&](std::size_t i) {
     rigidly[i] = matcher.rigidly(patches[i]);
-    locally[i] = matcher.locally(patches[i]);
+    locally[i] = matcher.locally(patches[i], rigidly[i]);
   });
   return {share_met(rigidly), share_met(locally)};
 }

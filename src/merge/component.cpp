@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "alignment.hpp"
+#include "joins.hpp"
 
 namespace gridmerge {
 
@@ -32,12 +33,6 @@ std::vector<RelativePose> measured_in(const NodeGroup& group, const ArrangementP
   return measured;
 }
 
-double finest(const NodeGroup& group, const MergeInputs& inputs) {
-  double resolution = inputs.grids[group.front().map]->resolution;
-  for (const PlacedNode& node : group) resolution = std::min(resolution, inputs.grids[node.map]->resolution);
-  return resolution;
-}
-
 }  // namespace
 
 Component make_component(const NodeGroup& group, const ArrangementProblem& problem,
@@ -49,7 +44,7 @@ Component make_component(const NodeGroup& group, const ArrangementProblem& probl
     const std::size_t map = group[i].map;
     maps.push_back({inputs.prepared[map], group[i].T_group_map, problem.maps[map], inputs.known_poses[map]});
     if (inputs.index[map] < inputs.index[group[first].map]) first = i;
-    is_world = is_world || (inputs.known_poses[map] && inputs.known_poses[map]->fixed);
+    is_world = is_world || maps.back().is_fixed();
   }
   const std::vector<RelativePose> measured = measured_in(group, problem, arrangement);
   const std::vector<SE2> poses = align(maps, measured);
@@ -67,7 +62,7 @@ Component make_component(const NodeGroup& group, const ArrangementProblem& probl
     placed.push_back({inputs.grids[group[i].map], component.members[i].T_component_map});
   std::sort(component.members.begin(), component.members.end(),
             [](const Member& a, const Member& b) { return a.map < b.map; });
-  component.fused = fuse(placed, resolution > 0.0 ? resolution : finest(group, inputs));
+  component.fused = fuse(placed, resolution > 0.0 ? resolution : finest_resolution(placed));
   return component;
 }
 

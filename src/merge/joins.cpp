@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "joins.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -36,6 +37,13 @@ void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution) {
       throw std::invalid_argument("map " + std::to_string(i) + ": " + error.what());
     }
   }
+}
+
+double finest_resolution(const std::vector<PlacedMap>& maps) {
+  return std::min_element(
+             maps.begin(), maps.end(),
+             [](const PlacedMap& a, const PlacedMap& b) { return a.map->resolution < b.map->resolution; })
+      ->map->resolution;
 }
 
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match) {

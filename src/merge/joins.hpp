@@ -13,6 +13,9 @@ namespace gridmerge {
 /// merged maps.
 void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution);
 
+/// The resolution of the finest of these maps, of which there must be one.
+double finest_resolution(const std::vector<PlacedMap>& maps);
+
 /// A join that means what its own verdict says.
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match);
 

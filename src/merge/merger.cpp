@@ -39,7 +39,6 @@ class Merger::State {
     validate(options_.match);
     validate_merge({}, options_.resolution);
     options_.match.progress = nullptr;
-    options_.match.guesses.clear();
     options_.match.max_hypotheses = std::max(options_.match.max_hypotheses, kKeptHypotheses);
   }
 
@@ -279,7 +278,6 @@ MergeResult Merger::result() {
 
 MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
                   const std::vector<std::optional<KnownPose>>& known_poses) {
-  validate_merge(maps, options.resolution);
   if (known_poses.size() > maps.size()) throw std::invalid_argument("there are more known poses than maps");
   Merger merger(options);
   for (std::size_t i = 0; i < maps.size(); ++i) {

@@ -2,11 +2,8 @@
 #include "gridmerge/merge/tree.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <set>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "joins.hpp"
@@ -51,8 +48,9 @@ class PairwiseTree {
         result.left_out.push_back(group.first());
         result.left_out_reasons.push_back(why_left_out(result.joins, group.first()));
       } else {
+        const std::vector<PlacedMap> inputs = placed(group);
         FusedMap fused =
-            fuse(placed(group), options_.resolution > 0.0 ? options_.resolution : finest(group.members));
+            fuse(inputs, options_.resolution > 0.0 ? options_.resolution : finest_resolution(inputs));
         result.components.push_back({std::move(group.members), std::move(fused)});
       }
     }
@@ -115,7 +113,10 @@ class PairwiseTree {
 
   const OccupancyGrid& grid_of(Group& group) {
     if (group.members.size() == 1) return maps_[group.first()];
-    if (!group.fused) group.fused = fuse(placed(group), finest(group.members)).grid;
+    if (!group.fused) {
+      const std::vector<PlacedMap> inputs = placed(group);
+      group.fused = fuse(inputs, finest_resolution(inputs)).grid;
+    }
     return *group.fused;
   }
 
@@ -123,12 +124,6 @@ class PairwiseTree {
     std::vector<PlacedMap> inputs;
     for (const Member& member : group.members) inputs.push_back({&maps_[member.map], member.T_component_map});
     return inputs;
-  }
-
-  double finest(const std::vector<Member>& members) const {
-    double resolution = maps_[members.front().map].resolution;
-    for (const Member& member : members) resolution = std::min(resolution, maps_[member.map].resolution);
-    return resolution;
   }
 
   const std::vector<OccupancyGrid>& maps_;

@@ -14,8 +14,8 @@
 namespace gridmerge {
 
 struct MergeOptions {
-  /// How each pair is matched, and from which probability on maps are joined; its progress callback and its
-  /// guesses are not used.
+  /// How each pair is matched, and from which probability on maps are joined; its progress callback is
+  /// not used.
   MatchOptions match;
   double resolution = 0.0;  ///< of the merged maps [m]; 0 = the finest among a map's inputs
   /// Called with the numbers of pairs that are matched and to be matched, never from two threads at once.

@@ -3,7 +3,7 @@
 """Merges all maps of one building at once and holds the result against the truth of every pair; then once more in
 other orders, which must not matter.
 
-usage: bench/joint.py GRIDMERGE PAIRS.tsv PREFIX [--orders N]
+usage: benchmark/joint.py GRIDMERGE PAIRS.tsv PREFIX [--orders N]
 
 PAIRS is a table as `gridmerge evaluate` takes it; of its maps those are merged whose names begin with PREFIX.
 """
@@ -17,17 +17,7 @@ import random
 import subprocess
 import tempfile
 
-Pose = tuple[float, float, float]
-
-
-def compose(a: Pose, b: Pose) -> Pose:
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return (a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2])
-
-
-def inverse(a: Pose) -> Pose:
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return (-(c * a[0] + s * a[1]), -(-s * a[0] + c * a[1]), -a[2])
+from poses import Pose, compose, inverse
 
 
 def merge(gridmerge: str, folder: pathlib.Path, maps: list[str]) -> list[dict[str, Pose]]:
