@@ -23,7 +23,7 @@ export function badge(state: State, map: number): HTMLElement {
 
 /** The badge with the map's name; pointing at it shows where the map lies. */
 export function mapLabel(state: State, map: number): HTMLElement {
-  const element = h("span", { class: "map-label" }, badge(state, map), name(state.report.maps[map].name));
+  const element = h("span", { class: "map-label" }, badge(state, map), name(state.names[map], state.report.maps[map].name));
   pointsOut(element, state, map);
   return element;
 }

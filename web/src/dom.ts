@@ -28,9 +28,9 @@ function fill<E extends Element>(element: E, attributes: Attributes, children: C
   return element;
 }
 
-/** A user's text, kept to itself: right-to-left marks in it do not reorder what stands around it. */
-export function name(text: string): HTMLElement {
-  return h("bdi", { title: text }, text === "" ? "(no name)" : text);
+/** A user's text, kept to itself: right-to-left marks in it do not reorder what stands around it. `whole` is its long form. */
+export function name(text: string, whole = text): HTMLElement {
+  return h("bdi", { title: whole }, text === "" ? "(no name)" : text);
 }
 
 export function swatch(color: string): HTMLElement {

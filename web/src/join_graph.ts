@@ -52,8 +52,7 @@ function spotsOf(state: State): { x: number; y: number }[] {
 
 /** "robot_1.yaml and robot_2.yaml: accepted, probability 0.98". */
 export function joinTitle(state: State, join: Join): string {
-  const { maps } = state.report;
-  return `${maps[join.fixed].name} and ${maps[join.moving].name}: ${join.outcome}, probability ${probability(join.probability)}`;
+  return `${state.names[join.fixed]} and ${state.names[join.moving]}: ${join.outcome}, probability ${probability(join.probability)}`;
 }
 
 function lineOf(

@@ -95,8 +95,8 @@ export class HandPanel {
   }
 
   private rebuild(): void {
-    replace(this.picker, h("option", { value: "" }, "none"), ...this.state.report.maps.map(
-      (map, i) => h("option", { value: i }, `${i + 1}: ${map.name}`)));
+    replace(this.picker, h("option", { value: "" }, "none"), ...this.state.names.map(
+      (name, i) => h("option", { value: i }, `${i + 1}: ${name}`)));
     this.toolsOf = null;
     this.update();
   }

@@ -67,6 +67,7 @@ export class JoinsPanel {
   /** -1: as the merge has it, which need not be the best hypothesis of the two maps alone. */
   private choose(join: number, hypothesis = -1): void {
     this.state.show({ kind: "join", join, hypothesis });
+    this.element.scrollTop = 0;
   }
 
   private makeTable(): HTMLElement {
@@ -79,8 +80,10 @@ export class JoinsPanel {
       .map(({ join, index }) => this.row(join, index));
     if (rows.length === 0) return h("p", { class: "soft" }, "No joins of these kinds.");
     return h("table", {},
-      h("thead", {}, h("tr", {}, ...["Maps", "Outcome", "Probability", "Agreement", "Overlap"].map(
-        (head, i) => h("th", { class: i > 1 ? "number" : "", scope: "col" }, head)))),
+      h("thead", {}, h("tr", {}, ...["Maps", "Outcome", "Probability", "Index", "Overlap"].map(
+        (head, i) => h("th", {
+          class: i > 1 ? "number" : "", scope: "col", title: head === "Index" ? "acceptance index" : head,
+        }, head)))),
       h("tbody", {}, ...rows));
   }
 
@@ -91,7 +94,7 @@ export class JoinsPanel {
       type: "button", class: "link", title: joinTitle(this.state, join), "aria-pressed": String(isChosen), "data-join": index,
       "aria-label": `Show ${joinTitle(this.state, join)}`, click: () => {
         this.choose(index);
-        this.table.querySelector<HTMLElement>(`button[data-join="${index}"]`)?.focus();
+        this.table.querySelector<HTMLElement>(`button[data-join="${index}"]`)?.focus({ preventScroll: true });
       },
     }, badge(this.state, join.fixed), " – ", badge(this.state, join.moving));
     return h("tr", { class: isChosen ? "chosen" : "" },

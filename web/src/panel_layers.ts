@@ -82,7 +82,7 @@ export class LayersPanel {
   private mapRow(map: number, index: number): HTMLElement {
     const { state } = this;
     const look = state.looks[map];
-    const mapName = state.report.maps[map].name;
+    const mapName = state.names[map];
     const reading = h("span", { class: "reading soft" }, "–");
     this.readings.set(map, reading);
     const color = h("input", {
@@ -93,7 +93,7 @@ export class LayersPanel {
       },
     });
     const row = h("div", { class: "layer", "data-map": map },
-      h("label", { class: "layer-name" }, this.checkbox(`layer-${map}`, look), badge(state, map), name(mapName),
+      h("label", { class: "layer-name" }, this.checkbox(`layer-${map}`, look), badge(state, map), name(mapName, state.report.maps[map].name),
         index < 9 ? h("kbd", {}, String(index + 1)) : null),
       color, this.slider(mapName, look), reading);
     pointsOut(row, state, map);
@@ -150,7 +150,7 @@ export class LayersPanel {
     const { left_out: leftOut, maps, components } = this.state.report;
     if (leftOut.length === 0) return null;
     const items = leftOut.map(({ map, explanation }) => h("li", { "data-map": map },
-      h("div", {}, badge(this.state, map), name(maps[map].name)),
+      h("div", {}, badge(this.state, map), name(this.state.names[map], maps[map].name)),
       h("p", { class: "soft" }, explanation + "."),
       h("div", { class: "buttons" },
         h("button", { type: "button", click: () => this.showLeftOut(map) }, "Show"),

@@ -11,6 +11,7 @@ import type { State } from "./state";
 export class TransformsPanel {
   readonly element = h("div", { class: "panel", id: "panel-transforms" });
   private readonly state: State;
+  private pending = 0;
 
   constructor(state: State) {
     this.state = state;
@@ -21,34 +22,42 @@ export class TransformsPanel {
   }
 
   private rebuild(): void {
+    if (this.pending !== 0) return;
+    // Once a frame is enough while a map is dragged.
+    this.pending = requestAnimationFrame(() => {
+      this.pending = 0;
+      this.draw();
+    });
+  }
+
+  private draw(): void {
     const { state } = this;
     const { scene } = state;
-    const rows = state.placed().map(({ map }) => this.row(map));
+    const rows = state.placed().flatMap(({ map }) => this.rows(map));
     replace(this.element,
       h("p", { class: "soft" }, "A transform takes a point of the map's frame to ",
         scene.component !== null && state.report.components[scene.component].frame === null
-          ? scene.frame : h("span", {}, "the frame of ", h("bdi", {}, scene.frame)), ". Metres and radians."),
+          ? scene.frame : h("span", {}, "the frame of ", h("bdi", {}, scene.frame)), "."),
       h("div", { class: "table" }, h("table", {},
         h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Map"),
-          ...["x [m]", "y [m]", "θ [rad]", "θ [°]", "probability", "± [m]", "± [°]"].map(
-            (head) => h("th", { class: "number", scope: "col" }, head)),
-          h("th", { scope: "col" }, "Copy"))),
+          ...["x [m]", "y [m]", "θ [rad]"].map((head) => h("th", { class: "number", scope: "col" }, head)))),
         h("tbody", {}, ...rows))),
-      h("div", { class: "buttons" }, h("span", {}, "Copy all: "), ...this.buttons(() => state.placed().map(({ map }) => map))));
+      h("div", { class: "buttons" }, h("span", {}, "Copy all:"), ...this.buttons(() => state.placed().map(({ map }) => map))));
   }
 
-  private row(map: number): HTMLElement {
+  /** One with the pose, one with how sure it is. */
+  private rows(map: number): HTMLElement[] {
     const pose = this.state.poseOf(map)!;
-    const member = this.memberOf(map);
     const byHand = this.state.byHand().has(map);
     const number = (text: string) => h("td", { class: "number" }, text);
-    return h("tr", { "data-map": map },
-      h("td", { class: "name" }, mapLabel(this.state, map), byHand ? h("em", {}, " by hand") : null),
-      number(fixed(pose.x, 3)), number(fixed(pose.y, 3)), number(fixed(pose.theta, 5)), number(fixed(degrees(pose.theta), 2)),
-      number(member?.probability == null || byHand ? "–" : probability(member.probability)),
-      number(member?.sd && !byHand ? fixed(member.sd.position, 3) : "–"),
-      number(member?.sd && !byHand ? fixed(degrees(member.sd.theta), 2) : "–"),
-      h("td", { class: "buttons" }, ...this.buttons(() => [map])));
+    return [
+      h("tr", { class: "pose", "data-map": map },
+        h("td", { class: "name" }, mapLabel(this.state, map)),
+        number(fixed(pose.x, 3)), number(fixed(pose.y, 3)), number(fixed(pose.theta, 5))),
+      h("tr", { class: "more" }, h("td", { colspan: 4 }, h("div", { class: "buttons" },
+        ...this.buttons(() => [map]),
+        h("span", { class: "soft" }, `${fixed(degrees(pose.theta), 2)}°`, byHand ? ", placed by hand" : certainty(this.memberOf(map)))))),
+    ];
   }
 
   private memberOf(map: number): Member | undefined {
@@ -68,4 +77,11 @@ export class TransformsPanel {
       copyButton("TF", () => asStaticTransforms(parent, poses(), children()), "Copy as static_transform_publisher commands"),
     ];
   }
+}
+
+function certainty(member: Member | undefined): string {
+  const parts: string[] = [];
+  if (member?.probability != null) parts.push(`probability ${probability(member.probability)}`);
+  if (member?.sd) parts.push(`± ${fixed(member.sd.position, 3)} m, ± ${fixed(degrees(member.sd.theta), 2)}°`);
+  return parts.map((part) => `, ${part}`).join("");
 }

@@ -97,3 +97,12 @@ export function summary(report: Report): string {
   const into = report.components.length === 0 ? "" : ` into ${count(report.components.length, "merged map")}`;
   return `${count(report.maps.length, "map")}: ${joined} joined${into}, ${report.left_out.length} left out.`;
 }
+
+/** Names without the folders that all of them lie in: enough to tell the maps apart. */
+export function shortNames(names: string[]): string[] {
+  const folders = names.map((name) => name.split("/").slice(0, -1));
+  const [first = []] = folders;
+  const differs = first.findIndex((part, i) => !folders.every((folder) => folder[i] === part));
+  const common = differs < 0 ? first.length : differs;
+  return names.map((name) => name.split("/").slice(common).join("/"));
+}

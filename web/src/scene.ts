@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Report } from "./report";
+import { type Report, shortNames } from "./report";
 import { type SE2, identity } from "./se2";
 
 /** What can be looked at: a merged map, two maps under a hypothesis of their comparison, or a map by itself. */
@@ -36,6 +36,7 @@ export function placeOf(id: SceneId): string {
 }
 
 export function makeScene(report: Report, id: SceneId): Scene {
+  const names = shortNames(report.maps.map((map) => map.name));
   switch (id.kind) {
     case "component": {
       const component = report.components[id.component];
@@ -49,12 +50,11 @@ export function makeScene(report: Report, id: SceneId): Scene {
     }
     case "join": {
       const join = report.joins[id.join];
-      const fixed = report.maps[join.fixed].name;
       const transform = id.hypothesis < 0 ? join.transform : join.hypotheses[id.hypothesis].transform;
       return {
         id,
-        title: `${fixed} and ${report.maps[join.moving].name}`,
-        frame: fixed,
+        title: `${names[join.fixed]} and ${names[join.moving]}`,
+        frame: report.maps[join.fixed].name,
         placed: [{ map: join.fixed, T_scene_map: identity }, { map: join.moving, T_scene_map: transform }],
         component: null,
       };
@@ -62,7 +62,7 @@ export function makeScene(report: Report, id: SceneId): Scene {
     case "map":
       return {
         id,
-        title: report.maps[id.map].name,
+        title: names[id.map],
         frame: report.maps[id.map].name,
         placed: [{ map: id.map, T_scene_map: identity }],
         component: null,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Grid } from "./grid";
-import type { Report } from "./report";
+import { type Report, shortNames } from "./report";
 import { type Placed, type Scene, type SceneId, firstScene, makeScene, placeOf } from "./scene";
 import type { Point, SE2 } from "./se2";
 
@@ -20,6 +20,8 @@ export type Topic = "scene" | "looks" | "spotlight" | "cursor" | "hand" | "grids
 /** All that the page knows and shows. Panels and the stage change it, and listen to what others change. */
 export class State {
   readonly report: Report;
+  /** What maps are called on the page; exports give their full names. */
+  readonly names: string[];
   /** By map; null until it is unpacked, and for good where a map's data are damaged. */
   readonly grids: (Grid | null)[];
   readonly mergedGrids: (Grid | null)[];
@@ -38,6 +40,7 @@ export class State {
 
   constructor(report: Report) {
     this.report = report;
+    this.names = shortNames(report.maps.map((map) => map.name));
     this.grids = report.maps.map(() => null);
     this.mergedGrids = report.components.map(() => null);
     this.looks = report.maps.map((map) => ({ visible: true, opacity: 1, color: map.color }));
