@@ -16,6 +16,21 @@ Json member_json(const std::string& name, const Member& member) {
           {"sd", deviation_json(member.sd)}};
 }
 
+Json join_json(const std::string& fixed, const std::string& moving, const Join& join) {
+  return {{"fixed", fixed},
+          {"moving", moving},
+          {"transform", transform_json(join.T_fixed_moving)},
+          {"verdict", join.used() ? "accepted" : "refused"},
+          {"probability", number_json(join.probability)},
+          {"outcome", name_of(join.outcome)},
+          {"reason", reason_json(join.match)},
+          {"acceptance_index", number_json(join.match.acceptance_index)},
+          {"agreement", join.match.agreement},
+          {"disagreement", join.match.disagreement},
+          {"overlap", number_json(join.match.overlap)},
+          {"hypotheses", hypotheses_json(join.match.hypotheses)}};
+}
+
 }  // namespace
 
 std::string match_json(const std::string& fixed, const std::string& moving, const MatchResult& result) {
@@ -35,6 +50,8 @@ std::string match_json(const std::string& fixed, const std::string& moving, cons
 }
 
 std::string transforms_json(const std::vector<std::string>& names, const MergeResult& result) {
+  Json maps = Json::array();
+  for (const std::string& name : names) maps.push_back(name);
   Json components = Json::array();
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     Json members = Json::array();
@@ -48,19 +65,14 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
          {"members", std::move(members)}});
   }
   Json joins = Json::array();
-  for (const Join& join : result.joins) {
-    joins.push_back({{"fixed", names.at(join.fixed)},
-                     {"moving", names.at(join.moving)},
-                     {"transform", transform_json(join.T_fixed_moving)},
-                     {"verdict", join.used() ? "accepted" : "refused"},
-                     {"probability", number_json(join.probability)},
-                     {"outcome", name_of(join.outcome)}});
-  }
+  for (const Join& join : result.joins)
+    joins.push_back(join_json(names.at(join.fixed), names.at(join.moving), join));
   Json left_out = Json::array();
   for (const std::size_t map : result.left_out) left_out.push_back(names.at(map));
   Json reasons = Json::array();
   for (const Reason reason : result.left_out_reasons) reasons.push_back(name_of(reason));
-  const Json json{{"components", std::move(components)},
+  const Json json{{"maps", std::move(maps)},
+                  {"components", std::move(components)},
                   {"joins", std::move(joins)},
                   {"left_out", std::move(left_out)},
                   {"left_out_reasons", std::move(reasons)}};

@@ -149,4 +149,11 @@ void write_merge_output(const fs::path& directory, const std::vector<fs::path>& 
   remove_stale_maps(directory, result.components.size());
 }
 
+void write_report(const fs::path& directory, const std::vector<fs::path>& inputs,
+                  const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
+                  const MergeResult& result) {
+  protect(inputs, directory);
+  write_file_atomically(directory / kReport, report_page(names, maps, result));
+}
+
 }  // namespace gridmerge
