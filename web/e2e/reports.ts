@@ -43,7 +43,7 @@ export function simulated(name: string, robots: number, options: string[]): stri
 
 export const six = () => simulated("six", 6, ["--kind", "office", "--size", "50x30", "--overlap", "0.4", "--seed", "5"]);
 export const eighteen = () =>
-  simulated("eighteen", 18, ["--kind", "office", "--size", "80x50", "--overlap", "0.4", "--seed", "5"]);
+  simulated("eighteen", 18, ["--kind", "office", "--size", "60x40", "--overlap", "0.8", "--seed", "5"]);
 /** Merged, they are of more than 4000 by 4000 cells. */
 export const large = () =>
   simulated("large", 3, ["--kind", "office", "--size", "80x80", "--resolution", "0.02", "--overlap", "0.5", "--seed", "3"]);

@@ -10,6 +10,8 @@ const web = dirname(here);
 const out = join(web, "../build/web");
 mkdirSync(out, { recursive: true });
 const [which = "all"] = process.argv.slice(2);
+// One test, by a part of its name, while working on it.
+const only = process.env.ONLY ? [`--test-name-pattern=${process.env.ONLY}`] : [];
 const bundle = join(out, `${which}.cjs`);
 const env = {
   ...process.env,
@@ -27,4 +29,4 @@ function run(program, ...args) {
 run("esbuild", join(here, `${which}.ts`), "--bundle", "--platform=node", "--format=cjs", "--external:playwright-core",
   "--log-level=warning", `--outfile=${bundle}`);
 if (which === "figures") run(process.execPath, bundle);
-else run(process.execPath, "--test", bundle);
+else run(process.execPath, "--test", ...only, bundle);

@@ -78,7 +78,7 @@ export class HandPanel {
       if (state.handled !== map) return;
       state.put(map, refined.transform);
       this.answer.textContent = `Moved by ${fixed(refined.moved, 2)} m. Score ${fixed(refined.start_score, 0)} → ` +
-        `${fixed(refined.score, 0)}, probability ${probability(refined.probability)}.`;
+        `${fixed(refined.score, 0)}. Probability by the maps alone ${probability(refined.probability)}.`;
     } catch (error) {
       this.answer.textContent = `Not refined: ${error instanceof Error ? error.message : String(error)}`;
     }
