@@ -14,10 +14,35 @@ interface Figures {
   /** Frames a second while the view is dragged, all of it in sight and then eleven times as near, and the longest frame in milliseconds. */
   framesPerSecond: number;
   longestFrame: number;
+  /** Milliseconds: of the script at a stretch while it loads, and until all is drawn anew after a zoom and after a layer was hidden. */
+  longestTask: number;
+  redrawn: number;
+  hidden: number;
 }
 
 async function firstPaint(tab: Tab): Promise<number> {
   return tab.page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0].startTime);
+}
+
+/** The longest stretch for which the page answered nothing so far. */
+async function longestTask(tab: Tab): Promise<number> {
+  return tab.page.evaluate(() => new Promise<number>((done) => {
+    new PerformanceObserver((list) => done(Math.max(...list.getEntries().map((entry) => entry.duration))))
+      .observe({ type: "longtask", buffered: true });
+    setTimeout(() => done(0), 200); // Tasks of less than 50 ms are not reported.
+  }));
+}
+
+/** Milliseconds from a click until everything is drawn. */
+async function untilDrawn(tab: Tab, selector: string): Promise<number> {
+  return tab.page.evaluate(async (clicked) => {
+    const canvas = document.querySelector("canvas")!;
+    const start = performance.now();
+    document.querySelector<HTMLElement>(clicked)!.click();
+    do await new Promise(requestAnimationFrame);
+    while (canvas.dataset.complete !== "true");
+    return performance.now() - start;
+  }, selector);
 }
 
 /** Milliseconds between frames while the pointer drags the view to and fro for two seconds. */
@@ -49,7 +74,10 @@ async function measure(report: string, folder: string): Promise<Figures> {
   const tab = await load(folder);
   await tab.settled();
   const drawn = await tab.page.evaluate(() => performance.now());
+  const task = await longestTask(tab);
+  const redrawn = await untilDrawn(tab, "button[aria-label='Zoom in']");
   const frames = await framesWhileDragging(tab);
+  const hidden = await untilDrawn(tab, "#layer-agreement");
   for (let i = 0; i < 6; i++) await tab.page.click("button[aria-label='Zoom in']");
   frames.push(...await framesWhileDragging(tab));
   const total = frames.reduce((sum, frame) => sum + frame, 0);
@@ -60,6 +88,9 @@ async function measure(report: string, folder: string): Promise<Figures> {
     drawn: Math.round(drawn),
     framesPerSecond: Math.round((1000 * frames.length) / total),
     longestFrame: Math.round(Math.max(...frames)),
+    longestTask: Math.round(task),
+    redrawn: Math.round(redrawn),
+    hidden: Math.round(hidden),
   };
   await tab.close();
   return figures;

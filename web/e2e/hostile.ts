@@ -3,8 +3,8 @@ import assert from "node:assert/strict";
 import { cpSync, mkdirSync, rmSync, writeFileSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { open } from "./browser";
-import { mergeInto, source } from "./reports";
+import { lastCopied, open } from "./browser";
+import { mergeInto, reportData, source } from "./reports";
 
 /** File names, so without slashes. */
 const names = [
@@ -27,7 +27,8 @@ function hostileMaps(): string[] {
 }
 
 test("names of maps are text and nothing else", async () => {
-  const tab = await open(mergeInto("hostile", hostileMaps()));
+  const folder = mergeInto("hostile", hostileMaps());
+  const tab = await open(folder);
   const { page } = tab;
   const allowed = ["SCRIPT", "STYLE"];
   const elements = () => page.evaluate(() => [...document.querySelectorAll("script, style, img, iframe, object, embed, svg *, a")]
@@ -46,11 +47,23 @@ test("names of maps are text and nothing else", async () => {
   const shown = await page.locator(".layer[data-map] bdi, .left-out bdi").allTextContents();
   assert.deepEqual(new Set(shown), new Set(names.map((name) => `${name}.yaml`)));
   await page.click("#tab-transforms");
-  for (const button of await page.locator("#panel-transforms > .buttons button").all()) await button.click();
+  await page.locator("#panel-transforms > .buttons button").nth(1).click();
+  const copied = JSON.parse(await lastCopied(page)) as { transforms: { map: string }[] };
+  const merged = reportData(folder).components[0].members.map(({ map }) => reportData(folder).maps[map].name);
+  assert.deepEqual(copied.transforms.map(({ map }) => map), merged, "JSON holds the names as they are");
+  await page.locator("#panel-transforms > .buttons button").nth(2).click();
+  assert.match(await lastCopied(page), /^(ros2 run tf2_ros static_transform_publisher [A-Za-z0-9_. -]+ &\n)+$/);
   await page.click("#tab-joins");
   await page.locator("button[data-join]").first().click();
   await page.click("#tab-hand");
   await page.selectOption("#hand-map", { index: 3 });
+  await page.focus("canvas");
+  await page.keyboard.press("ArrowRight");
+  assert.match((await page.textContent(".saving"))!, /rename the files first/, "no command with names that deceive");
+  for (const text of await page.locator("option, title, [aria-label]").evaluateAll(
+    (elements) => elements.map((element) => element.getAttribute("aria-label") ?? element.textContent!))) {
+    assert.ok(!/[\u202a-\u202e]/.test(text), "marks of direction only where they are kept to themselves");
+  }
   assert.equal(await page.locator("script").count(), 2, "the data and the page's own");
   await tab.close();
 });

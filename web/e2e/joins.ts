@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { open } from "./browser";
-import { elsewhere, examples, mergeInto, six } from "./reports";
+import { elsewhere, examples, mergeInto, reportData, six } from "./reports";
 
 test("a join is chosen in the table and shows its two maps, its figures and its hypotheses", async () => {
   const tab = await open(mergeInto("four", [...examples, elsewhere]));
@@ -19,7 +19,10 @@ test("a join is chosen in the table and shows its two maps, its figures and its 
   assert.ok(await tab.changes(() => hypotheses.nth(2).check()), "a runner-up lies elsewhere");
   assert.ok(await hypotheses.nth(2).isChecked());
   await tab.screenshot("runner_up");
+  assert.match((await page.textContent(".chosen-join"))!, /those of the first hypothesis/);
   await page.click("button.back");
+  assert.equal(await page.locator("button[data-join='0']:focus").count(), 1, "the focus goes back to the join");
+  await page.mouse.move(5, 5);
   assert.equal(await tab.picture(), whole);
   await tab.close();
 });
@@ -48,6 +51,41 @@ test("a join is chosen in the graph, and kinds of joins are hidden", async () =>
   assert.ok(await tab.changes(() => page.mouse.click(x, y)));
   assert.equal(await page.locator(".edge.chosen").count(), 1);
   assert.equal(await page.locator("tr.chosen").count(), 1);
+  await tab.close();
+});
+
+test("a runner-up is taken in hand as it lies", async () => {
+  const folder = mergeInto("four", [...examples, elsewhere]);
+  const [join] = reportData(folder).joins;
+  const tab = await open(folder);
+  const { page } = tab;
+  await page.click("#tab-joins");
+  await page.click("button[data-join='0']");
+  await page.locator(".hypotheses input").nth(1).check();
+  await page.click("button.adopt");
+  assert.equal(await page.inputValue("#hand-map"), String(join.moving));
+  const { x, y } = join.hypotheses[1].transform;
+  // The first map holds the frame of the merged one.
+  assert.ok(Math.abs(Number(await page.inputValue("#hand-x")) - x) < 0.002);
+  assert.ok(Math.abs(Number(await page.inputValue("#hand-y")) - y) < 0.002);
+  assert.ok(await page.isVisible("#hand-save"));
+  await tab.close();
+});
+
+test("a map that was moved by hand in one hypothesis does not lie so in the others", async () => {
+  const tab = await open(mergeInto("four", [...examples, elsewhere]));
+  const { page } = tab;
+  await page.click("#tab-joins");
+  await page.click("button[data-join='0']");
+  await page.click("#tab-hand");
+  await page.selectOption("#hand-map", "1");
+  await page.focus("canvas");
+  assert.ok(await tab.changes(() => page.keyboard.press("Shift+ArrowRight")));
+  await page.click("#tab-joins");
+  await page.locator(".hypotheses input").nth(2).check();
+  await page.click("#tab-transforms");
+  await tab.settled();
+  assert.ok(!(await page.textContent("#panel-transforms"))!.includes("by hand"));
   await tab.close();
 });
 

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import type { Page } from "playwright-core";
 import { apply, inverse } from "../src/se2";
 import { cursor, drag, middle, open } from "./browser";
-import { elsewhere, examples, mergeInto } from "./reports";
+import { elsewhere, examples, mergeInto, reportData } from "./reports";
 
 const folder = () => mergeInto("four", [...examples, elsewhere]);
 
@@ -43,7 +43,12 @@ test("layers are faded and coloured", async () => {
   assert.ok(await tab.changes(() => page.fill("input[type=color][data-map='0']", "#990099")));
   const badge = page.locator(".layer[data-map='0'] .badge");
   assert.equal(await badge.evaluate((element) => getComputedStyle(element).backgroundColor), "rgb(153, 0, 153)");
-  assert.ok(await tab.changes(() => page.hover(".layer[data-map='2']")), "a row that is pointed at shows its map");
+  assert.ok(await tab.changes(() => page.hover(".layer[data-map='2'] .map-label")), "a name that is pointed at shows its map");
+  await page.click("#layer-2");
+  await page.mouse.move(5, 5);
+  const hidden = await tab.picture();
+  await page.fill(".layer[data-map='2'] input[type=range]", "40");
+  assert.equal(await tab.picture(), hidden, "a hidden map stays hidden while its row is used");
   await tab.screenshot("faded_and_coloured");
   await tab.close();
 });
@@ -94,9 +99,7 @@ test("the cursor is told in the merged frame and in each map's own", async () =>
   const at = await middle(page);
   await page.mouse.move(at.x - 40, at.y + 25);
   const p = await cursor(page);
-  const transforms = await page.evaluate(() =>
-    JSON.parse(document.getElementById("report-data")!.textContent!).components[0].members.map(
-      (member: { transform: unknown }) => member.transform)) as { x: number; y: number; theta: number }[];
+  const transforms = reportData(folder()).components[0].members.map((member) => member.transform);
   for (const [i, transform] of transforms.entries()) {
     const reading = (await page.textContent(`.layer[data-map='${i}'] .reading`))!;
     const [, x, y, cell] = /^(-?[\d.]+), (-?[\d.]+) m · (wall|free|unknown)$/.exec(reading)!;
@@ -104,6 +107,9 @@ test("the cursor is told in the merged frame and in each map's own", async () =>
     assert.ok(Math.hypot(Number(x) - own.x, Number(y) - own.y) < 0.03, `${reading}, not ${own.x}, ${own.y}`);
     assert.ok(cell.length > 0);
   }
+  await page.selectOption("#scene", { label: "left out: elsewhere.yaml" });
+  assert.notDeepEqual(await cursor(page), p, "another scene, another frame");
+  await page.selectOption("#scene", { index: 0 });
   await page.mouse.move(5, 5);
   assert.equal(await page.textContent("#cursor"), "");
   await page.focus("canvas");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { test } from "node:test";
 import { load, open } from "./browser";
 import { eighteen, elsewhere, examples, large, mergeInto, six } from "./reports";
@@ -14,9 +15,16 @@ const cases: [string, () => string[]][] = [
 
 for (const [name, maps] of cases) {
   test(`a report of ${name} opens, with nothing amiss and nothing fetched`, async () => {
-    const tab = await open(mergeInto(name, maps()));
-    assert.equal(await tab.page.locator(".layer[data-map]").count(), (await tab.page.locator("#panel-transforms tr.pose").count()));
-    assert.match((await tab.page.textContent("#summary"))!, /^\d+ maps: \d+ joined into \d+ merged map/);
+    const folder = mergeInto(name, maps());
+    const merged = JSON.parse(readFileSync(join(folder, "transforms.json"), "utf8"));
+    const members = merged.components[0].members as { source: string }[];
+    assert.ok(members.length >= 2);
+    const tab = await open(folder);
+    assert.deepEqual(await tab.page.locator(".layer[data-map] bdi").evaluateAll((names) => names.map((n) => (n as HTMLElement).title)),
+      members.map(({ source }) => source));
+    assert.equal(await tab.page.locator("#panel-transforms tr.pose").count(), members.length);
+    assert.equal(await tab.page.locator("#panel-joins .edge").count() > 0, true);
+    assert.match((await tab.page.textContent("#summary"))!, new RegExp(`^${merged.maps?.length ?? "\\d+"} maps: \\d+ joined into`));
     await tab.screenshot(name);
     await tab.close();
   });

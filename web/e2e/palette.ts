@@ -2,8 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type Rgb, disagreement, ink, parseColor, white } from "../src/color";
-import { open } from "./browser";
-import { mergeInto, six } from "./reports";
+import { mergeInto, reportData, six } from "./reports";
 
 /** What people without one kind of cone see, in linear light (Machado, Oliveira & Fernandes 2009, severity 1). */
 const sights: Record<string, number[][]> = {
@@ -38,11 +37,8 @@ function difference(a: number[], b: number[]): number {
   return Math.hypot(...a.map((value, i) => value - b[i]));
 }
 
-test("colours of maps, of disagreement, of shared walls and of free space differ for every kind of colour vision", async (t) => {
-  const tab = await open(mergeInto("six", six()));
-  const colors = await tab.page.evaluate(() =>
-    JSON.parse(document.getElementById("report-data")!.textContent!).maps.map((map: { color: string }) => map.color)) as string[];
-  await tab.close();
+test("colours of maps, of disagreement, of shared walls and of free space differ for every kind of colour vision", (t) => {
+  const colors = reportData(mergeInto("six", six())).maps.map((map) => map.color);
   assert.equal(colors.length, 6);
   const named: [string, Rgb][] = [...colors.map((color): [string, Rgb] => [color, parseColor(color)]),
     ["disagreement", disagreement], ["ink", ink], ["white", white]];

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, statSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
+import type { Report } from "../src/report";
 
 export const program = process.env.GRIDMERGE!;
 export const source = process.env.GRIDMERGE_SOURCE!;
@@ -30,6 +31,12 @@ export function mergeInto(name: string, maps: string[], ...options: string[]): s
   const folder = join(work, "reports", name);
   must([0, 3], "merge", ...maps, "-o", folder, "--quiet", ...options);
   return folder;
+}
+
+/** What the page of a folder was given. */
+export function reportData(folder: string): Report {
+  const html = readFileSync(join(folder, "report.html"), "utf8");
+  return JSON.parse(/id="report-data">(.*?)<\/script>/s.exec(html)![1]) as Report;
 }
 
 /** The maps of simulated robots; made once, since the same options give the same maps. */

@@ -28,10 +28,8 @@ export function mapLabel(state: State, map: number): HTMLElement {
   return element;
 }
 
-/** Makes an element show where a map lies while it is pointed at or has the focus. */
-export function pointsOut(element: HTMLElement, state: State, map: number): void {
+/** Makes an element show where a map lies while it is pointed at. */
+function pointsOut(element: HTMLElement, state: State, map: number): void {
   element.addEventListener("pointerenter", () => state.point(map));
   element.addEventListener("pointerleave", () => state.point(null));
-  element.addEventListener("focusin", () => state.point(map));
-  element.addEventListener("focusout", () => state.point(null));
 }

@@ -25,11 +25,11 @@ function copyBySelection(text: string): boolean {
 
 /** A button that copies what `text` gives when it is pressed, and says so. */
 export function copyButton(label: string, text: () => string, hint: string): HTMLButtonElement {
-  const button = h("button", { type: "button", title: hint, click: () => void press() }, label);
+  const button = h("button", { type: "button", title: hint, "aria-label": hint, click: () => void press() }, label);
   async function press(): Promise<void> {
     const copied = await copy(text());
     button.textContent = copied ? "Copied" : "Not copied";
-    announce(copied ? `${label} copied` : "The browser did not let the page copy");
+    announce(copied ? `Copied as ${label}` : "The browser did not let the page copy");
     setTimeout(() => (button.textContent = label), 1500);
   }
   return button;
@@ -38,7 +38,10 @@ export function copyButton(label: string, text: () => string, hint: string): HTM
 /** Says something to screen readers. */
 export function announce(text: string): void {
   const live = document.getElementById("announcements");
-  if (live) live.textContent = text;
+  if (!live) return;
+  // The same text twice is news twice.
+  live.textContent = "";
+  requestAnimationFrame(() => (live.textContent = text));
 }
 
 /** Offers text as a file. */

@@ -38,8 +38,8 @@ export interface Square {
 
 /** For every pixel: what the layers that were added so far say of it. */
 class Votes {
-  readonly walls: Uint8Array;
-  readonly frees: Uint8Array;
+  readonly walls: Uint16Array;
+  readonly frees: Uint16Array;
   readonly wallOpacity: Float32Array;
   readonly freeOpacity: Float32Array;
   /** Sums of colour, weighted with opacity: red, green, blue, weight. */
@@ -47,8 +47,8 @@ class Votes {
   readonly freeColor: Float32Array;
 
   constructor(count: number) {
-    this.walls = new Uint8Array(count);
-    this.frees = new Uint8Array(count);
+    this.walls = new Uint16Array(count);
+    this.frees = new Uint16Array(count);
     this.wallOpacity = new Float32Array(count);
     this.freeOpacity = new Float32Array(count);
     this.wallColor = new Float32Array(4 * count);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { flat } from "./dom";
 import { fixed } from "./numbers";
 import type { SE2 } from "./se2";
 
@@ -24,12 +25,12 @@ export function asYaml(frame: string, poses: NamedPose[]): string {
   return `frame: ${quoted(frame)}\ntransforms:\n${lines.join("")}`;
 }
 
-/** A command for each map, for ROS 2. */
+/** A command for each map, for ROS 2; of several, each runs in the background, so that a shell gets to the next. */
 export function asStaticTransforms(parent: string, poses: NamedPose[], children: string[]): string {
   return poses.map(({ transform }, i) => {
     const { x, y, theta } = plain(transform);
     return `ros2 run tf2_ros static_transform_publisher --x ${x} --y ${y} --yaw ${theta}` +
-      ` --frame-id ${parent} --child-frame-id ${children[i]}\n`;
+      ` --frame-id ${parent} --child-frame-id ${children[i]}${poses.length > 1 ? " &" : ""}\n`;
   }).join("");
 }
 
@@ -53,7 +54,7 @@ export function asInitialPoses(poses: { name: string; transform: SE2; sd: number
   if (poses.some(({ name }) => !isWritable(name))) return null;
   const lines = poses.map(({ name, transform, sd, sdTheta }) => {
     const { x, y, theta } = plain(transform);
-    return [name, x, y, theta, sd, sdTheta].join("\t") + "\n";
+    return [asArgument(name), x, y, theta, sd, sdTheta].join("\t") + "\n";
   });
   return "map\tx\ty\ttheta\tsd\tsd_theta\n" + lines.join("");
 }
@@ -61,17 +62,24 @@ export function asInitialPoses(poses: { name: string; transform: SE2; sd: number
 /** The command that merges with the file of initial poses. Null if a name cannot be written in it. */
 export function mergeCommand(names: string[], poses: string): string | null {
   if (!names.every(isWritable)) return null;
-  return `gridmerge merge ${names.map(shellQuoted).join(" ")} --init ${shellQuoted(poses)} -o merged`;
+  return `gridmerge merge ${names.map((name) => shellQuoted(asArgument(name))).join(" ")} --init ${shellQuoted(poses)} -o merged_by_hand`;
 }
 
-/** Tabs and line ends would break a table; U+FFFD stands for bytes that are lost. */
+/**
+ * Tabs and line ends would break a table, other control characters and marks of direction make a command look other than it
+ * is, and U+FFFD stands for bytes that are lost.
+ */
 function isWritable(name: string): boolean {
-  return name !== "" && !/[\u0000-\u001f\u007f\ufffd]/.test(name);
+  return name !== "" && name === flat(name) && !name.includes("\ufffd");
+}
+
+/** Not to be taken for an option. */
+function asArgument(name: string): string {
+  return name.startsWith("-") ? `./${name}` : name;
 }
 
 function shellQuoted(text: string): string {
-  const safe = text.startsWith("-") ? `./${text}` : text;
-  return /^[A-Za-z0-9_.,\/+:@%-]+$/.test(safe) ? safe : `'${safe.replace(/'/g, `'\\''`)}'`;
+  return /^[A-Za-z0-9_.,\/+:@%-]+$/.test(text) ? text : `'${text.replace(/'/g, `'\\''`)}'`;
 }
 
 function quoted(text: string): string {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import { svg } from "./dom";
 import { readableOn } from "./badge";
+import { flat, svg } from "./dom";
 import { probability } from "./numbers";
 import type { Join, Outcome } from "./report";
 import type { State } from "./state";
@@ -52,7 +52,7 @@ function spotsOf(state: State): { x: number; y: number }[] {
 
 /** "robot_1.yaml and robot_2.yaml: accepted, probability 0.98". */
 export function joinTitle(state: State, join: Join): string {
-  return `${state.names[join.fixed]} and ${state.names[join.moving]}: ${join.outcome}, probability ${probability(join.probability)}`;
+  return `${flat(state.names[join.fixed])} and ${flat(state.names[join.moving])}: ${join.outcome}, probability ${probability(join.probability)}`;
 }
 
 function lineOf(
@@ -72,7 +72,7 @@ function nodeOf(state: State, map: number, spot: { x: number; y: number }): SVGG
   const { color } = state.looks[map];
   const radius = state.report.maps.length > 24 ? 8 : 12;
   const node = svg("g", { class: "node" },
-    svg("title", {}, state.report.maps[map].name),
+    svg("title", {}, flat(state.report.maps[map].name)),
     svg("circle", { cx: spot.x, cy: spot.y, r: radius, fill: color }),
     svg("text", {
       x: spot.x, y: spot.y, fill: readableOn(color), "text-anchor": "middle", "dominant-baseline": "central",

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-import { h, replace } from "./dom";
-import { unpack } from "./grid";
+import { flat, h, replace } from "./dom";
+import { type Grid, unpack } from "./grid";
 import { helpDialog } from "./help";
 import { fixed } from "./numbers";
 import { HandPanel } from "./panel_hand";
 import { JoinsPanel } from "./panel_joins";
 import { LayersPanel } from "./panel_layers";
 import { TransformsPanel } from "./panel_transforms";
-import { type Report, count, summary } from "./report";
+import { type PackedGrid, type Report, count, summary } from "./report";
 import { type SceneId, firstScene } from "./scene";
+import { compose } from "./se2";
 import { Stage } from "./stage";
 import { StageInput } from "./stage_input";
 import { State } from "./state";
@@ -22,7 +23,7 @@ function scenePicker(state: State): HTMLElement {
       id: { kind: "component", component: i } as SceneId,
       label: `${component.file} (${count(component.members.length, "map")})`,
     })),
-    ...leftOut.map(({ map }) => ({ id: { kind: "map", map } as SceneId, label: `left out: ${state.names[map]}` })),
+    ...leftOut.map(({ map }) => ({ id: { kind: "map", map } as SceneId, label: `left out: ${flat(state.names[map])}` })),
   ];
   const select = h("select", { id: "scene", change: () => {
     if (select.value !== "") state.show(ids[Number(select.value)].id);
@@ -31,7 +32,7 @@ function scenePicker(state: State): HTMLElement {
   select.append(join);
   const follow = () => {
     const current = ids.findIndex(({ id }) => JSON.stringify(id) === JSON.stringify(state.scene.id));
-    join.textContent = `join: ${state.scene.title}`;
+    join.textContent = `join: ${flat(state.scene.title)}`;
     join.hidden = current >= 0;
     select.value = current < 0 ? "" : String(current);
   };
@@ -63,25 +64,26 @@ function stageButtons(stage: Stage, help: HTMLDialogElement): HTMLElement {
     button("Keys", "?", () => help.showModal()));
 }
 
-/** The grids one after the other, the one that is seen first first, so that something is seen soon. */
+/** The grids one after the other, those that are seen first first; what they were unpacked from is let go. */
 async function unpackAll(state: State): Promise<void> {
   const { report } = state;
   const damaged: string[] = [];
-  const each = async (name: string, work: () => Promise<void>) => {
+  const each = async (name: string, packed: PackedGrid, keep: (grid: Grid) => void) => {
     try {
-      await work();
-      state.changed("grids");
+      keep(await unpack(packed));
     } catch (error) {
       damaged.push(`${name} (${error instanceof Error ? error.message : String(error)})`);
     }
+    packed.cells = "";
+    state.changed("grids");
   };
   const first = new Set(state.scene.placed.map(({ map }) => map));
   const order = [...report.maps.keys()].sort((a, b) => Number(first.has(b)) - Number(first.has(a)));
   for (const i of order) {
-    await each(report.maps[i].name, async () => { state.grids[i] = await unpack(report.maps[i]); });
+    await each(report.maps[i].name, report.maps[i], (grid) => { state.grids[i] = grid; });
   }
   for (const [i, component] of report.components.entries()) {
-    await each(component.file, async () => { state.mergedGrids[i] = await unpack(component); });
+    await each(component.file, component, (grid) => { state.mergedGrids[i] = grid; });
   }
   if (damaged.length > 0) showProblem(`The data of these maps are damaged: ${damaged.join(", ")}`);
   document.documentElement.dataset.ready = "true";
@@ -96,16 +98,28 @@ function build(report: Report): void {
   const stage = new Stage(state);
   const help = helpDialog();
   const hand = new HandPanel(state, () => stage.view.center);
+  const take = (map: number) => {
+    tabs.select("hand");
+    hand.take(map);
+    stage.fit();
+    stage.canvas.focus();
+  };
   const layers = new LayersPanel(state, {
     show: (map) => state.show({ kind: "map", map }),
     placeByHand: (map) => {
       if (state.scene.id.kind !== "component") state.show(baseFor(report, map));
-      tabs.select("hand");
-      hand.take(map);
+      take(map);
+    },
+  });
+  const joins = new JoinsPanel(state, {
+    placeByHand: (map, on, T_on_map) => {
+      state.show(sceneOf(report, on));
+      const T_scene_map = compose(state.poseOf(on)!, T_on_map);
+      take(map);
+      state.put(map, T_scene_map);
       stage.fit();
     },
   });
-  const joins = new JoinsPanel(state);
   const transforms = new TransformsPanel(state);
   const tabs = new Tabs([
     { id: "layers", label: "Layers", panel: layers.element },
@@ -113,10 +127,10 @@ function build(report: Report): void {
     { id: "transforms", label: "Transforms", panel: transforms.element },
     { id: "hand", label: "By hand", panel: hand.element },
   ], (id) => {
-    if (id !== "hand" && state.handled !== null) state.take(null);
+    if (id !== "hand" && state.handled !== null) state.letGo();
   });
   new StageInput(stage, state, {
-    toggleMap: (index) => layers.toggleNth(index),
+    toggleMap: (map) => layers.toggleMap(map),
     toggleMerged: () => layers.toggle(state.merged),
     toggleAgreement: () => layers.toggle(state.agreement),
     help: () => help.showModal(),
@@ -132,6 +146,12 @@ function build(report: Report): void {
   void unpackAll(state);
 }
 
+/** The merged map that a map is part of, or else the map by itself. */
+function sceneOf(report: Report, map: number): SceneId {
+  const component = report.components.findIndex(({ members }) => members.some((member) => member.map === map));
+  return component < 0 ? { kind: "map", map } : { kind: "component", component };
+}
+
 /** On what a map that was left out can be placed: the first merged map, or else another map. */
 function baseFor(report: Report, map: number): SceneId {
   const first = firstScene(report);
@@ -139,7 +159,10 @@ function baseFor(report: Report, map: number): SceneId {
 }
 
 try {
-  build(JSON.parse(document.getElementById("report-data")!.textContent!) as Report);
+  const data = document.getElementById("report-data")!;
+  const report = JSON.parse(data.textContent!) as Report;
+  data.textContent = "";
+  build(report);
 } catch (error) {
   showProblem(`This report cannot be shown: ${error instanceof Error ? error.message : String(error)}`);
 }

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 import { mapLabel } from "./badge";
 import { announce, copyButton, download } from "./clipboard";
-import { h, replace } from "./dom";
+import { flat, h, replace } from "./dom";
 import { refine } from "./engine";
 import { asInitialPoses, mergeCommand } from "./formats";
 import { degrees, fixed, percent, probability, radians } from "./numbers";
 import type { Placed } from "./scene";
 import { Scorer } from "./score";
-import { type SE2, apply } from "./se2";
+import { type SE2, normalizeAngle } from "./se2";
 import type { State } from "./state";
 
 const fileName = "poses.tsv";
-/** How well the poses of maps that were not moved are taken to be known. */
+/** How well the poses of maps that were not moved are taken to be known, if the merge does not say; and never better than the last. */
 const keptSd = { position: 0.1, theta: 0.01 };
+const leastSd = { position: 0.02, theta: 0.002 };
 
 interface PoseInput {
   element: HTMLInputElement;
@@ -30,12 +31,14 @@ export class HandPanel {
   private readonly scoreLine = h("p", { class: "score", id: "hand-score" });
   private readonly answer = h("p", { class: "answer", role: "status" });
   private readonly saving = h("div", { class: "saving" });
-  private readonly sure = h("input", { type: "number", id: "hand-sd", min: 0.01, step: 0.1, value: 0.3 });
-  private readonly sureAngle = h("input", { type: "number", id: "hand-sd-theta", min: 0.1, step: 0.5, value: 2 });
+  private readonly sure = h("input", { type: "number", id: "hand-sd", min: 0.01, step: 0.1, value: 0.3, "aria-label": "Standard deviation of the positions, in metres" });
+  private readonly sureAngle = h("input", { type: "number", id: "hand-sd-theta", min: 0.1, step: 0.5, value: 2, "aria-label": "Standard deviation of the directions, in degrees" });
   private inputs: PoseInput[] = [];
   private toolsOf: number | null = null;
   private scorers = new Map<number, Scorer>();
   private scoring = 0;
+  /** Whether the engine is at work on a pose. */
+  private isRefining = false;
 
   constructor(state: State, middleOfView: () => { x: number; y: number }) {
     this.state = state;
@@ -52,14 +55,10 @@ export class HandPanel {
 
   /** Takes a map in hand, and brings it into the scene if it is not there. */
   take(map: number): void {
-    const grid = this.state.grids[map];
-    if (!this.state.poseOf(map)) {
-      const to = this.middleOfView();
-      const from = grid ? grid.middle() : { x: 0, y: 0 };
-      this.state.byHand().set(map, { x: to.x - from.x, y: to.y - from.y, theta: 0 });
-    }
+    const to = this.middleOfView();
+    const from = this.state.grids[map]?.middle() ?? { x: 0, y: 0 };
     this.answer.textContent = "";
-    this.state.take(map);
+    this.state.take(map, { x: to.x - from.x, y: to.y - from.y, theta: 0 });
   }
 
   /** Asks the engine to climb from where the map in hand lies. */
@@ -67,20 +66,28 @@ export class HandPanel {
     const { state } = this;
     const map = state.handled;
     const pose = map === null ? null : state.poseOf(map);
-    if (map === null || !pose) return;
+    if (map === null || !pose || this.isRefining) return;
     if (!state.report.live) {
       this.answer.textContent = "Only a running gridmerge can refine: open the folder with gridmerge view.";
       return;
     }
     this.answer.textContent = "Refining…";
+    this.isRefining = true;
+    const { scene } = state;
+    const isAsAsked = () => state.scene === scene && state.handled === map && JSON.stringify(state.poseOf(map)) === JSON.stringify(pose);
     try {
       const refined = await refine(map, pose, this.others(map));
-      if (state.handled !== map) return;
+      if (!isAsAsked()) {
+        this.answer.textContent = "";
+        return;
+      }
       state.put(map, refined.transform);
       this.answer.textContent = `Moved by ${fixed(refined.moved, 2)} m. Score ${fixed(refined.start_score, 0)} → ` +
         `${fixed(refined.score, 0)}. Probability by the maps alone ${probability(refined.probability)}.`;
     } catch (error) {
       this.answer.textContent = `Not refined: ${error instanceof Error ? error.message : String(error)}`;
+    } finally {
+      this.isRefining = false;
     }
   }
 
@@ -90,21 +97,21 @@ export class HandPanel {
 
   private pick(): void {
     const map = Number(this.picker.value);
-    if (this.picker.value === "") this.state.take(null);
+    if (this.picker.value === "") this.state.letGo();
     else this.take(map);
   }
 
   private rebuild(): void {
     replace(this.picker, h("option", { value: "" }, "none"), ...this.state.names.map(
-      (name, i) => h("option", { value: i }, `${i + 1}: ${name}`)));
-    this.toolsOf = null;
+      (name, i) => h("option", { value: i }, `${i + 1}: ${flat(name)}`)));
+    this.rebuildTools();
     this.update();
   }
 
   private update(): void {
     const { handled } = this.state;
     this.picker.value = handled === null ? "" : String(handled);
-    if (handled !== this.toolsOf || (handled !== null && this.inputs.length === 0)) this.rebuildTools();
+    if (handled !== this.toolsOf) this.rebuildTools();
     const pose = handled === null ? null : this.state.poseOf(handled);
     for (const input of this.inputs) {
       if (pose && document.activeElement !== input.element) input.element.value = fixed(input.get(pose), 3);
@@ -123,7 +130,7 @@ export class HandPanel {
     this.inputs = [
       this.poseInput("hand-x", 0.05, (pose) => pose.x, (pose, x) => ({ ...pose, x })),
       this.poseInput("hand-y", 0.05, (pose) => pose.y, (pose, y) => ({ ...pose, y })),
-      this.poseInput("hand-theta", 1, (pose) => degrees(pose.theta), (pose, value) => this.turned(map, pose, value)),
+      this.poseInput("hand-theta", 1, (pose) => degrees(pose.theta), (pose, value) => ({ ...pose, theta: normalizeAngle(radians(value)) })),
     ];
     const labels = ["x [m] ", "y [m] ", "θ [°] "];
     const live = this.state.report.live;
@@ -136,10 +143,16 @@ export class HandPanel {
           type: "button", id: "hand-refine", disabled: !live, click: () => void this.refine(),
           title: live ? "Climb to the best fit near here" : "Needs a running gridmerge: gridmerge view DIR",
         }, "Refine from here"),
-        h("button", { type: "button", click: () => this.state.putBack(map) }, "Put back"),
-        h("button", { type: "button", click: () => this.state.take(null) }, "Let go")),
+        h("button", { type: "button", click: () => this.leave(() => this.state.putBack(map)) }, "Put back"),
+        h("button", { type: "button", click: () => this.leave(() => this.state.letGo()) }, "Let go")),
       live ? null : h("p", { class: "soft" }, "To refine with the engine, open this folder with ", h("code", {}, "gridmerge view DIR"), "."),
       this.answer);
+  }
+
+  /** The buttons go with the map, and the focus must not be lost with them. */
+  private leave(act: () => void): void {
+    act();
+    this.picker.focus();
   }
 
   private poseInput(
@@ -154,14 +167,6 @@ export class HandPanel {
       },
     });
     return { element, get, set };
-  }
-
-  /** Turned to an angle in degrees about the map's middle, which people look at, not about its origin. */
-  private turned(map: number, pose: SE2, angle: number): SE2 {
-    const middle = this.state.grids[map]?.middle() ?? { x: 0, y: 0 };
-    const before = apply(pose, middle);
-    const after = apply({ x: 0, y: 0, theta: radians(angle) }, middle);
-    return { x: before.x - after.x, y: before.y - after.y, theta: radians(angle) };
   }
 
   private score(): void {
@@ -187,7 +192,7 @@ export class HandPanel {
   }
 
   private updateSaving(): void {
-    const moved = [...this.state.byHand().keys()].filter((map) => this.state.poseOf(map));
+    const moved = [...this.state.byHand().keys()];
     if (moved.length === 0) {
       replace(this.saving);
       return;
@@ -199,13 +204,21 @@ export class HandPanel {
     replace(this.saving,
       h("h3", {}, "Placed by hand"),
       h("ul", {}, ...moved.map((map) => h("li", {}, mapLabel(this.state, map)))),
-      h("p", {}, "Known to within ", h("label", {}, this.sure, " m"), " and ", h("label", {}, this.sureAngle, " °")),
+      h("p", {}, "Known to within ", this.sure, " m and ", this.sureAngle, " °"),
       h("div", { class: "buttons" }, h("button", { type: "button", id: "hand-save", class: "primary", click: () => this.save() },
         `Save ${fileName}`)),
       command === null
         ? h("p", { class: "soft" }, "The maps' names hold characters that a table of poses cannot: rename the files first.")
-        : h("div", {}, h("p", { class: "soft" }, "Then, from the folder in which the maps were merged, with the file there too:"),
+        : h("div", {}, h("p", { class: "soft" },
+          "Then, from the folder in which the maps were merged, with the file there too, and with the options of that merge if it had any:"),
           h("pre", {}, command), copyButton("Copy command", () => command, "Copy the command")));
+  }
+
+  private keptDeviation(map: number): { sd: number; sdTheta: number } {
+    const { component } = this.state.scene;
+    const members = component === null ? [] : this.state.report.components[component].members;
+    const { position, theta } = members.find((member) => member.map === map)?.sd ?? keptSd;
+    return { sd: Math.max(position, leastSd.position), sdTheta: Math.max(theta, leastSd.theta) };
   }
 
   private save(): void {
@@ -215,8 +228,7 @@ export class HandPanel {
     const text = asInitialPoses(this.state.placed().map(({ map, T_scene_map }) => ({
       name: this.state.report.maps[map].name,
       transform: T_scene_map,
-      sd: byHand.has(map) ? sd : keptSd.position,
-      sdTheta: byHand.has(map) ? sdTheta : keptSd.theta,
+      ...(byHand.has(map) ? { sd, sdTheta } : this.keptDeviation(map)),
     })));
     if (text === null) {
       announce("Not saved: a map's name cannot be written in a table");

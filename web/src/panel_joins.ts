@@ -4,8 +4,8 @@ import { h, replace } from "./dom";
 import { describe } from "./formats";
 import { joinGraph, joinTitle } from "./join_graph";
 import { fixed, percent, probability } from "./numbers";
-import { type Join, type Outcome, count, outcomeMeaning, outcomes } from "./report";
-import { firstScene } from "./scene";
+import { type Join, type Outcome, count, isUsed, outcomeMeaning, outcomes } from "./report";
+import type { SE2 } from "./se2";
 import type { State } from "./state";
 
 /** More joins than this crowd the graph: those that were not used are then hidden at first. */
@@ -28,15 +28,17 @@ export class JoinsPanel {
   private readonly graph = h("div");
   private readonly table = h("div", { class: "table" });
   private readonly shown: Set<Outcome>;
+  private readonly placeByHand: (map: number, on: number, T_on_map: SE2) => void;
 
-  constructor(state: State) {
+  constructor(state: State, actions: { placeByHand(map: number, on: number, T_on_map: SE2): void }) {
     this.state = state;
+    this.placeByHand = actions.placeByHand;
     const all = state.report.joins.length <= crowded;
     this.shown = new Set(outcomes.filter((outcome) => all || outcome !== "refused"));
     if (state.report.joins.every((join) => !this.shown.has(join.outcome))) this.shown.add("refused");
     replace(this.element, this.chosen, this.filters(), this.graph, this.table);
     state.on("scene", () => this.update());
-    state.on("looks", () => this.update());
+    state.on("colors", () => this.update());
     this.update();
   }
 
@@ -64,10 +66,15 @@ export class JoinsPanel {
     this.showChosen();
   }
 
-  /** -1: as the merge has it, which need not be the best hypothesis of the two maps alone. */
-  private choose(join: number, hypothesis = -1): void {
+  /** A hypothesis of -1: as the merge has it, if that is none of the two maps' own. */
+  private choose(join: number, hypothesis = mergedHypothesis(this.state.report.joins[join])): void {
     this.state.show({ kind: "join", join, hypothesis });
-    this.element.scrollTop = 0;
+    this.chosen.scrollIntoView({ block: "nearest" });
+  }
+
+  private goBack(join: number): void {
+    this.state.show(this.state.whole);
+    this.table.querySelector<HTMLElement>(`button[data-join="${join}"]`)?.focus();
   }
 
   private makeTable(): HTMLElement {
@@ -117,14 +124,18 @@ export class JoinsPanel {
       h("h3", {}, mapLabel(this.state, join.fixed), h("span", { class: "soft" }, " and "), mapLabel(this.state, join.moving)),
       h("p", {}, h("strong", { class: `outcome ${join.outcome}` }, join.outcome), `: ${outcomeMeaning[join.outcome]}`,
         join.reason ? ` (${reasons[join.reason] ?? join.reason})` : null, "."),
-      figures(join), this.hypotheses(join, id.join, id.hypothesis),
-      h("button", {
-        type: "button", class: "back", click: () => this.state.show(firstScene(this.state.report)),
-      }, "Back to the whole"));
+      figures(join, id.hypothesis), this.hypotheses(join, id.join, id.hypothesis),
+      h("div", { class: "buttons" },
+        h("button", { type: "button", class: "back", click: () => this.goBack(id.join) }, "Back to the whole"),
+        h("button", {
+          type: "button", class: "adopt", title: "Take the second map in hand, as it lies here, to save its pose for the next merge",
+          click: () => this.placeByHand(join.moving, join.fixed, this.state.poseOf(join.moving)!),
+        }, "Place it so by hand")));
   }
 
   private hypotheses(join: Join, index: number, current: number): HTMLElement | null {
     if (join.hypotheses.length === 0) return null;
+    const merged = mergedHypothesis(join);
     const option = (hypothesis: number, ...label: (string | HTMLElement)[]) => {
       const radio = h("input", {
         type: "radio", name: "hypothesis", value: hypothesis, change: () => {
@@ -137,25 +148,31 @@ export class JoinsPanel {
     };
     return h("fieldset", { class: "hypotheses" },
       h("legend", {}, "Ways in which they may lie"),
-      option(-1, h("strong", {}, join.outcome === "refused" || join.outcome === "rejected" ? "best guess" : "as merged"),
-        `, probability ${probability(join.probability)}`, h("br"), h("span", { class: "soft" }, describe(join.transform))),
+      merged >= 0 || !isUsed(join) ? null
+        : option(-1, h("strong", {}, "as merged"), h("br"), h("span", { class: "soft" }, describe(join.transform))),
       ...join.hypotheses.map((hypothesis, i) => option(i,
-        `hypothesis ${i + 1}: score ${fixed(hypothesis.score, 0)}, probability ${probability(hypothesis.probability)}`,
+        `${i + 1}: probability ${probability(hypothesis.probability)}, score ${fixed(hypothesis.score, 0)} nats`,
+        i === merged && isUsed(join) ? h("strong", {}, " (as merged)") : "",
         h("br"), h("span", { class: "soft" }, describe(hypothesis.transform)))));
   }
 }
 
-function figures(join: Join): HTMLElement {
+/** The hypothesis that the merge uses, or would use; -1 if it is none of them. */
+function mergedHypothesis(join: Join): number {
+  const same = JSON.stringify(join.transform);
+  return join.hypotheses.findIndex((hypothesis) => JSON.stringify(hypothesis.transform) === same);
+}
+
+/** The engine counts cells for the best hypothesis alone. */
+function figures(join: Join, shown: number): HTMLElement {
   const pairs: [string, string][] = [
-    ["Probability", probability(join.probability)],
+    ["Probability", probability(shown < 0 ? join.probability : join.hypotheses[shown].probability)],
     ["Acceptance index", fixed(join.acceptance_index, 4)],
     ["Cells that agree", String(join.agreement)],
     ["Cells that do not", String(join.disagreement)],
     ["Overlap", percent(join.overlap)],
   ];
   const list = h("dl", { class: "figures" }, ...pairs.flatMap(([term, value]) => [h("dt", {}, term), h("dd", {}, value)]));
-  const [best] = join.hypotheses;
-  // Counts are made for the best hypothesis; consistency may have chosen another one.
-  const isBest = !best || JSON.stringify(best.transform) === JSON.stringify(join.transform);
-  return h("div", {}, list, isBest ? null : h("p", { class: "soft" }, "Index, cells and overlap are those of hypothesis 1."));
+  const isOfBest = shown === 0 || join.hypotheses.length === 0;
+  return h("div", {}, list, isOfBest ? null : h("p", { class: "soft" }, "Index, cells and overlap are those of the first hypothesis."));
 }

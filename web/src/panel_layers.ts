@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import { badge, pointsOut } from "./badge";
-import { disagreement, ink } from "./color";
-import { h, name, replace, swatch } from "./dom";
+import { badge, mapLabel } from "./badge";
+import { disagreement, ink, white } from "./color";
+import { flat, h, name, replace, swatch } from "./dom";
 import { Cell } from "./grid";
 import { fixed } from "./numbers";
 import { count } from "./report";
@@ -33,7 +33,8 @@ export class LayersPanel {
     state.on("scene", () => this.rebuild());
     state.on("hand", () => this.rebuild());
     state.on("looks", () => this.update());
-    state.on("cursor", () => this.read());
+    state.on("colors", () => this.recolor());
+    for (const topic of ["cursor", "hand", "grids"] as const) state.on(topic, () => this.read());
     this.rebuild();
   }
 
@@ -42,10 +43,9 @@ export class LayersPanel {
     this.state.changed("looks");
   }
 
-  /** The map that stands at this place in the list. */
-  toggleNth(index: number): void {
-    const placed = this.state.placed()[index];
-    if (placed) this.toggle(this.state.looks[placed.map]);
+  /** If the map is of the scene. */
+  toggleMap(map: number): void {
+    if (this.state.poseOf(map)) this.toggle(this.state.looks[map]);
   }
 
   private setAll(visible: boolean): void {
@@ -67,10 +67,12 @@ export class LayersPanel {
     replace(this.ownRows,
       component === null ? null : this.ownRow("merged", "Merged map", state.merged, null, "m"),
       maps.length < 2 ? null : this.ownRow("agreement", "Agreement", state.agreement, h("span", { class: "legend" },
-        swatch(rgb(ink)), "walls in two maps or more ", swatch(rgb(disagreement)), "one says wall, another free",
+        swatch(rgb(ink)), "walls in two maps or more ", swatch(rgb(white)), "floor in two maps or more ",
+        swatch(rgb(disagreement)), "they contradict each other",
         component === null ? null : h("span", { class: "soft" }, ` · ${counts}`)), "a"));
     this.readings = new Map();
-    replace(this.mapRows, ...maps.map((map, i) => this.mapRow(map, i)));
+    replace(this.mapRows, ...maps.map((map) => this.mapRow(map)));
+    this.read();
   }
 
   private ownRow(id: string, label: string, look: Look, legend: Node | null, key: string): HTMLElement {
@@ -79,24 +81,23 @@ export class LayersPanel {
       this.slider(label, look), legend);
   }
 
-  private mapRow(map: number, index: number): HTMLElement {
+  private mapRow(map: number): HTMLElement {
     const { state } = this;
     const look = state.looks[map];
-    const mapName = state.names[map];
+    const mapName = flat(state.names[map]);
     const reading = h("span", { class: "reading soft" }, "–");
     this.readings.set(map, reading);
     const color = h("input", {
       type: "color", value: look.color, "aria-label": `Colour of ${mapName}`, "data-map": map,
       input: (event) => {
         look.color = (event.target as HTMLInputElement).value;
-        state.changed("looks");
+        state.changed("colors");
       },
     });
     const row = h("div", { class: "layer", "data-map": map },
-      h("label", { class: "layer-name" }, this.checkbox(`layer-${map}`, look), badge(state, map), name(mapName, state.report.maps[map].name),
-        index < 9 ? h("kbd", {}, String(index + 1)) : null),
+      h("label", { class: "layer-name" }, this.checkbox(`layer-${map}`, look), mapLabel(state, map),
+        map < 9 ? h("kbd", {}, String(map + 1)) : null),
       color, this.slider(mapName, look), reading);
-    pointsOut(row, state, map);
     return row;
   }
 
@@ -125,9 +126,11 @@ export class LayersPanel {
       if (box.isConnected) box.checked = look.visible;
       else this.boxes.delete(box);
     }
-    for (const row of this.mapRows.querySelectorAll<HTMLElement>(".layer")) {
-      const map = Number(row.dataset.map);
-      row.querySelector(".badge")!.replaceWith(badge(this.state, map));
+  }
+
+  private recolor(): void {
+    for (const row of this.element.querySelectorAll<HTMLElement>("[data-map]")) {
+      row.querySelector(".badge")?.replaceWith(badge(this.state, Number(row.dataset.map)));
     }
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { mapLabel } from "./badge";
 import { copyButton } from "./clipboard";
-import { h, replace } from "./dom";
+import { flat, h, replace } from "./dom";
 import { type NamedPose, asJson, asStaticTransforms, asYaml, frameIds } from "./formats";
 import { degrees, fixed, probability } from "./numbers";
 import type { Member } from "./report";
@@ -17,7 +17,7 @@ export class TransformsPanel {
     this.state = state;
     state.on("scene", () => this.rebuild());
     state.on("hand", () => this.rebuild());
-    state.on("looks", () => this.rebuild());
+    state.on("colors", () => this.rebuild());
     this.rebuild();
   }
 
@@ -37,12 +37,12 @@ export class TransformsPanel {
     replace(this.element,
       h("p", { class: "soft" }, "A transform takes a point of the map's frame to ",
         scene.component !== null && state.report.components[scene.component].frame === null
-          ? scene.frame : h("span", {}, "the frame of ", h("bdi", {}, scene.frame)), "."),
+          ? "the frame in which poses were given" : h("span", {}, "the frame of ", h("bdi", {}, scene.frame)), "."),
       h("div", { class: "table" }, h("table", {},
         h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Map"),
           ...["x [m]", "y [m]", "θ [rad]"].map((head) => h("th", { class: "number", scope: "col" }, head)))),
         h("tbody", {}, ...rows))),
-      h("div", { class: "buttons" }, h("span", {}, "Copy all:"), ...this.buttons(() => state.placed().map(({ map }) => map))));
+      h("div", { class: "buttons" }, h("span", {}, "Copy all:"), ...this.buttons("all transforms", () => state.placed().map(({ map }) => map))));
   }
 
   /** One with the pose, one with how sure it is. */
@@ -55,7 +55,7 @@ export class TransformsPanel {
         h("td", { class: "name" }, mapLabel(this.state, map)),
         number(fixed(pose.x, 3)), number(fixed(pose.y, 3)), number(fixed(pose.theta, 5))),
       h("tr", { class: "more" }, h("td", { colspan: 4 }, h("div", { class: "buttons" },
-        ...this.buttons(() => [map]),
+        ...this.buttons(flat(this.state.names[map]), () => [map]),
         h("span", { class: "soft" }, `${fixed(degrees(pose.theta), 2)}°`, byHand ? ", placed by hand" : certainty(this.memberOf(map)))))),
     ];
   }
@@ -65,16 +65,16 @@ export class TransformsPanel {
     return component === null ? undefined : this.state.report.components[component].members.find((m) => m.map === map);
   }
 
-  private buttons(maps: () => number[]): HTMLButtonElement[] {
+  private buttons(whose: string, maps: () => number[]): HTMLButtonElement[] {
     const { report, scene } = this.state;
     const poses = (): NamedPose[] => maps().map((map) => ({ name: report.maps[map].name, transform: this.state.poseOf(map)! }));
-    const ids = frameIds(report.maps.map((map) => map.name));
-    const parent = scene.component !== null ? frameIds([scene.title])[0] : `${ids[this.state.placed()[0].map]}`;
-    const children = () => maps().map((map) => (ids[map] === parent ? `${ids[map]}_map` : ids[map]));
+    // The frame that all are in is one more, whatever maps are called.
+    const [parent, ...ids] = frameIds([scene.component === null ? "scene" : scene.title, ...report.maps.map((map) => map.name)]);
+    const children = () => maps().map((map) => ids[map]);
     return [
-      copyButton("YAML", () => asYaml(scene.frame, poses()), "Copy as YAML"),
-      copyButton("JSON", () => asJson(scene.frame, poses()), "Copy as JSON"),
-      copyButton("TF", () => asStaticTransforms(parent, poses(), children()), "Copy as static_transform_publisher commands"),
+      copyButton("YAML", () => asYaml(scene.frame, poses()), `Copy ${whose} as YAML`),
+      copyButton("JSON", () => asJson(scene.frame, poses()), `Copy ${whose} as JSON`),
+      copyButton("TF", () => asStaticTransforms(parent, poses(), children()), `Copy ${whose} for static_transform_publisher`),
     ];
   }
 }

@@ -16,7 +16,7 @@ export interface Placed {
 export interface Scene {
   id: SceneId;
   title: string;
-  /** Whose frame coordinates are in. */
+  /** Whose frame coordinates are in: the full name of a map, or "world". */
   frame: string;
   placed: Placed[];
   /** Index of the component whose fused map belongs to it. */
@@ -43,7 +43,7 @@ export function makeScene(report: Report, id: SceneId): Scene {
       return {
         id,
         title: component.file,
-        frame: component.frame === null ? "the frame in which poses were given" : report.maps[component.frame].name,
+        frame: component.frame === null ? "world" : report.maps[component.frame].name,
         placed: component.members.map((member) => ({ map: member.map, T_scene_map: member.transform })),
         component: id.component,
       };

@@ -4,9 +4,9 @@ import { type Point, type SE2, apply, compose, inverse } from "./se2";
 
 /** How well a map fits to others, as the page can tell by itself: for the eye while a map is dragged. */
 export interface Score {
-  /** Share of the map's walls, where others have seen, that lie within a hand's breadth of a wall of theirs. */
+  /** Share of the map's walls, where others have seen, that lie within about 0.2 m of a wall of theirs, or two cells. */
   wallsMet: number;
-  /** Share of the cells known to it and to another that are equal: agreement / (agreement + disagreement). */
+  /** Share of the cells known to it and to others of which most of these say the same. */
   agreement: number;
   /** Share of its known cells that another knows. */
   overlap: number;
@@ -39,7 +39,7 @@ export class Scorer {
       const told = lookups.map(({ grid, T }) => grid.at(apply(T, p))).filter((other) => other !== Cell.unknown);
       if (told.length === 0) continue;
       common++;
-      if (told.includes(cell as typeof told[number])) agreeing++;
+      if (2 * told.filter((other) => other === cell).length >= told.length) agreeing++;
     }
     if (common === 0) return null;
     let seen = 0;
@@ -72,26 +72,27 @@ function around(grid: Grid, level: Level, p: Point): number {
 
 function takeSamples(grid: Grid): Samples {
   const { width, resolution, cells } = grid.finest;
-  const all: number[] = [];
-  const walls: number[] = [];
-  for (let i = 0; i < cells.length; i++) {
-    if (cells[i] === Cell.unknown) continue;
-    all.push(i);
-    if (cells[i] === Cell.occupied) walls.push(i);
-  }
   const center = (i: number): Point => apply(grid.origin, {
     x: ((i % width) + 0.5) * resolution, y: (Math.floor(i / width) + 0.5) * resolution,
   });
   return {
-    walls: thinned(walls).map(center),
-    known: thinned(all).map((i) => ({ p: center(i), cell: cells[i] })),
+    walls: spread(cells, (cell) => cell === Cell.occupied).map(center),
+    known: spread(cells, (cell) => cell !== Cell.unknown).map((i) => ({ p: center(i), cell: cells[i] })),
   };
 }
 
-/** Spread evenly, and at most so many. */
-function thinned(indices: number[]): number[] {
-  const step = indices.length / Math.min(indices.length, mostSamples);
+/** Indices of cells of a kind, evenly taken, and at most so many. */
+function spread(cells: Uint8Array, isWanted: (cell: number) => boolean): number[] {
+  let count = 0;
+  for (const cell of cells) if (isWanted(cell)) count++;
+  const step = Math.max(1, count / mostSamples);
   const kept: number[] = [];
-  for (let at = 0; at < indices.length; at += step) kept.push(indices[Math.floor(at)]);
+  let next = 0;
+  for (let i = 0, seen = 0; i < cells.length; i++) {
+    if (!isWanted(cells[i])) continue;
+    if (seen++ < next) continue;
+    kept.push(i);
+    next += step;
+  }
   return kept;
 }

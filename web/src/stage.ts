@@ -29,6 +29,10 @@ export class Stage {
   private ratio = 1;
   private frame = 0;
   private touched = false;
+  /** Where the cursor is on the canvas. */
+  private pixel: Point | null = null;
+  /** The picture is to be made again before it is drawn; only for the same place do tiles stand in until then. */
+  private stale: "no" | "similar" | "other" = "no";
 
   constructor(state: State) {
     this.state = state;
@@ -40,8 +44,7 @@ export class Stage {
     this.context = this.canvas.getContext("2d", { alpha: false })!;
     state.on("scene", () => this.arrange());
     state.on("grids", () => this.arrange());
-    state.on("looks", () => this.compose());
-    state.on("hand", () => this.compose());
+    for (const topic of ["looks", "colors", "hand"] as const) state.on(topic, () => this.recompose());
     state.on("spotlight", () => this.redraw());
     new ResizeObserver(() => this.resize()).observe(this.canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
@@ -70,7 +73,12 @@ export class Stage {
 
   /** The cursor at a pixel of the canvas; null: nowhere. */
   pointAt(pixel: Point | null): void {
-    this.state.cursor = pixel && toScene(this.view, pixel);
+    this.pixel = pixel;
+    this.readCursor();
+  }
+
+  private readCursor(): void {
+    this.state.cursor = this.pixel && toScene(this.view, this.pixel);
     this.state.changed("cursor");
   }
 
@@ -81,7 +89,7 @@ export class Stage {
   private look(view: Viewport): void {
     this.view = view;
     this.touched = true;
-    if (this.crosshair) this.pointAt({ x: view.width / 2, y: view.height / 2 });
+    this.readCursor();
     this.redraw();
   }
 
@@ -105,12 +113,21 @@ export class Stage {
     const place = placeOf(this.state.scene.id);
     const moved = place !== this.place;
     this.place = place;
-    this.compose(!moved);
+    if (moved) this.stale = "other";
+    this.recompose();
+    this.readCursor();
     if (moved || !this.touched) this.fit();
   }
 
-  private compose(similar = true): void {
+  private recompose(): void {
+    if (this.stale === "no") this.stale = "similar";
+    this.redraw();
+  }
+
+  private compose(): void {
     const { state } = this;
+    const similar = this.stale === "similar";
+    this.stale = "no";
     const layers: Picture["layers"] = [];
     const parts: unknown[] = [this.place, state.merged, state.agreement];
     for (const { map, T_scene_map } of state.placed()) {
@@ -124,7 +141,7 @@ export class Stage {
     parts.push(grid !== null);
     // A map in hand is no part of the picture: while it moves, nothing has to be painted anew.
     const shown = JSON.stringify(parts);
-    if (shown === this.shown) return this.redraw();
+    if (shown === this.shown) return;
     this.shown = shown;
     const picture: Picture = {
       merged: grid && state.merged.visible ? { grid, opacity: state.merged.opacity } : null,
@@ -134,7 +151,6 @@ export class Stage {
     const resolutions = layers.map((layer) => layer.grid.finest.resolution);
     if (grid) resolutions.push(grid.finest.resolution);
     this.tiles.show(picture, resolutions.length > 0 ? Math.min(...resolutions) : 0.05, similar);
-    this.redraw();
   }
 
   private colors(): DecorColors & { unknown: string } {
@@ -145,6 +161,7 @@ export class Stage {
 
   private draw(): void {
     this.frame = 0;
+    if (this.stale !== "no") this.compose();
     const { context, view, ratio } = this;
     const colors = this.colors();
     context.setTransform(1, 0, 0, 1, 0, 0);
@@ -172,8 +189,8 @@ export class Stage {
     const grid = this.state.grids[map];
     const pose = this.state.poseOf(map);
     if (!grid || !pose) return;
-    const { color } = this.state.looks[map];
-    this.stampOf(map, grid, color).draw(context, view, pose);
+    const { color, visible } = this.state.looks[map];
+    if (inHand || visible) this.stampOf(map, grid, color).draw(context, view, pose);
     context.strokeStyle = color;
     context.lineWidth = 2;
     context.setLineDash([6, 4]);

@@ -14,7 +14,7 @@ const zoomStep = 1.3;
 
 /** What the keyboard asks for that is not the stage's own business. */
 export interface KeyActions {
-  toggleMap(index: number): void;
+  toggleMap(map: number): void;
   toggleMerged(): void;
   toggleAgreement(): void;
   help(): void;
@@ -38,7 +38,10 @@ export class StageInput {
     canvas.addEventListener("pointermove", (event) => this.move(event));
     canvas.addEventListener("pointerup", (event) => this.up(event));
     canvas.addEventListener("pointercancel", (event) => this.up(event));
-    canvas.addEventListener("pointerleave", () => this.pointers.size === 0 && stage.pointAt(null));
+    // A finger that is lifted has left, but what it touched is what the user wants to know.
+    canvas.addEventListener("pointerleave", (event) => {
+      if (this.pointers.size === 0 && event.pointerType !== "touch") stage.pointAt(null);
+    });
     canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     canvas.addEventListener("dblclick", (event) => stage.zoom(2, pixelOf(event)));
     canvas.addEventListener("keydown", (event) => this.key(event));
@@ -153,7 +156,7 @@ export class StageInput {
     if (handled === null) return false;
     const step = (event.shiftKey ? 10 : 1) * this.state.report.maps[handled].resolution;
     const turn = radians(event.shiftKey ? 5 : 0.5);
-    switch (event.key) {
+    switch (event.key.length === 1 ? event.key.toLowerCase() : event.key) {
       case "ArrowLeft":
         this.moveHandled(-step, 0, 0);
         return true;
@@ -167,18 +170,16 @@ export class StageInput {
         this.moveHandled(0, -step, 0);
         return true;
       case "q":
-      case "Q":
         this.moveHandled(0, 0, turn);
         return true;
       case "e":
-      case "E":
         this.moveHandled(0, 0, -turn);
         return true;
       case "Enter":
         this.actions.refine();
         return true;
       case "Escape":
-        this.state.take(null);
+        this.state.letGo();
         return true;
       default:
         return false;
@@ -196,7 +197,7 @@ export class StageInput {
     else if (event.key === "+" || event.key === "=") stage.zoom(zoomStep);
     else if (event.key === "-") stage.zoom(1 / zoomStep);
     else if (event.key === "0") stage.fit();
-    else if (event.key === "g") {
+    else if (event.key.toLowerCase() === "g") {
       stage.gridShown = !stage.gridShown;
       stage.redraw();
     } else return false;
@@ -204,10 +205,11 @@ export class StageInput {
   }
 
   private layerKey(event: KeyboardEvent): boolean {
-    if (/^[1-9]$/.test(event.key)) this.actions.toggleMap(Number(event.key) - 1);
-    else if (event.key === "m") this.actions.toggleMerged();
-    else if (event.key === "a") this.actions.toggleAgreement();
-    else if (event.key === "?") this.actions.help();
+    const key = event.key.toLowerCase();
+    if (/^[1-9]$/.test(key)) this.actions.toggleMap(Number(key) - 1);
+    else if (key === "m") this.actions.toggleMerged();
+    else if (key === "a") this.actions.toggleAgreement();
+    else if (key === "?") this.actions.help();
     else return false;
     return true;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { mix, parseColor, tint, white } from "./color";
+import { type Rgb, mix, parseColor, tint, white } from "./color";
 import { Cell, type Grid, type Level } from "./grid";
 import { type Point, type SE2, apply, compose } from "./se2";
 import { type Viewport, toScreen } from "./viewport";
@@ -26,14 +26,11 @@ export class Stamp {
     const wall = parseColor(color);
     const free = mix(white, wall, 2 * tint);
     const image = new ImageData(width, height);
+    const pixels = new Uint32Array(image.data.buffer);
+    const pixelOf: Record<number, number> = { [Cell.unknown]: 0, [Cell.free]: packed(free, 120), [Cell.occupied]: packed(wall, 255) };
     for (let row = 0; row < height; row++) {
-      for (let column = 0; column < width; column++) {
-        const cell = cells[row * width + column];
-        if (cell === Cell.unknown) continue;
-        const at = 4 * ((height - 1 - row) * width + column);
-        const [red, green, blue] = cell === Cell.occupied ? wall : free;
-        image.data.set([red, green, blue, cell === Cell.occupied ? 255 : 120], at);
-      }
+      const to = (height - 1 - row) * width;
+      for (let column = 0; column < width; column++) pixels[to + column] = pixelOf[cells[row * width + column]];
     }
     this.canvas.getContext("2d")!.putImageData(image, 0, 0);
   }
@@ -50,6 +47,11 @@ export class Stamp {
     context.drawImage(this.canvas, 0, 0);
     context.restore();
   }
+}
+
+/** A pixel as an image holds it in memory, in the order of bytes of this machine. */
+function packed([red, green, blue]: Rgb, alpha: number): number {
+  return new Uint32Array(Uint8ClampedArray.of(red, green, blue, alpha).buffer)[0];
 }
 
 /** The map's rectangle on the screen, counter-clockwise from its lower left corner. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Grid } from "./grid";
 import { type Report, shortNames } from "./report";
-import { type Placed, type Scene, type SceneId, firstScene, makeScene, placeOf } from "./scene";
+import { type Placed, type Scene, type SceneId, firstScene, makeScene } from "./scene";
 import type { Point, SE2 } from "./se2";
 
 /** How a layer is drawn. */
@@ -14,8 +14,11 @@ export interface MapLook extends Look {
   color: string;
 }
 
-/** What has changed: which scene, how layers look, which map is pointed out, where the cursor is, what is placed by hand, which cells are there. */
-export type Topic = "scene" | "looks" | "spotlight" | "cursor" | "hand" | "grids";
+/**
+ * What has changed: which scene, how layers look, in which colours, which map is pointed out, where the cursor is, what is
+ * placed by hand, which cells are there.
+ */
+export type Topic = "scene" | "looks" | "colors" | "spotlight" | "cursor" | "hand" | "grids";
 
 /** All that the page knows and shows. Panels and the stage change it, and listen to what others change. */
 export class State {
@@ -34,7 +37,11 @@ export class State {
   cursor: Point | null = null;
   /** The map that can be dragged now. */
   handled: number | null = null;
-  /** By place: poses given by hand, in the frame of that scene. */
+  /** The scene that was shown last and is no join. */
+  whole: SceneId;
+  /** Where the map in hand is shown as long as nobody has moved it, if it is not of the scene. */
+  private offered: SE2 | null = null;
+  /** By scene: poses given by hand, in its frame. */
   private readonly handPoses = new Map<string, Map<number, SE2>>();
   private readonly listeners = new Map<Topic, (() => void)[]>();
 
@@ -44,7 +51,8 @@ export class State {
     this.grids = report.maps.map(() => null);
     this.mergedGrids = report.components.map(() => null);
     this.looks = report.maps.map((map) => ({ visible: true, opacity: 1, color: map.color }));
-    this.scene = makeScene(report, firstScene(report));
+    this.whole = firstScene(report);
+    this.scene = makeScene(report, this.whole);
   }
 
   on(topic: Topic, listener: () => void): void {
@@ -57,16 +65,17 @@ export class State {
 
   show(id: SceneId): void {
     this.scene = makeScene(this.report, id);
-    this.handled = null;
+    if (id.kind !== "join") this.whole = id;
+    this.handled = this.offered = null;
     this.spotlight = null;
     this.changed("scene");
   }
 
   /** Poses given by hand in this scene. */
   byHand(): Map<number, SE2> {
-    const place = placeOf(this.scene.id);
-    let poses = this.handPoses.get(place);
-    if (!poses) this.handPoses.set(place, (poses = new Map()));
+    const scene = JSON.stringify(this.scene.id);
+    let poses = this.handPoses.get(scene);
+    if (!poses) this.handPoses.set(scene, (poses = new Map()));
     return poses;
   }
 
@@ -76,7 +85,8 @@ export class State {
     const own = this.scene.placed.map(({ map, T_scene_map }) => ({ map, T_scene_map: byHand.get(map) ?? T_scene_map }));
     const isOwn = (map: number) => this.scene.placed.some((placed) => placed.map === map);
     const added = [...byHand].filter(([map]) => !isOwn(map)).map(([map, T_scene_map]) => ({ map, T_scene_map }));
-    return [...own, ...added];
+    const inHand = this.offered && !isOwn(this.handled!) ? [{ map: this.handled!, T_scene_map: this.offered }] : [];
+    return [...own, ...added, ...inHand];
   }
 
   poseOf(map: number): SE2 | null {
@@ -89,13 +99,21 @@ export class State {
     this.changed("spotlight");
   }
 
-  /** Takes a map in hand; null lets go. */
-  take(map: number | null): void {
+  /** Takes a map in hand; one that is not in the scene is offered at `T_scene_map`, and gone again if nobody moves it. */
+  take(map: number, T_scene_map: SE2): void {
+    this.offered = null;
+    this.offered = this.poseOf(map) ? null : T_scene_map;
     this.handled = map;
     this.changed("hand");
   }
 
+  letGo(): void {
+    this.handled = this.offered = null;
+    this.changed("hand");
+  }
+
   put(map: number, T_scene_map: SE2): void {
+    if (map === this.handled) this.offered = null;
     this.byHand().set(map, T_scene_map);
     this.changed("hand");
   }
@@ -103,7 +121,7 @@ export class State {
   /** Puts a map back where the merge has it, or out of the scene if it was left out. */
   putBack(map: number): void {
     this.byHand().delete(map);
-    if (this.handled === map) this.handled = null;
+    if (this.handled === map) this.handled = this.offered = null;
     this.changed("hand");
   }
 }

@@ -3,7 +3,7 @@ import { type Picture, extentOf, paint } from "./compose";
 import { type Box, type Viewport, toScreen, visibleBox } from "./viewport";
 
 const tilePixels = 256;
-/** Tiles that are kept: 256 KiB each. */
+/** Tiles that are kept, 256 KiB each, unless more are in sight. */
 const mostTiles = 400;
 
 interface Tile {
@@ -21,7 +21,7 @@ interface Place {
 
 /**
  * Draws a picture of any size: in square tiles at the scale that is asked for, kept until the picture changes. Tiles
- * are painted a few at a time, so that the page never stalls; until then coarser or older ones stand in.
+ * are painted a few at a time, so that the page goes on answering; until then coarser or older ones stand in.
  */
 export class Tiles {
   private tiles = new Map<string, Tile>();
@@ -50,7 +50,7 @@ export class Tiles {
     const places = this.visible(level, view);
     const complete = this.paintMissing(places, budget);
     for (const place of places) this.drawOne(context, view, place);
-    this.forget();
+    this.forget(Math.max(mostTiles, 2 * places.length));
     return complete;
   }
 
@@ -126,10 +126,10 @@ export class Tiles {
     return tilePixels * this.resolution * 2 ** level;
   }
 
-  private forget(): void {
-    if (this.tiles.size <= mostTiles) return;
+  private forget(most: number): void {
+    if (this.tiles.size <= most) return;
     const oldest = [...this.tiles].sort(([, a], [, b]) => a.usedAt - b.usedAt);
-    for (const [key] of oldest.slice(0, this.tiles.size - mostTiles)) this.tiles.delete(key);
+    for (const [key] of oldest.slice(0, this.tiles.size - most)) this.tiles.delete(key);
   }
 }
 

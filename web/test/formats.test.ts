@@ -4,7 +4,7 @@ import { execFileSync } from "node:child_process";
 import { test } from "node:test";
 import { asInitialPoses, asJson, asStaticTransforms, asYaml, frameIds, mergeCommand } from "../src/formats";
 
-export const hostileNames = [
+const hostileNames = [
   "$(touch /tmp/owned)", "`id`; rm -rf ~", "a b'c\"d", "</script><script>alert(1)</script>", "-o", "two\nlines", "tab\there",
   "\u202eover", "{}%s\\", "", "x".repeat(3000), "\u2028\u0085", "\ufffd",
 ];
@@ -44,32 +44,36 @@ test("static transforms hold nothing but what frames may be called", () => {
   for (const id of ids) assert.match(id, /^[A-Za-z0-9_]+$/);
   const text = asStaticTransforms("merged", hostileNames.map((name) => ({ name, transform: pose })), ids);
   for (const line of text.trimEnd().split("\n")) {
-    assert.match(line, /^ros2 run tf2_ros static_transform_publisher --x 1\.25 --y -3 --yaw 0\.30000000000000004 --frame-id merged --child-frame-id [A-Za-z0-9_]+$/);
+    assert.match(line, /^ros2 run tf2_ros static_transform_publisher --x 1\.25 --y -3 --yaw 0\.30000000000000004 --frame-id merged --child-frame-id [A-Za-z0-9_]+ &$/);
   }
+  assert.ok(!asStaticTransforms("merged", [{ name: "a", transform: pose }], ["a"]).includes("&"), "one runs in the foreground");
 });
 
 test("frames are named after files, with the folder where that tells maps apart", () => {
   assert.deepEqual(frameIds(["maps/robot_1.yaml", "maps/robot-2.yaml"]), ["robot_1", "robot_2"]);
   assert.deepEqual(frameIds(["a/map.yaml", "b/map.yaml"]), ["a_map", "b_map"]);
   assert.deepEqual(frameIds(["a-b.yaml", "a b.yaml"]), ["a_b", "a_b_2"]);
+  assert.deepEqual(frameIds(["merged.yaml", "m/merged.yaml"]), ["merged", "m_merged"]);
 });
 
 test("a shell reads back every name that the merge command holds", () => {
-  const names = hostileNames.filter((name) => name !== "" && !/[\u0000-\u001f\ufffd]/.test(name));
+  const names = hostileNames.filter((name) => mergeCommand([name], "poses.tsv") !== null);
+  assert.ok(names.length >= 6);
   const command = mergeCommand(names, "poses.tsv")!;
   const read = execFileSync("/bin/sh", ["-c", command.replace("gridmerge merge", "printf '%s\\n'")], { encoding: "utf8" });
-  const expected = [...names.map((name) => (name === "-o" ? "./-o" : name)), "--init", "poses.tsv", "-o", "merged"];
+  const expected = [...names.map((name) => (name === "-o" ? "./-o" : name)), "--init", "poses.tsv", "-o", "merged_by_hand"];
   assert.deepEqual(read.trimEnd().split("\n"), expected);
 });
 
 test("names that a table cannot hold are not written", () => {
-  for (const name of ["two\nlines", "tab\there", "", "\ufffd", "\u0000"]) {
+  for (const name of ["two\nlines", "tab\there", "", "\ufffd", "\u0000", "\u202eover", "\u0085", "\u2066"]) {
     assert.equal(asInitialPoses([{ name, transform: pose, sd: 1, sdTheta: 0.1 }]), null);
     assert.equal(mergeCommand(["a.yaml", name], "poses.tsv"), null);
   }
 });
 
 test("a table of initial poses names its columns", () => {
+  assert.match(asInitialPoses([{ name: "-o", transform: pose, sd: 1, sdTheta: 1 }])!, /^\.\/-o\t/m, "as in the command");
   assert.equal(asInitialPoses([{ name: "a b.yaml", transform: pose, sd: 0.3, sdTheta: 0.05 }]),
     "map\tx\ty\ttheta\tsd\tsd_theta\na b.yaml\t1.25\t-3\t0.30000000000000004\t0.3\t0.05\n");
 });
