@@ -67,6 +67,7 @@ Json join_json(const Join& join) {
 /// All maps, then all fused ones: what takes time is done for several at once.
 std::vector<ShownMap> show_all(const std::vector<OccupancyGrid>& maps, const MergeResult& result) {
   std::vector<const OccupancyGrid*> grids;
+  grids.reserve(maps.size() + result.components.size());
   for (const OccupancyGrid& map : maps) grids.push_back(&map);
   for (const Component& component : result.components) grids.push_back(&component.fused.grid);
   std::vector<ShownMap> shown(grids.size());
