@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+from . import _arguments, _core
+from ._arguments import Progress
+from ._grid import MapLike, OccupancyGrid
+from ._inputs import to_map
+from ._known_poses import InitialPose, to_core
+from ._merge import MergeResult, to_merge_result, to_output_resolution
+from ._transform import PoseLike
+
+
+class Merger:
+    """merge() for maps that come one after the other, or grow: pairs that have not changed are not matched again.
+
+    The result is that of merge() with all the maps that are in it, in the order in which they were added. Arguments
+    are those of merge(). One thread at a time may use it: RuntimeError for the others.
+    """
+
+    def __init__(
+        self, *, threads: int = 0, accept: float = 0.8, output_resolution: float | None = None
+    ) -> None:
+        self._core = _core.Merger(
+            _arguments.threads(threads),
+            _arguments.share("accept", accept),
+            to_output_resolution(output_resolution),
+        )
+        self._maps: dict[int, tuple[OccupancyGrid, str]] = {}
+
+    def add(
+        self,
+        map: MapLike,
+        *,
+        name: str | None = None,
+        pose: InitialPose | PoseLike | None = None,
+        fixed: bool = False,
+    ) -> int:
+        """Takes in one more map, with what is known of its pose, and returns its id. Nothing is matched yet."""
+        grid = to_map("map", map)
+        if pose is None and fixed:
+            pose = (0.0, 0.0, 0.0)
+        known = None if pose is None else to_core(pose, "pose", bool(fixed))
+        map_id = self._core.add(grid._core, known)
+        self._maps[map_id] = (grid, name or grid.source or f"map {map_id}")
+        return map_id
+
+    def update(self, map_id: int, map: MapLike) -> None:
+        """Another map in the place of one that was added: of the same robot, later. KeyError for an unknown id."""
+        name = self._known(map_id)[1]
+        grid = to_map("map", map)
+        self._core.update(map_id, grid._core)
+        self._maps[map_id] = (grid, name)
+
+    def remove(self, map_id: int) -> None:
+        """Takes a map out again. KeyError for an unknown id."""
+        self._known(map_id)
+        self._core.remove(map_id)
+        del self._maps[map_id]
+
+    @property
+    def ids(self) -> tuple[int, ...]:
+        """Of the maps that are in it, in the order in which they were added: a result speaks of them by their place
+        in this order."""
+        return tuple(self._core.ids())
+
+    def result(self, *, progress: Progress | None = None) -> MergeResult:
+        """Matches the pairs that are new or have changed, and merges."""
+        merged = self._core.result(_arguments.progress(progress))
+        grids, names = zip(*(self._maps[i] for i in self.ids), strict=True) if self._maps else ((), ())
+        return to_merge_result(merged, grids, names, ())
+
+    def _known(self, map_id: int) -> tuple[OccupancyGrid, str]:
+        if map_id not in self._maps:
+            raise KeyError(f"there is no map {map_id}")
+        return self._maps[map_id]
