@@ -22,6 +22,8 @@ using Action = std::function<int()>;
 void add_info(CLI::App& app, Action& action);
 void add_match(CLI::App& app, Action& action);
 void add_merge(CLI::App& app, Action& action);
+void add_report(CLI::App& app, Action& action);
+void add_view(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
 

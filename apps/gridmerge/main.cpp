@@ -56,6 +56,8 @@ int run(int argc, char** argv) {
   add_info(app, action);
   add_match(app, action);
   add_merge(app, action);
+  add_report(app, action);
+  add_view(app, action);
   add_evaluate(app, action);
   add_simulate(app, action);
 

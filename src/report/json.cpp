@@ -1,67 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/report/json.hpp"
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-#include <stdexcept>
+#include <utility>
+
+#include "json_values.hpp"
 
 namespace gridmerge {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-double number(double value) {
-  if (!std::isfinite(value))
-    throw std::invalid_argument("a result that is not finite cannot be written as JSON");
-  return value + 0.0;  // no -0.0: it reads as a direction that is not there
-}
-
-Json transform_of(const SE2& T) {
-  return {{"x", number(T.x)}, {"y", number(T.y)}, {"theta", number(T.theta)}};
-}
-
-Json deviation_of(const std::optional<PoseDeviation>& sd) {
-  if (!sd) return nullptr;
-  return {{"position", number(sd->position)}, {"theta", number(sd->theta)}};
-}
-
 Json member_json(const std::string& name, const Member& member) {
   return {{"source", name},
-          {"transform", transform_of(member.T_component_map)},
-          {"probability", member.probability ? Json(number(*member.probability)) : Json()},
-          {"sd", deviation_of(member.sd)}};
+          {"transform", transform_json(member.T_component_map)},
+          {"probability", probability_json(member.probability)},
+          {"sd", deviation_json(member.sd)}};
 }
 
-std::string text_of(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+Json join_json(const std::string& fixed, const std::string& moving, const Join& join) {
+  return {{"fixed", fixed},
+          {"moving", moving},
+          {"transform", transform_json(join.T_fixed_moving)},
+          {"verdict", join.used() ? "accepted" : "refused"},
+          {"probability", number_json(join.probability)},
+          {"outcome", name_of(join.outcome)},
+          {"reason", reason_json(join.match)},
+          {"acceptance_index", number_json(join.match.acceptance_index)},
+          {"agreement", join.match.agreement},
+          {"disagreement", join.match.disagreement},
+          {"overlap", number_json(join.match.overlap)},
+          {"hypotheses", hypotheses_json(join.match.hypotheses)}};
 }
 
 }  // namespace
 
 std::string match_json(const std::string& fixed, const std::string& moving, const MatchResult& result) {
-  Json hypotheses = Json::array();
-  for (const Hypothesis& hypothesis : result.hypotheses) {
-    hypotheses.push_back({{"transform", transform_of(hypothesis.T_fixed_moving)},
-                          {"score", number(hypothesis.score)},
-                          {"probability", number(hypothesis.probability)}});
-  }
   const Json json{{"fixed", fixed},
                   {"moving", moving},
                   {"verdict", name_of(result.verdict)},
-                  {"reason", result.verdict == Verdict::accepted ? Json() : Json(name_of(result.reason))},
-                  {"transform", transform_of(result.T_fixed_moving)},
-                  {"probability", number(result.probability)},
-                  {"acceptance_index", number(result.acceptance_index)},
+                  {"reason", reason_json(result)},
+                  {"transform", transform_json(result.T_fixed_moving)},
+                  {"probability", number_json(result.probability)},
+                  {"acceptance_index", number_json(result.acceptance_index)},
                   {"agreement", result.agreement},
                   {"disagreement", result.disagreement},
-                  {"overlap", number(result.overlap)},
-                  {"seconds", number(result.seconds)},
-                  {"hypotheses", std::move(hypotheses)}};
-  return text_of(json, -1);
+                  {"overlap", number_json(result.overlap)},
+                  {"seconds", number_json(result.seconds)},
+                  {"hypotheses", hypotheses_json(result.hypotheses)}};
+  return text_of(json, -1) + "\n";
 }
 
 std::string transforms_json(const std::vector<std::string>& names, const MergeResult& result) {
+  Json maps = Json::array();
+  for (const std::string& name : names) maps.push_back(name);
   Json components = Json::array();
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     Json members = Json::array();
@@ -75,23 +65,18 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
          {"members", std::move(members)}});
   }
   Json joins = Json::array();
-  for (const Join& join : result.joins) {
-    joins.push_back({{"fixed", names.at(join.fixed)},
-                     {"moving", names.at(join.moving)},
-                     {"transform", transform_of(join.T_fixed_moving)},
-                     {"verdict", join.used() ? "accepted" : "refused"},
-                     {"probability", number(join.probability)},
-                     {"outcome", name_of(join.outcome)}});
-  }
+  for (const Join& join : result.joins)
+    joins.push_back(join_json(names.at(join.fixed), names.at(join.moving), join));
   Json left_out = Json::array();
   for (const std::size_t map : result.left_out) left_out.push_back(names.at(map));
   Json reasons = Json::array();
   for (const Reason reason : result.left_out_reasons) reasons.push_back(name_of(reason));
-  const Json json{{"components", std::move(components)},
+  const Json json{{"maps", std::move(maps)},
+                  {"components", std::move(components)},
                   {"joins", std::move(joins)},
                   {"left_out", std::move(left_out)},
                   {"left_out_reasons", std::move(reasons)}};
-  return text_of(json, 2);
+  return text_of(json, 2) + "\n";
 }
 
 std::string component_file(std::size_t component) {

@@ -12,8 +12,8 @@
 
 #include "gridmerge/io/atomic_file.hpp"
 #include "gridmerge/io/map_file.hpp"
-#include "gridmerge/report/html.hpp"
 #include "gridmerge/report/json.hpp"
+#include "gridmerge/report/page.hpp"
 #include "gridmerge/report/preview.hpp"
 
 namespace gridmerge {
@@ -141,13 +141,19 @@ void write_merge_output(const fs::path& directory, const std::vector<fs::path>& 
       files.push_back(std::move(file));
     }
   }
-  const std::string preview = preview_png(names, maps, result);
-  files.emplace_back(directory / kPreview, preview);
-  files.emplace_back(directory / kReport, report_html(names, result, preview));
+  files.emplace_back(directory / kPreview, preview_png(names, maps, result));
+  files.emplace_back(directory / kReport, report_page(names, maps, result));
   files.emplace_back(directory / kTransforms, transforms_json(names, result));
 
   for (StagedFile& file : files) file.commit();
   remove_stale_maps(directory, result.components.size());
+}
+
+void write_report(const fs::path& directory, const std::vector<fs::path>& inputs,
+                  const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
+                  const MergeResult& result) {
+  protect(inputs, directory);
+  write_file_atomically(directory / kReport, report_page(names, maps, result));
 }
 
 }  // namespace gridmerge

@@ -9,7 +9,7 @@
 namespace gridmerge::test {
 namespace {
 
-const std::vector<std::string> kCommands = {"info", "match", "merge", "evaluate"};
+const std::vector<std::string> kCommands = {"info", "match", "merge", "report", "evaluate"};
 
 class WrongUsage : public testing::TestWithParam<std::vector<std::string>> {};
 
@@ -44,6 +44,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "0"},
                     Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "1e-7"},
                     Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "1e5"},
+                    Words{"report"}, Words{"report", "a", "b"}, Words{"report", "a", "--resolution", "0"},
                     Words{"evaluate"}, Words{"evaluate", "--json", "result.json"},
                     Words{"evaluate", "a.tsv", "b.tsv"}));
 

@@ -85,12 +85,24 @@ TEST(TransformsJson, IsTheDocumentedText) {
   refused.moving = 1;
   refused.T_fixed_moving = {0.5, 0.25, 3.0};
   refused.probability = 0.125;
+  refused.match.reason = Reason::ambiguous;
+  refused.match.acceptance_index = 0.75;
+  refused.match.agreement = 12;
+  refused.match.disagreement = 4;
+  refused.match.overlap = 0.25;
+  refused.match.hypotheses = {{{0.5, 0.25, 3.0}, 10.5, 0.125}};
   result.joins.front().outcome = JoinOutcome::rescued;
   result.joins.insert(result.joins.begin(), refused);
   result.components[0].members[1].probability = 0.875;
   result.components[0].members[1].sd = PoseDeviation{0.125, 0.0625};
   result.left_out_reasons.front() = Reason::ambiguous;
   EXPECT_EQ(transforms_json({"a.yaml", "b.yaml", "c.yaml", "d.yaml"}, result), R"({
+  "maps": [
+    "a.yaml",
+    "b.yaml",
+    "c.yaml",
+    "d.yaml"
+  ],
   "components": [
     {
       "map": "merged.yaml",
@@ -133,7 +145,23 @@ TEST(TransformsJson, IsTheDocumentedText) {
       },
       "verdict": "refused",
       "probability": 0.125,
-      "outcome": "refused"
+      "outcome": "refused",
+      "reason": "ambiguous",
+      "acceptance_index": 0.75,
+      "agreement": 12,
+      "disagreement": 4,
+      "overlap": 0.25,
+      "hypotheses": [
+        {
+          "transform": {
+            "x": 0.5,
+            "y": 0.25,
+            "theta": 3.0
+          },
+          "score": 10.5,
+          "probability": 0.125
+        }
+      ]
     },
     {
       "fixed": "a.yaml",
@@ -145,7 +173,13 @@ TEST(TransformsJson, IsTheDocumentedText) {
       },
       "verdict": "accepted",
       "probability": 0.75,
-      "outcome": "rescued"
+      "outcome": "rescued",
+      "reason": null,
+      "acceptance_index": 0.0,
+      "agreement": 0,
+      "disagreement": 0,
+      "overlap": 0.0,
+      "hypotheses": []
     }
   ],
   "left_out": [
@@ -170,9 +204,9 @@ TEST(TransformsJson, NamesTheMapOfEveryComponent) {
 }
 
 TEST(TransformsJson, OfNothing) {
-  EXPECT_EQ(
-      transforms_json({}, {}),
-      "{\n  \"components\": [],\n  \"joins\": [],\n  \"left_out\": [],\n  \"left_out_reasons\": []\n}\n");
+  EXPECT_EQ(transforms_json({}, {}),
+            "{\n  \"maps\": [],\n  \"components\": [],\n  \"joins\": [],\n  \"left_out\": [],\n  "
+            "\"left_out_reasons\": []\n}\n");
 }
 
 TEST(TransformsJson, EveryMapNeedsAName) {

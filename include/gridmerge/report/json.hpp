@@ -18,8 +18,9 @@ namespace gridmerge {
 /// What `gridmerge match --json` prints: one line, with its end.
 std::string match_json(const std::string& fixed, const std::string& moving, const MatchResult& result);
 
-/// `transforms.json` of a merge, indented. `names[i]` is what to call map i.
-/// Throws std::out_of_range when there are fewer names than maps.
+/// `transforms.json` of a merge, indented: all that there is to say of it but the maps' cells, the order of
+/// the maps included, and no times, so that the same merge gives the same bytes. `names[i]` is what to call
+/// map i. Throws std::out_of_range when there are fewer names than maps.
 std::string transforms_json(const std::vector<std::string>& names, const MergeResult& result);
 
 /// The file of a component's map beside transforms.json, by its place in the result: merged.yaml,

@@ -34,4 +34,10 @@ void write_merge_output(const std::filesystem::path& directory,
                         const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
                         const MergeResult& result);
 
+/// Writes `report.html` alone to `directory`, which is there. Arguments as of write_merge_output(). Throws
+/// FileError, also when one of the inputs would be replaced.
+void write_report(const std::filesystem::path& directory, const std::vector<std::filesystem::path>& inputs,
+                  const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
+                  const MergeResult& result);
+
 }  // namespace gridmerge

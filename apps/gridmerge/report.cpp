@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "gridmerge/grid/parallel.hpp"
+#include "gridmerge/report/merge_output.hpp"
+#include "saved_merge.hpp"
+
+namespace gridmerge::cli {
+
+namespace {
+
+struct ReportCommandOptions {
+  CommonOptions common;
+  SavedMergeOptions merge;
+};
+
+int run_report(const ReportCommandOptions& options) {
+  Console console(options.common);
+  const SavedMerge merge = load_saved_merge(options.merge, console);
+  with_threads(options.common.threads, [&] {
+    write_report(options.merge.directory, merge.files, merge.names, merge.maps, merge.result);
+  });
+  print((std::filesystem::path(options.merge.directory) / "report.html").string() + "\n");
+  return kDone;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("report", "Make the report page of an earlier merge again");
+  const auto options = std::make_shared<ReportCommandOptions>();
+  add_saved_merge_options(*command, options->merge);
+  add_common_options(*command, options->common);
+  command->footer(
+      "Writes DIR/report.html from DIR/transforms.json, the merged maps in DIR and the maps that were\n"
+      "merged; nothing is matched again.\n\n"
+      "Example:\n  gridmerge report merged\n"
+      "  gridmerge report /data/site/merged --root /data/site");
+  command->callback([options, &action] { action = [options] { return run_report(*options); }; });
+}
+
+}  // namespace gridmerge::cli

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saved_merge.hpp"
+
+#include <system_error>
+#include <utility>
+
+#include "gridmerge/report/json.hpp"
+#include "gridmerge/report/merge_record.hpp"
+
+namespace gridmerge::cli {
+
+namespace {
+
+LoadedMap load_map_of(const std::string& name, const SavedMergeOptions& options, Console& console) {
+  const std::filesystem::path path = std::filesystem::path(options.root) / name;
+  std::error_code error;
+  if (!std::filesystem::exists(path, error))
+    throw FileError(path,
+                    "is not there, and the report shows it: name the folder from which the maps were merged "
+                    "with --root FOLDER");
+  return load(path.string(), options.resolution, console);
+}
+
+}  // namespace
+
+void add_saved_merge_options(CLI::App& command, SavedMergeOptions& options) {
+  command.add_option("DIR", options.directory, "Directory that 'gridmerge merge' wrote to")
+      ->type_name("DIR")
+      ->required();
+  command
+      .add_option("--root", options.root,
+                  "Folder from which the maps were merged, if it is not the current one")
+      ->type_name("FOLDER");
+  add_resolution_option(command, options.resolution);
+}
+
+SavedMerge load_saved_merge(const SavedMergeOptions& options, Console& console) {
+  MergeRecord record = read_merge_record(options.directory);
+  SavedMerge merge;
+  for (const std::string& name : record.names) {
+    LoadedMap map = load_map_of(name, options, console);
+    merge.maps.push_back(std::move(map.grid));
+    merge.files.insert(merge.files.end(), map.files.begin(), map.files.end());
+  }
+  for (const std::size_t component : fuse_again(record, merge.maps, options.directory)) {
+    console.warn((std::filesystem::path(options.directory) / component_file(component)).string() +
+                 ": is not what the maps give: it or they have been changed since");
+  }
+  merge.names = std::move(record.names);
+  merge.result = std::move(record.result);
+  return merge;
+}
+
+}  // namespace gridmerge::cli

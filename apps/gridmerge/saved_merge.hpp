@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "console.hpp"
+#include "gridmerge/merge/merge_result.hpp"
+
+namespace gridmerge::cli {
+
+/// Which merge that was written before, and where its maps are.
+struct SavedMergeOptions {
+  std::string directory;
+  std::string root;         // folder that the maps' names start from; "" = the current one
+  double resolution = 0.0;  // of maps that are bare images
+};
+
+/// DIR, --root and --resolution.
+void add_saved_merge_options(CLI::App& command, SavedMergeOptions& options);
+
+/// A merge as it was when its results were written.
+struct SavedMerge {
+  std::vector<std::string> names;
+  std::vector<OccupancyGrid> maps;
+  std::vector<std::filesystem::path> files;  // that the maps were read from
+  MergeResult result;
+};
+
+/// Reads what 'gridmerge merge' wrote, and the maps that it names. Warns of merged maps that differ from what
+/// their maps give now. Throws FileError.
+SavedMerge load_saved_merge(const SavedMergeOptions& options, Console& console);
+
+}  // namespace gridmerge::cli

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "gridmerge/grid/se2.hpp"
+#include "gridmerge/match/prepared_map.hpp"
+
+namespace gridmerge {
+
+/// A pose that somebody proposed, put right, with the figures that MatchResult has of its best hypothesis.
+struct RefinedPose {
+  SE2 T_fixed_moving;        ///< between the map frames
+  double score = 0.0;        ///< log-likelihood ratio "same place" against "unrelated" [nats]
+  double start_score = 0.0;  ///< the same of the pose that was proposed
+  double moved = 0.0;        ///< root mean square displacement of the moving map's walls from there [m]
+  double probability = 0.0;  ///< that the refined pose is the true one
+  double acceptance_index = 0.0;
+  std::int64_t agreement = 0;     ///< cells known in both maps and equal
+  std::int64_t disagreement = 0;  ///< cells known in both maps and different
+  double overlap = 0.0;           ///< share of the smaller map's known cells that are known in both
+};
+
+/// Climbs from `T_start` to the local maximum of the evidence near it: the best one that is reached from
+/// poses within about a metre and seven degrees of it, by the evidence by which match() ranks its hypotheses.
+/// Where none is better than the start, that is the answer.
+///
+/// The probability is what match() would give to the pose were it one of its hypotheses: the same model of
+/// the same features, with the lead that the pose has over the best distinct hypothesis of a full search.
+/// Where another pose explains the maps better, the lead is negative and the probability below a half; where
+/// the pose explains nothing it is 0. That somebody proposed the pose counts for nothing in it.
+///
+/// `T_start` is finite. Neither pose nor figures depend on which map is called fixed, but for rounding, nor
+/// on the number of threads. Runs in the calling TBB arena; about twice the time of match().
+RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_start);
+
+}  // namespace gridmerge

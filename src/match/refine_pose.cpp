@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/match/refine_pose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "hypotheses.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+constexpr double kShiftReach = 1.0;   // [m] along either axis
+constexpr double kTurnReach = 0.125;  // [rad]
+/// Maxima that are ranked. Those of the walls are not always those of walls and area together.
+constexpr std::size_t kMaxima = 6;
+constexpr double kDistinctMaxima = 2.0;  // [cells]
+
+/// The start first, so that it stays where nothing speaks for any pose; then poses around it, as dense as
+/// those from which match() climbs.
+std::vector<PoseCandidate> poses_around(const SE2& start, const ComparedMaps& maps, double spacing) {
+  const PoseMetric metric = make_pose_metric(maps.moving_walls);
+  const int shifts = static_cast<int>(std::ceil(kShiftReach / maps.cell / spacing));
+  const int turns = static_cast<int>(std::ceil(kTurnReach * metric.radius / spacing));
+  std::vector<PoseCandidate> poses{{start, 0}};
+  for (int turn = -turns; turn <= turns; ++turn) {
+    for (int row = -shifts; row <= shifts; ++row) {
+      for (int column = -shifts; column <= shifts; ++column) {
+        const SE2 T =
+            metric.moved(start, column * spacing, row * spacing, turn * kTurnReach / std::max(turns, 1));
+        poses.push_back({T, 0});
+      }
+    }
+  }
+  return poses;
+}
+
+RankedPose rank_at(const SE2& T_cells, const ComparedMaps& maps) {
+  const WallEvidence evidence(maps.fixed_walls, maps.moving_walls, std::numeric_limits<std::size_t>::max());
+  return rank({T_cells, evidence(T_cells)}, maps);
+}
+
+RankedPose best_around(const RankedPose& start, const SE2& T_start_cells, const ComparedMaps& maps) {
+  RefineOptions options;
+  options.coarse_cell = choose_search(maps).coarse_factor;
+  options.distinct = kDistinctMaxima;
+  options.max_poses = kMaxima;
+  RankedPose best = start;
+  for (const ScoredPose& pose : refine(maps.fixed_walls, maps.moving_walls,
+                                       poses_around(T_start_cells, maps, options.coarse_cell), options)) {
+    const RankedPose ranked = rank(pose, maps);
+    if (ranked.hypothesis.score > best.hypothesis.score) best = ranked;
+  }
+  return best;
+}
+
+/// The score of the best hypothesis that is another one; 0 where there is none.
+double best_rival(const RankedPose& pose, const ComparedMaps& maps) {
+  const PoseMetric metric = make_pose_metric(maps.moving_walls);
+  const auto in_cells = [&](const RankedPose& one) {
+    return to_cells(one.hypothesis.T_fixed_moving, maps.fixed_walls, maps.moving_walls);
+  };
+  const SE2 T = in_cells(pose);
+  for (const RankedPose& other : find_hypotheses(maps, kRankedPoses, {})) {  // best first
+    if (metric.displacement(T, in_cells(other)) >= distinct_displacement(maps)) return other.hypothesis.score;
+  }
+  return 0.0;
+}
+
+double displacement(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_a, const SE2& T_b) {
+  const double cell = working_cell(fixed, moving);
+  const WallMap& fixed_walls = fixed.walls(cell);
+  const WallMap& moving_walls = moving.walls(cell);
+  return cell * make_pose_metric(moving_walls)
+                    .displacement(to_cells(T_a, fixed_walls, moving_walls),
+                                  to_cells(T_b, fixed_walls, moving_walls));
+}
+
+}  // namespace
+
+RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_start) {
+  const bool swapped = is_smaller(fixed, moving);
+  const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);
+  const SE2 T_start_maps = swapped ? inverse(T_start) : T_start;
+  const SE2 T_start_cells = to_cells(T_start_maps, maps.fixed_walls, maps.moving_walls);
+  const RankedPose start = rank_at(T_start_cells, maps);
+  const RankedPose best = best_around(start, T_start_cells, maps);
+
+  RefinedPose refined{.T_fixed_moving = T_start};
+  refined.start_score = start.hypothesis.score;
+  refined.score = best.hypothesis.score;
+  SE2 T = T_start_maps;
+  if (refined.score > refined.start_score) {
+    T = best.hypothesis.T_fixed_moving;
+    refined.T_fixed_moving = swapped ? inverse(T) : T;
+    refined.moved = displacement(fixed, moving, T_start, refined.T_fixed_moving);
+  }
+  const AgreementCounts common = count_agreement(maps.fixed, maps.moving, T);
+  refined.acceptance_index = common.acceptance_index();
+  refined.agreement = common.agreement;
+  refined.disagreement = common.disagreement;
+  refined.overlap = measure_overlap(maps.fixed, maps.moving, common);
+  if (refined.score > 0.0) {
+    const double lead = find_lead({refined.score, best_rival(best, maps)});
+    refined.probability = probability_of(measure_features(best, lead, common, maps));
+  }
+  return refined;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/merge/refine_member.hpp"
+
+#include <stdexcept>
+
+#include "gridmerge/merge/fuse.hpp"
+#include "joins.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+constexpr double kMostCells = 67108864.0;  // 2^26
+
+OccupancyGrid fuse_in_bounds(const std::vector<PlacedMap>& maps) {
+  const double resolution = finest_resolution(maps);
+  const Lattice lattice = cover(maps, resolution);
+  if (static_cast<double>(lattice.width) * lattice.height > kMostCells)
+    throw std::invalid_argument("the fixed maps lie too far apart: together they would exceed 2^26 cells");
+  return fuse(maps, resolution).grid;
+}
+
+}  // namespace
+
+RefinedPose refine_member(const std::vector<PlacedMap>& fixed, const PlacedMap& moving) {
+  if (fixed.empty()) throw std::invalid_argument("there is no fixed map");
+  const PreparedMap prepared(*moving.map);
+  if (fixed.size() > 1) return refine_pose(PreparedMap(fuse_in_bounds(fixed)), prepared, moving.T_output_map);
+  const SE2& T_output_fixed = fixed.front().T_output_map;
+  RefinedPose refined =
+      refine_pose(PreparedMap(*fixed.front().map), prepared, inverse(T_output_fixed) * moving.T_output_map);
+  refined.T_fixed_moving = T_output_fixed * refined.T_fixed_moving;
+  return refined;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gridmerge/match/match.hpp"
+#include "gridmerge/merge/merge_result.hpp"
+
+namespace gridmerge {
+
+// What all JSON outputs write in the same way. Numbers that are not finite throw std::invalid_argument.
+
+using Json = nlohmann::ordered_json;
+
+Json number_json(double value);
+Json transform_json(const SE2& T);
+Json hypotheses_json(const std::vector<Hypothesis>& hypotheses);
+
+/// Why a pair is not believed by itself; null of one that is.
+Json reason_json(const MatchResult& match);
+
+/// null where nothing is known.
+Json probability_json(const std::optional<double>& probability);
+Json deviation_json(const std::optional<PoseDeviation>& sd);
+
+/// As text; `indent` below 0 is one line. What is not UTF-8 becomes U+FFFD.
+std::string text_of(const Json& json, int indent);
+
+}  // namespace gridmerge

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/report/merge_record.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <stdexcept>
+#include <unordered_map>
+#include <utility>
+
+#include "gridmerge/io/map_file.hpp"
+#include "gridmerge/report/json.hpp"
+#include "io/file_reader.hpp"
+#include "json_reader.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
+constexpr double kFarthest =
+    1e12;  // [m]: maps' origins are within 1e9, and poses were multiplied a few times
+constexpr double kRounding = 1e-9;  // probabilities are differences, too
+constexpr double kInfinity = std::numeric_limits<double>::max();
+
+double share(const JsonReader& json) {
+  return json.number_in(-kRounding, 1.0 + kRounding);
+}
+
+/// The one of `values` that name_of() calls so.
+template <typename Enum, std::size_t N>
+Enum one_of(const JsonReader& json, const std::array<Enum, N>& values) {
+  const std::string name = json.text();
+  const auto found =
+      std::find_if(values.begin(), values.end(), [&](Enum value) { return name == name_of(value); });
+  if (found == values.end()) json.fail("is unknown: '" + name + "'");
+  return *found;
+}
+
+Reason read_reason(const JsonReader& json) {
+  return one_of(json,
+                std::array{Reason::none, Reason::nothing_to_compare, Reason::ambiguous, Reason::contradiction,
+                           Reason::too_little_overlap, Reason::several, Reason::contradicts_others});
+}
+
+class RecordReader {
+ public:
+  MergeRecord read(const JsonReader& json) {
+    read_names(json.at("maps"));
+    read_components(json.at("components"));
+    read_joins(json.at("joins"));
+    read_left_out(json.at("left_out"), json.at("left_out_reasons"));
+    for (std::size_t i = 0; i < is_placed_.size(); ++i) {
+      if (!is_placed_[i]) throw JsonError("'" + record_.names[i] + "' is in no component and not left out");
+    }
+    return std::move(record_);
+  }
+
+ private:
+  void read_names(const JsonReader& json) {
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      const std::string name = json.at(i).text();
+      if (name.empty() || name.find('\0') != std::string::npos) json.at(i).fail("is no name of a file");
+      if (!index_.emplace(name, i).second)
+        json.at(i).fail("is '" + name + "' once more: what is said of the two cannot be told apart");
+      record_.names.push_back(name);
+    }
+    is_placed_.assign(record_.names.size(), false);
+  }
+
+  std::size_t map_at(const JsonReader& json) const {
+    const auto found = index_.find(json.text());
+    if (found == index_.end()) json.fail("is none of the maps: '" + json.text() + "'");
+    return found->second;
+  }
+
+  /// Of a map that nothing was said of before.
+  std::size_t place(const JsonReader& json) {
+    const std::size_t map = map_at(json);
+    if (is_placed_[map]) json.fail("is in two places: '" + record_.names[map] + "'");
+    is_placed_[map] = true;
+    return map;
+  }
+
+  void read_components(const JsonReader& json) {
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      const JsonReader component = json.at(i);
+      if (component.at("map").text() != component_file(i))
+        component.at("map").fail("is not '" + component_file(i) + "'");
+      record_.result.components.push_back(read_component(component));
+    }
+  }
+
+  Component read_component(const JsonReader& json) {
+    Component component;
+    const JsonReader members = json.at("members");
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      component.members.push_back(read_member(members.at(i)));
+      if (i > 0 && component.members[i - 1].map > component.members[i].map)
+        members.at(i).fail("is not in the order of the maps");
+    }
+    if (component.members.size() < 2) members.fail("holds fewer than two maps");
+    component.in_world_frame = json.at("frame").is_null();
+    if (!component.in_world_frame && map_at(json.at("frame")) != component.members.front().map)
+      json.at("frame").fail("is not the first member");
+    return component;
+  }
+
+  Member read_member(const JsonReader& json) {
+    Member member;
+    member.map = place(json.at("source"));
+    member.T_component_map = json.at("transform").transform(kFarthest);
+    if (!json.at("probability").is_null()) member.probability = share(json.at("probability"));
+    const JsonReader sd = json.at("sd");
+    if (!sd.is_null())
+      member.sd = {sd.at("position").number_in(0.0, kInfinity), sd.at("theta").number_in(0.0, kInfinity)};
+    return member;
+  }
+
+  void read_joins(const JsonReader& json) {
+    for (std::size_t i = 0; i < json.size(); ++i) record_.result.joins.push_back(read_join(json.at(i)));
+  }
+
+  Join read_join(const JsonReader& json) const {
+    Join join;
+    join.fixed = map_at(json.at("fixed"));
+    join.moving = map_at(json.at("moving"));
+    if (join.fixed == join.moving) json.fail("is of a map and itself");
+    join.outcome = one_of(json.at("outcome"),
+                          std::array{JoinOutcome::refused, JoinOutcome::accepted, JoinOutcome::rescued,
+                                     JoinOutcome::rejected, JoinOutcome::known});
+    if (json.at("verdict").text() != name_of(join.used() ? Verdict::accepted : Verdict::refused))
+      json.at("verdict").fail("does not go with the outcome");
+    join.T_fixed_moving = json.at("transform").transform(kFarthest);
+    join.probability = share(json.at("probability"));
+    join.match = read_match(json);
+    return join;
+  }
+
+  static MatchResult read_match(const JsonReader& json) {
+    MatchResult match;
+    const JsonReader reason = json.at("reason");
+    match.verdict = reason.is_null() ? Verdict::accepted : Verdict::refused;
+    match.reason = reason.is_null() ? Reason::none : read_reason(reason);
+    match.acceptance_index = share(json.at("acceptance_index"));
+    match.agreement = json.at("agreement").count();
+    match.disagreement = json.at("disagreement").count();
+    match.overlap = share(json.at("overlap"));
+    const JsonReader hypotheses = json.at("hypotheses");
+    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+      const JsonReader hypothesis = hypotheses.at(i);
+      match.hypotheses.push_back({hypothesis.at("transform").transform(kFarthest),
+                                  hypothesis.at("score").number_in(-kInfinity, kInfinity),
+                                  share(hypothesis.at("probability"))});
+    }
+    if (!match.hypotheses.empty()) {
+      match.T_fixed_moving = match.hypotheses.front().T_fixed_moving;
+      match.probability = match.hypotheses.front().probability;
+    }
+    return match;
+  }
+
+  void read_left_out(const JsonReader& maps, const JsonReader& reasons) {
+    if (maps.size() != reasons.size()) reasons.fail("does not go with left_out");
+    std::vector<std::size_t>& left_out = record_.result.left_out;
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      left_out.push_back(place(maps.at(i)));
+      if (i > 0 && left_out[i - 1] > left_out[i]) maps.at(i).fail("is not in the order of the maps");
+      record_.result.left_out_reasons.push_back(read_reason(reasons.at(i)));
+    }
+  }
+
+  MergeRecord record_;
+  std::unordered_map<std::string, std::size_t> index_;  // of a map by its name
+  std::vector<bool> is_placed_;
+};
+
+}  // namespace
+
+MergeRecord parse_transforms(const std::filesystem::path& file, std::string_view text) {
+  try {
+    const nlohmann::json json = parse_json(text);
+    return RecordReader().read(JsonReader(json));
+  } catch (const JsonError& error) {
+    throw FileError(file, error.what());
+  }
+}
+
+MergeRecord read_merge_record(const std::filesystem::path& directory) {
+  const std::filesystem::path file = directory / "transforms.json";
+  std::error_code error;
+  if (!std::filesystem::exists(file, error))
+    throw FileError(directory, "holds no transforms.json: it is not what 'gridmerge merge' has written to");
+  FileReader reader(file);
+  return parse_transforms(file, reader.read_all(kMaxBytes));
+}
+
+std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<OccupancyGrid>& maps,
+                                    const std::filesystem::path& directory) {
+  if (maps.size() != record.names.size()) throw std::invalid_argument("there are not as many maps as names");
+  std::vector<std::size_t> changed;
+  for (std::size_t i = 0; i < record.result.components.size(); ++i) {
+    Component& component = record.result.components[i];
+    const std::filesystem::path file = directory / component_file(i);
+    const OccupancyGrid merged = load_map(file).grid;
+    std::vector<PlacedMap> placed;
+    for (const Member& member : component.members)
+      placed.push_back({&maps[member.map], member.T_component_map});
+    try {
+      component.fused = fuse(placed, merged.resolution);
+    } catch (const std::invalid_argument& error) {
+      throw FileError(file, std::string("cannot be made again: ") + error.what());
+    }
+    const OccupancyGrid& fused = component.fused.grid;
+    if (fused.width != merged.width || fused.height != merged.height || fused.cells != merged.cells)
+      changed.push_back(i);
+  }
+  return changed;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/report/page.hpp"
+
+#include <string_view>
+
+#include "page_data.hpp"
+#include "page_template.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+/// JSON as it may stand in an HTML element: nothing in it is a tag, a comment or a character reference. In
+/// JSON these three occur in strings alone.
+std::string as_element_text(std::string_view json) {
+  std::string text;
+  text.reserve(json.size());
+  for (const char c : json) {
+    switch (c) {
+      case '<':
+        text += "\\u003c";
+        break;
+      case '>':
+        text += "\\u003e";
+        break;
+      case '&':
+        text += "\\u0026";
+        break;
+      default:
+        text += c;
+    }
+  }
+  return text;
+}
+
+std::string assemble(std::string_view connect_source, const Json& data) {
+  std::string page(kPageUpToConnect);
+  page += connect_source;
+  page += kPageUpToData;
+  page += R"(<script type="application/json" id="report-data">)";
+  page += as_element_text(text_of(data, -1));
+  page += "</script>";
+  page += kPageAfterData;
+  return page;
+}
+
+}  // namespace
+
+std::string report_page(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
+                        const MergeResult& result) {
+  return assemble("'none'", page_data(names, maps, result));
+}
+
+std::string live_report_page(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
+                             const MergeResult& result) {
+  Json data = page_data(names, maps, result);
+  data["live"] = true;
+  return assemble("'self'", data);
+}
+
+}  // namespace gridmerge

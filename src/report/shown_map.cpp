@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/report/shown_map.hpp"
+
+#include <zlib.h>
+
+#include <new>
+#include <utility>
+#include <vector>
+
+#include "base64.hpp"
+#include "gridmerge/grid/resample.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+/// Higher levels take several times as long to make maps a few percent smaller.
+constexpr int kLevel = 6;
+
+std::string deflated(const std::vector<Cell>& cells) {
+  static_assert(sizeof(Cell) == 1 && static_cast<int>(Cell::free) == 1 &&
+                static_cast<int>(Cell::occupied) == 2);
+  uLongf size = compressBound(cells.size());
+  std::string stream(size, '\0');
+  if (compress2(reinterpret_cast<Bytef*>(stream.data()), &size, reinterpret_cast<const Bytef*>(cells.data()),
+                cells.size(), kLevel) != Z_OK)
+    throw std::bad_alloc();  // the buffer is large enough, so nothing else can have failed
+  stream.resize(size);
+  return stream;
+}
+
+}  // namespace
+
+OccupancyGrid at_most(OccupancyGrid grid, std::size_t max_cells) {
+  while (grid.cells.size() > max_cells) grid = downsample(grid, 2);
+  return grid;
+}
+
+ShownMap show_map(const OccupancyGrid& grid) {
+  if (count_cells(grid).known() == 0) return {0, 0, grid.resolution, grid.origin, ""};
+  const OccupancyGrid known = at_most(crop_to_known(grid), kMostShownCells);
+  return {known.width, known.height, known.resolution, known.origin, to_base64(deflated(known.cells))};
+}
+
+}  // namespace gridmerge

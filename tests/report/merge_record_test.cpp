@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/report/merge_record.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "gridmerge/io/map_file.hpp"
+#include "gridmerge/report/json.hpp"
+#include "gridmerge/report/page.hpp"
+#include "io/support.hpp"
+#include "merge/drawing.hpp"
+#include "report/results.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace gridmerge {
+namespace {
+
+using Json = nlohmann::json;
+using test::contains;
+using test::map_from;
+using test::message_of;
+
+const std::vector<OccupancyGrid> kMaps{map_from({"#..", ".##"}, 0.05),        map_from({"#", "."}, 0.1),
+                                       map_from({".#.", "...", " .#"}, 0.05), map_from({"..", "#."}, 0.05),
+                                       map_from({"..", "#."}, 0.05),          map_from({".#", "#."}, 0.05)};
+const std::vector<std::string> kNames{"a.yaml", "b \"<&>\n.yaml", "c.yaml", "d.yaml", "e.yaml", "f.yaml"};
+
+/// Two components and two maps that were left out, with all that a record can hold.
+MergeResult any_result() {
+  MergeResult result =
+      test::merged(kMaps, {{{0, {}, 1.0 / 3.0}, {2, {1.25, -3.0, 0.5}, 0.875, PoseDeviation{0.125, 0.25}}},
+                           {{3, {7.0, 8.0, 3.0}}, {5, {7.0 / 3.0, 8.0, -3.0}}}});
+  result.components[1].in_world_frame = true;
+  Join refused;
+  refused.moving = 1;
+  refused.T_fixed_moving = {1e-7, 0.1, 3.0};
+  refused.probability = 0.0625;
+  refused.match.reason = Reason::too_little_overlap;
+  refused.match.acceptance_index = 0.8125;
+  refused.match.agreement = 13;
+  refused.match.disagreement = 3;
+  refused.match.overlap = 0.1;
+  refused.match.hypotheses = {{{1e-7, 0.1, 3.0}, 10.0, 0.0625}, {{7.0, 8.0, -1.0}, -9.5, 0.0}};
+  result.joins.push_back(refused);
+  for (const JoinOutcome outcome : {JoinOutcome::known, JoinOutcome::rescued, JoinOutcome::rejected}) {
+    refused.moving += 1;
+    refused.outcome = outcome;
+    result.joins.push_back(refused);
+  }
+  result.left_out_reasons.back() = Reason::contradicts_others;
+  return result;
+}
+
+MergeRecord parse(const std::string& text) {
+  return parse_transforms("transforms.json", text);
+}
+
+Json any_json() {
+  return Json::parse(transforms_json(kNames, any_result()));
+}
+
+TEST(MergeRecord, HoldsWhatWasWritten) {
+  const MergeResult written = any_result();
+  const std::string text = transforms_json(kNames, written);
+  const MergeRecord read = parse(text);
+  EXPECT_EQ(read.names, kNames);
+  EXPECT_EQ(transforms_json(read.names, read.result), text);
+  EXPECT_EQ(read.result.components[0].members[1].T_component_map,
+            written.components[0].members[1].T_component_map);
+  EXPECT_EQ(read.result.joins[2].match.hypotheses[0].T_fixed_moving, (SE2{1e-7, 0.1, 3.0}));
+  EXPECT_TRUE(read.result.components[0].fused.grid.cells.empty());
+}
+
+TEST(MergeRecord, OfNothing) {
+  EXPECT_TRUE(parse(transforms_json({}, {})).names.empty());
+}
+
+TEST(MergeRecord, PassesOverKeysThatItDoesNotKnow) {
+  Json json = any_json();
+  json["joins"][0]["weather"] = {{"fine", true}};
+  json["year"] = 2026;
+  EXPECT_EQ(parse(json.dump()).result.joins.size(), any_result().joins.size());
+}
+
+TEST(MergeRecord, EveryKeyIsNeeded) {
+  const Json whole = any_json().flatten();
+  for (const auto& [pointer, value] : whole.items()) {
+    const Json::json_pointer place(pointer);
+    Json json = any_json();
+    Json& parent = json.at(place.parent_pointer());
+    if (!parent.is_object()) continue;
+    parent.erase(place.back());
+    EXPECT_THROW(parse(json.dump()), FileError) << pointer;
+  }
+}
+
+TEST(MergeRecord, EveryValueHasItsType) {
+  const Json whole = any_json().flatten();
+  for (const auto& [pointer, value] : whole.items()) {
+    for (const Json& wrong : {Json(true), Json::array({1}), Json::object(), Json("wrong"), Json(-1e300)}) {
+      Json json = any_json();
+      json[Json::json_pointer(pointer)] = wrong;
+      const bool may_be_any_number = pointer.ends_with("/score") && wrong.is_number();
+      if (may_be_any_number) continue;
+      EXPECT_THROW(parse(json.dump()), FileError) << pointer << " " << wrong;
+    }
+  }
+}
+
+TEST(MergeRecord, SaysWhatIsWrongAndWhere) {
+  const auto complaint = [](const std::string& pointer, const Json& value) {
+    Json json = any_json();
+    json[Json::json_pointer(pointer)] = value;
+    return message_of<FileError>([&] { parse(json.dump()); });
+  };
+  EXPECT_EQ(complaint("/joins/2/transform/x", "far"), "transforms.json: joins[2].transform.x is no number");
+  EXPECT_TRUE(
+      contains(complaint("/joins/0/fixed", "z.yaml"), "joins[0].fixed is none of the maps: 'z.yaml'"));
+  EXPECT_TRUE(contains(complaint("/joins/0/fixed", "c.yaml"), "joins[0] is of a map and itself"));
+  EXPECT_TRUE(contains(complaint("/joins/0/outcome", "maybe"), "is unknown: 'maybe'"));
+  EXPECT_TRUE(contains(complaint("/joins/0/verdict", "refused"), "does not go with the outcome"));
+  EXPECT_TRUE(contains(complaint("/joins/0/agreement", 1.5), "whole number"));
+  EXPECT_TRUE(contains(complaint("/joins/0/probability", 1.5), "outside"));
+  EXPECT_TRUE(contains(complaint("/joins/0/transform/theta", 3.2), "outside"));
+  EXPECT_TRUE(contains(complaint("/left_out/0", "a.yaml"), "in two places: 'a.yaml'"));
+  EXPECT_TRUE(contains(complaint("/left_out", {"e.yaml", "b \"<&>\n.yaml"}), "order of the maps"));
+  EXPECT_TRUE(contains(complaint("/left_out_reasons", {"ambiguous"}), "does not go with left_out"));
+  EXPECT_TRUE(contains(complaint("/maps/1", "a.yaml"), "once more"));
+  EXPECT_TRUE(contains(complaint("/maps/1", ""), "no name"));
+  EXPECT_TRUE(contains(complaint("/maps/1", std::string("a\0b", 3)), "no name"));
+  EXPECT_TRUE(contains(complaint("/maps/6", "g.yaml"), "'g.yaml' is in no component"));
+  EXPECT_TRUE(contains(complaint("/components/0/map", "../merged.yaml"), "is not 'merged.yaml'"));
+  EXPECT_TRUE(contains(complaint("/components/0/frame", "c.yaml"), "not the first member"));
+  EXPECT_TRUE(contains(complaint("/components/0/members", Json::array()), "fewer than two"));
+}
+
+TEST(MergeRecord, WhatIsNoJson) {
+  for (const char* text : {"", "{", "[", "nul", "{\"maps\": [\"\xff\"]}", "[1, 2]", "\"text\"", "1e999"})
+    EXPECT_THROW(parse(text), FileError) << text;
+  EXPECT_THROW(parse(std::string(100000, '[')), FileError);
+  EXPECT_EQ(message_of<FileError>([] { parse("[]"); }), "transforms.json: the text is no object");
+}
+
+TEST(MergeRecord, IsReadFromItsFolder) {
+  const test::TemporaryDirectory directory;
+  EXPECT_TRUE(contains(message_of<FileError>([&] { read_merge_record(directory.path()); }),
+                       directory.path().string() + ": holds no transforms.json"));
+  directory.write("transforms.json", transforms_json(kNames, any_result()));
+  EXPECT_EQ(read_merge_record(directory.path()).names, kNames);
+}
+
+TEST(FuseAgain, GivesTheMergedMaps) {
+  const test::TemporaryDirectory directory;
+  const MergeResult result = any_result();
+  for (std::size_t i = 0; i < 2; ++i)
+    save_map(result.components[i].fused.grid, directory.file(component_file(i)));
+  MergeRecord record = parse(transforms_json(kNames, result));
+  EXPECT_TRUE(fuse_again(record, kMaps, directory.path()).empty());
+  EXPECT_EQ(report_page(record.names, kMaps, record.result), report_page(kNames, kMaps, result));
+}
+
+TEST(FuseAgain, TellsWhichHaveBeenChanged) {
+  const test::TemporaryDirectory directory;
+  const MergeResult result = any_result();
+  for (std::size_t i = 0; i < 2; ++i)
+    save_map(result.components[i].fused.grid, directory.file(component_file(i)));
+  std::vector<OccupancyGrid> maps = kMaps;
+  maps[5].cells.assign(maps[5].cells.size(), Cell::occupied);
+  MergeRecord record = parse(transforms_json(kNames, result));
+  EXPECT_EQ(fuse_again(record, maps, directory.path()), std::vector<std::size_t>{1});
+}
+
+TEST(FuseAgain, NeedsTheMergedMaps) {
+  const test::TemporaryDirectory directory;
+  MergeRecord record = parse(transforms_json(kNames, any_result()));
+  EXPECT_TRUE(contains(message_of<FileError>([&] { fuse_again(record, kMaps, directory.path()); }),
+                       directory.file("merged.yaml")));
+}
+
+}  // namespace
+}  // namespace gridmerge

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/report/page.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "gridmerge/grid/resample.hpp"
+#include "gridmerge/report/preview.hpp"
+#include "io/support.hpp"
+#include "merge/drawing.hpp"
+#include "report/cells.hpp"
+#include "report/results.hpp"
+
+namespace gridmerge {
+namespace {
+
+using Json = nlohmann::json;
+using test::contains;
+using test::map_from;
+
+const std::vector<OccupancyGrid> kMaps{map_from({"#..", ".##"}, 0.05), map_from({"#", "."}, 0.1),
+                                       map_from({".#.", "...", " .#"}, 0.05), make_grid(3, 2, 0.5)};
+const std::vector<std::string> kNames{"a.yaml", "b.yaml", "c.yaml", "d.yaml"};
+
+MergeResult two_of_four() {
+  MergeResult result =
+      test::merged(kMaps, {{{0, {}}, {2, {1.25, -3.0, 0.5}, 0.875, PoseDeviation{0.125, 0.25}}}});
+  Join refused;
+  refused.moving = 1;
+  refused.probability = 0.0625;
+  refused.T_fixed_moving = {0.5, 0.25, 3.0};
+  refused.match.reason = Reason::ambiguous;
+  refused.match.acceptance_index = 0.8125;
+  refused.match.agreement = 13;
+  refused.match.disagreement = 3;
+  refused.match.overlap = 0.375;
+  refused.match.hypotheses = {{{0.5, 0.25, 3.0}, 10.0, 0.0625}, {{7.0, 8.0, -1.0}, 9.5, 0.03125}};
+  result.joins.push_back(refused);
+  result.left_out_reasons.front() = Reason::ambiguous;
+  return result;
+}
+
+struct Parts {
+  std::string data;  // the text of the data block
+  std::string rest;  // the page without it
+};
+
+Parts take_apart(const std::string& page) {
+  const std::string start = R"(<script type="application/json" id="report-data">)";
+  const std::size_t begin = page.find(start) + start.size();
+  const std::size_t end = page.find("</script>", begin);
+  return {page.substr(begin, end - begin), page.substr(0, begin) + page.substr(end)};
+}
+
+Json data_of(const std::string& page) {
+  return Json::parse(take_apart(page).data);
+}
+
+Json transform(double x, double y, double theta) {
+  return {{"x", x}, {"y", y}, {"theta", theta}};
+}
+
+TEST(ReportPage, HoldsTheMaps) {
+  const Json data = data_of(report_page(kNames, kMaps, two_of_four()));
+  EXPECT_EQ(data.at("version"), GRIDMERGE_VERSION);
+  EXPECT_EQ(data.at("live"), false);
+  ASSERT_EQ(data.at("maps").size(), 4u);
+  const Json& map = data.at("maps").at(2);
+  EXPECT_EQ(map.at("name"), "c.yaml");
+  EXPECT_EQ(map.at("width"), 3);
+  EXPECT_EQ(map.at("height"), 3);
+  EXPECT_EQ(map.at("resolution"), 0.05);
+  EXPECT_EQ(map.at("origin"), transform(0, 0, 0));
+  EXPECT_EQ(test::cells_of(map), kMaps[2].cells);
+  const Colour colour = map_colour(2);
+  EXPECT_EQ(std::stoi(map.at("color").get<std::string>().substr(1), nullptr, 16),
+            colour.red << 16 | colour.green << 8 | colour.blue);
+}
+
+TEST(ReportPage, AMapOfWhichNothingIsKnownHasNoCells) {
+  const Json data = data_of(report_page(kNames, kMaps, two_of_four()));
+  const Json& map = data.at("maps").at(3);
+  EXPECT_EQ(map.at("width"), 0);
+  EXPECT_EQ(map.at("height"), 0);
+  EXPECT_EQ(map.at("cells"), "");
+}
+
+TEST(ReportPage, HoldsTheComponents) {
+  const MergeResult result = two_of_four();
+  const Json data = data_of(report_page(kNames, kMaps, result));
+  ASSERT_EQ(data.at("components").size(), 1u);
+  const Json& component = data.at("components").at(0);
+  EXPECT_EQ(component.at("file"), "merged.yaml");
+  EXPECT_EQ(component.at("frame"), 0);
+  EXPECT_EQ(component.at("agreeing"), result.components[0].fused.agreeing);
+  EXPECT_EQ(component.at("conflicting"), result.components[0].fused.conflicting);
+  const OccupancyGrid fused = crop_to_known(result.components[0].fused.grid);
+  EXPECT_EQ(test::cells_of(component), fused.cells);
+  EXPECT_EQ(component.at("origin"), transform(fused.origin.x, fused.origin.y, 0.0));
+  EXPECT_EQ(
+      component.at("members"),
+      Json::array({{{"map", 0}, {"transform", transform(0, 0, 0)}, {"probability", nullptr}, {"sd", nullptr}},
+                   {{"map", 2},
+                    {"transform", transform(1.25, -3.0, 0.5)},
+                    {"probability", 0.875},
+                    {"sd", {{"position", 0.125}, {"theta", 0.25}}}}}));
+}
+
+TEST(ReportPage, AComponentInTheWorldsFrameHasNoMapsFrame) {
+  MergeResult result = two_of_four();
+  result.components[0].in_world_frame = true;
+  EXPECT_TRUE(data_of(report_page(kNames, kMaps, result)).at("components").at(0).at("frame").is_null());
+}
+
+TEST(ReportPage, HoldsTheJoins) {
+  const Json joins = data_of(report_page(kNames, kMaps, two_of_four())).at("joins");
+  ASSERT_EQ(joins.size(), 2u);
+  EXPECT_EQ(joins.at(0).at("outcome"), "accepted");
+  EXPECT_TRUE(joins.at(0).at("reason").is_null());
+  EXPECT_EQ(joins.at(1),
+            Json({{"fixed", 0},
+                  {"moving", 1},
+                  {"outcome", "refused"},
+                  {"reason", "ambiguous"},
+                  {"transform", transform(0.5, 0.25, 3.0)},
+                  {"probability", 0.0625},
+                  {"acceptance_index", 0.8125},
+                  {"agreement", 13},
+                  {"disagreement", 3},
+                  {"overlap", 0.375},
+                  {"hypotheses",
+                   {{{"transform", transform(0.5, 0.25, 3.0)}, {"score", 10.0}, {"probability", 0.0625}},
+                    {{"transform", transform(7.0, 8.0, -1.0)}, {"score", 9.5}, {"probability", 0.03125}}}}}));
+}
+
+TEST(ReportPage, SaysWhyMapsWereLeftOut) {
+  EXPECT_EQ(
+      data_of(report_page(kNames, kMaps, two_of_four())).at("left_out"),
+      Json::array({{{"map", 1}, {"reason", "ambiguous"}, {"explanation", "it fits in more than one way"}},
+                   {{"map", 3},
+                    {"reason", "nothing_to_compare"},
+                    {"explanation", "there is too little in it to compare"}}}));
+}
+
+TEST(ReportPage, NamesAreDataWhateverTheyHold) {
+  const std::string innocent = take_apart(report_page(kNames, kMaps, two_of_four())).rest;
+  std::vector<std::string> hostile = test::kHostileNames;
+  hostile.insert(hostile.end(), {"</script><script>alert(1)</script>", "<!--<script>", "&lt;/script&gt;",
+                                 "]]>", "<!--DATA-->", "<CONNECT>", "\xe2\x80\xa8"});
+  for (const std::string& name : hostile) {
+    const Parts page = take_apart(report_page({name, name, name, name}, kMaps, two_of_four()));
+    EXPECT_EQ(page.rest, innocent);
+    EXPECT_EQ(page.data.find_first_of("<>&"), std::string::npos);
+    const std::string shown = Json::parse(page.data).at("maps").at(0).at("name");
+    if (name.find('\xff') == std::string::npos) {
+      EXPECT_EQ(shown, name);
+    }
+  }
+}
+
+TEST(ReportPage, WhatIsNoUtf8IsMarked) {
+  const Json data = data_of(report_page({"\xff", "b", "c", "d"}, kMaps, two_of_four()));
+  EXPECT_EQ(data.at("maps").at(0).at("name"), "\xef\xbf\xbd");
+}
+
+TEST(ReportPage, AFileFetchesNothing) {
+  const std::string page = report_page(kNames, kMaps, two_of_four());
+  EXPECT_TRUE(contains(page, "default-src 'none'; script-src 'sha256-"));
+  EXPECT_TRUE(contains(page, "connect-src 'none'; base-uri 'none'; form-action 'none'\">"));
+  EXPECT_FALSE(contains(page, "unsafe"));
+  EXPECT_TRUE(contains(page, "<noscript>"));
+}
+
+TEST(ReportPage, ALiveOneAsksItsServerAlone) {
+  const std::string page = live_report_page(kNames, kMaps, two_of_four());
+  EXPECT_TRUE(contains(page, "connect-src 'self'; "));
+  Json data = data_of(page);
+  EXPECT_EQ(data.at("live"), true);
+  data["live"] = false;
+  EXPECT_EQ(data, data_of(report_page(kNames, kMaps, two_of_four())));
+}
+
+TEST(ReportPage, OfNothing) {
+  const Json data = data_of(report_page({}, {}, {}));
+  for (const char* list : {"maps", "components", "joins", "left_out"})
+    EXPECT_EQ(data.at(list), Json::array());
+}
+
+TEST(ReportPage, EveryMapNeedsAName) {
+  EXPECT_THROW(report_page({"a"}, kMaps, two_of_four()), std::out_of_range);
+}
+
+}  // namespace
+}  // namespace gridmerge

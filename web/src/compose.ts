@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+import { type Rgb, disagreement, ink, mix, tint, white } from "./color";
+import { Cell, type Grid } from "./grid";
+import { type SE2, apply, compose, identity, inverse } from "./se2";
+import { type Box, boxAround } from "./viewport";
+
+/** A map that lies in a scene. */
+export interface Layer {
+  grid: Grid;
+  T_scene_map: SE2;
+  color: Rgb;
+  /** 0: not to be seen, 1: in full. */
+  opacity: number;
+}
+
+/** Everything that is drawn from cells. */
+export interface Picture {
+  /** The fused map, in the scene's frame, below the others. */
+  merged: { grid: Grid; opacity: number } | null;
+  layers: Layer[];
+  /** How strongly what the layers agree and disagree on is marked, 0 to 1. */
+  agreement: number;
+}
+
+/** The part of the scene that the picture covers. */
+export function extentOf(picture: Picture): Box {
+  const corners = picture.layers.flatMap((layer) => layer.grid.corners().map((p) => apply(layer.T_scene_map, p)));
+  return boxAround(picture.merged ? corners.concat(picture.merged.grid.corners()) : corners);
+}
+
+/** A square of `pixels` by `pixels`, each `side` metres, whose lower left corner is at (left, bottom) of the scene. */
+export interface Square {
+  left: number;
+  bottom: number;
+  side: number;
+  pixels: number;
+}
+
+/** For every pixel: what the layers that were added so far say of it. */
+class Votes {
+  readonly walls: Uint8Array;
+  readonly frees: Uint8Array;
+  readonly wallOpacity: Float32Array;
+  readonly freeOpacity: Float32Array;
+  /** Sums of colour, weighted with opacity: red, green, blue, weight. */
+  readonly wallColor: Float32Array;
+  readonly freeColor: Float32Array;
+
+  constructor(count: number) {
+    this.walls = new Uint8Array(count);
+    this.frees = new Uint8Array(count);
+    this.wallOpacity = new Float32Array(count);
+    this.freeOpacity = new Float32Array(count);
+    this.wallColor = new Float32Array(4 * count);
+    this.freeColor = new Float32Array(4 * count);
+  }
+
+  clear(): void {
+    this.walls.fill(0);
+    this.frees.fill(0);
+    this.wallOpacity.fill(0);
+    this.freeOpacity.fill(0);
+    this.wallColor.fill(0);
+    this.freeColor.fill(0);
+  }
+}
+
+let scratch = new Votes(0);
+
+function emptyVotes(count: number): Votes {
+  if (scratch.walls.length === count) scratch.clear();
+  else scratch = new Votes(count);
+  return scratch;
+}
+
+/** Calls `visit(pixel, cell)` for every pixel of the square of which the map knows something. */
+function sample(grid: Grid, T_scene_map: SE2, square: Square, visit: (pixel: number, cell: number) => void): void {
+  const { pixels, side } = square;
+  const level = grid.levelFor(side);
+  const { width, height, cells, resolution } = level;
+  const T_grid_scene = inverse(compose(T_scene_map, grid.origin));
+  // Column and row of the map change by these from pixel to pixel.
+  const across = (Math.cos(T_grid_scene.theta) * side) / resolution;
+  const along = (Math.sin(T_grid_scene.theta) * side) / resolution;
+  const top = square.bottom + (pixels - 0.5) * side;
+  const left = square.left + 0.5 * side;
+  const cos = Math.cos(T_grid_scene.theta);
+  const sin = Math.sin(T_grid_scene.theta);
+  const startColumn = (cos * left - sin * top + T_grid_scene.x) / resolution;
+  const startRow = (sin * left + cos * top + T_grid_scene.y) / resolution;
+  for (let j = 0; j < pixels; j++) {
+    let column = startColumn + j * along;
+    let row = startRow - j * across;
+    let pixel = j * pixels;
+    for (let i = 0; i < pixels; i++, pixel++, column += across, row += along) {
+      if (column < 0 || row < 0 || column >= width || row >= height) continue;
+      const cell = cells[(row | 0) * width + (column | 0)];
+      if (cell !== Cell.unknown) visit(pixel, cell);
+    }
+  }
+}
+
+function add(votes: Votes, layer: Layer, square: Square): void {
+  const [red, green, blue] = layer.color;
+  const light = mix(white, layer.color, tint);
+  const weight = layer.opacity;
+  sample(layer.grid, layer.T_scene_map, square, (pixel, cell) => {
+    const wall = cell === Cell.occupied;
+    const opacity = wall ? votes.wallOpacity : votes.freeOpacity;
+    const color = wall ? votes.wallColor : votes.freeColor;
+    (wall ? votes.walls : votes.frees)[pixel]++;
+    if (opacity[pixel] < weight) opacity[pixel] = weight;
+    color[4 * pixel] += weight * (wall ? red : light[0]);
+    color[4 * pixel + 1] += weight * (wall ? green : light[1]);
+    color[4 * pixel + 2] += weight * (wall ? blue : light[2]);
+    color[4 * pixel + 3] += weight;
+  });
+}
+
+/** Lays a colour over what a pixel of `out` shows (premultiplied by nothing: plain RGBA). */
+function over(out: Uint8ClampedArray, at: number, red: number, green: number, blue: number, opacity: number): void {
+  const below = (out[at + 3] / 255) * (1 - opacity);
+  const alpha = opacity + below;
+  if (alpha <= 0) return;
+  out[at] = (red * opacity + out[at] * below) / alpha;
+  out[at + 1] = (green * opacity + out[at + 1] * below) / alpha;
+  out[at + 2] = (blue * opacity + out[at + 2] * below) / alpha;
+  out[at + 3] = 255 * alpha;
+}
+
+function layOver(out: Uint8ClampedArray, sums: Float32Array, opacities: Float32Array, pixel: number): void {
+  const weight = sums[4 * pixel + 3];
+  if (weight <= 0) return;
+  over(out, 4 * pixel, sums[4 * pixel] / weight, sums[4 * pixel + 1] / weight, sums[4 * pixel + 2] / weight,
+    opacities[pixel]);
+}
+
+/** What layers agree on is black and white, what they contradict each other in has a colour of its own. */
+function mark(out: Uint8ClampedArray, walls: number, frees: number, pixel: number, opacity: number): void {
+  if (walls + frees < 2) return;
+  const color = walls === 0 ? white : frees === 0 ? ink : disagreement;
+  over(out, 4 * pixel, color[0], color[1], color[2], opacity);
+}
+
+/**
+ * Draws a square of the picture as RGBA, top row first; where nothing is known it is transparent. Does not depend on
+ * the order of the layers. O(pixels^2 * layers).
+ */
+export function paint(picture: Picture, square: Square): Uint8ClampedArray<ArrayBuffer> {
+  const count = square.pixels * square.pixels;
+  const out = new Uint8ClampedArray(4 * count);
+  if (picture.merged && picture.merged.opacity > 0) {
+    const { grid, opacity } = picture.merged;
+    sample(grid, identity, square, (pixel, cell) => {
+      const [red, green, blue] = cell === Cell.occupied ? ink : white;
+      over(out, 4 * pixel, red, green, blue, opacity);
+    });
+  }
+  const votes = emptyVotes(count);
+  const visible = picture.layers.filter((layer) => layer.opacity > 0);
+  for (const layer of visible) add(votes, layer, square);
+  for (let pixel = 0; pixel < count; pixel++) {
+    if (votes.walls[pixel] + votes.frees[pixel] === 0) continue;
+    layOver(out, votes.freeColor, votes.freeOpacity, pixel);
+    layOver(out, votes.wallColor, votes.wallOpacity, pixel);
+    if (picture.agreement > 0) mark(out, votes.walls[pixel], votes.frees[pixel], pixel, picture.agreement);
+  }
+  return out;
+}

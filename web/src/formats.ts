@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+import { fixed } from "./numbers";
+import type { SE2 } from "./se2";
+
+/** A map's pose, with the name that the map was merged under. */
+export interface NamedPose {
+  name: string;
+  transform: SE2;
+}
+
+/** Texts that hold no more than they say: names are quoted, or stripped to what a frame's name may hold. */
+
+export function asJson(frame: string, poses: NamedPose[]): string {
+  const transforms = poses.map(({ name, transform }) => ({ map: name, ...plain(transform) }));
+  return JSON.stringify({ frame, transforms }, null, 2) + "\n";
+}
+
+/** JSON's strings are YAML's double-quoted ones. */
+export function asYaml(frame: string, poses: NamedPose[]): string {
+  const lines = poses.map(({ name, transform }) => {
+    const { x, y, theta } = plain(transform);
+    return `  - map: ${quoted(name)}\n    x: ${x}\n    y: ${y}\n    theta: ${theta}\n`;
+  });
+  return `frame: ${quoted(frame)}\ntransforms:\n${lines.join("")}`;
+}
+
+/** A command for each map, for ROS 2. */
+export function asStaticTransforms(parent: string, poses: NamedPose[], children: string[]): string {
+  return poses.map(({ transform }, i) => {
+    const { x, y, theta } = plain(transform);
+    return `ros2 run tf2_ros static_transform_publisher --x ${x} --y ${y} --yaw ${theta}` +
+      ` --frame-id ${parent} --child-frame-id ${children[i]}\n`;
+  }).join("");
+}
+
+/** Names for TF frames, all different: file names without folder and ending where that tells maps apart. */
+export function frameIds(names: string[]): string[] {
+  const clean = (text: string) => text.replace(/[^A-Za-z0-9]+/g, "_").replace(/^_+|_+$/g, "") || "map";
+  const whole = names.map((name) => name.replace(/\.[^./]*$/, ""));
+  const short = whole.map((name) => clean(name.slice(name.lastIndexOf("/") + 1)));
+  const isUnique = new Set(short).size === short.length;
+  const taken = new Set<string>();
+  return (isUnique ? short : whole.map(clean)).map((id) => {
+    let unique = id;
+    for (let i = 2; taken.has(unique); i++) unique = `${id}_${i}`;
+    taken.add(unique);
+    return unique;
+  });
+}
+
+/** What `gridmerge merge --init` reads. Null if a name cannot be written in it. */
+export function asInitialPoses(poses: { name: string; transform: SE2; sd: number; sdTheta: number }[]): string | null {
+  if (poses.some(({ name }) => !isWritable(name))) return null;
+  const lines = poses.map(({ name, transform, sd, sdTheta }) => {
+    const { x, y, theta } = plain(transform);
+    return [name, x, y, theta, sd, sdTheta].join("\t") + "\n";
+  });
+  return "map\tx\ty\ttheta\tsd\tsd_theta\n" + lines.join("");
+}
+
+/** The command that merges with the file of initial poses. Null if a name cannot be written in it. */
+export function mergeCommand(names: string[], poses: string): string | null {
+  if (!names.every(isWritable)) return null;
+  return `gridmerge merge ${names.map(shellQuoted).join(" ")} --init ${shellQuoted(poses)} -o merged`;
+}
+
+/** Tabs and line ends would break a table; U+FFFD stands for bytes that are lost. */
+function isWritable(name: string): boolean {
+  return name !== "" && !/[\u0000-\u001f\u007f\ufffd]/.test(name);
+}
+
+function shellQuoted(text: string): string {
+  const safe = text.startsWith("-") ? `./${text}` : text;
+  return /^[A-Za-z0-9_.,\/+:@%-]+$/.test(safe) ? safe : `'${safe.replace(/'/g, `'\\''`)}'`;
+}
+
+function quoted(text: string): string {
+  // Line separators and control characters that JSON lets through, YAML does not.
+  return JSON.stringify(text).replace(/[\u007f-\u009f\u2028\u2029\ufeff\ufffe\uffff]/g,
+    (c) => "\\u" + c.charCodeAt(0).toString(16).padStart(4, "0"));
+}
+
+/** No "-0". */
+function plain({ x, y, theta }: SE2): SE2 {
+  return { x: x + 0, y: y + 0, theta: theta + 0 };
+}
+
+/** A pose as people read it. */
+export function describe({ x, y, theta }: SE2): string {
+  return `x ${fixed(x, 3)} m, y ${fixed(y, 3)} m, θ ${fixed((theta * 180) / Math.PI, 2)}°`;
+}

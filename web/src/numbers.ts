@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/** With so many decimals, and no "-0.00". */
+export function fixed(value: number, decimals: number): string {
+  const text = value.toFixed(decimals);
+  return /^-0\.?0*$/.test(text) ? text.slice(1) : text;
+}
+
+export function degrees(radians: number): number {
+  return (radians * 180) / Math.PI;
+}
+
+export function radians(inDegrees: number): number {
+  return (inDegrees * Math.PI) / 180;
+}
+
+/** A probability as people read it; never rounded up to certainty. */
+export function probability(value: number): string {
+  if (value > 0.999 && value < 1) return "> 0.999";
+  if (value < 0.001 && value > 0) return "< 0.001";
+  return fixed(value, 3);
+}
+
+export function percent(share: number): string {
+  return `${fixed(100 * share, 0)} %`;
+}

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+import { mapLabel } from "./badge";
+import { announce, copyButton, download } from "./clipboard";
+import { h, replace } from "./dom";
+import { refine } from "./engine";
+import { asInitialPoses, mergeCommand } from "./formats";
+import { degrees, fixed, percent, probability, radians } from "./numbers";
+import type { Placed } from "./scene";
+import { Scorer } from "./score";
+import { type SE2, apply } from "./se2";
+import type { State } from "./state";
+
+const fileName = "poses.tsv";
+/** How well the poses of maps that were not moved are taken to be known. */
+const keptSd = { position: 0.1, theta: 0.01 };
+
+interface PoseInput {
+  element: HTMLInputElement;
+  get(pose: SE2): number;
+  set(pose: SE2, value: number): SE2;
+}
+
+/** Placing maps by hand: takes one, moves it, judges how it fits, and saves poses for the next merge. */
+export class HandPanel {
+  readonly element = h("div", { class: "panel", id: "panel-hand" });
+  private readonly state: State;
+  private readonly middleOfView: () => { x: number; y: number };
+  private readonly picker = h("select", { id: "hand-map", change: () => this.pick() });
+  private readonly tools = h("div");
+  private readonly scoreLine = h("p", { class: "score", id: "hand-score" });
+  private readonly answer = h("p", { class: "answer", role: "status" });
+  private readonly saving = h("div", { class: "saving" });
+  private readonly sure = h("input", { type: "number", id: "hand-sd", min: 0.01, step: 0.1, value: 0.3 });
+  private readonly sureAngle = h("input", { type: "number", id: "hand-sd-theta", min: 0.1, step: 0.5, value: 3 });
+  private inputs: PoseInput[] = [];
+  private toolsOf: number | null = null;
+  private scorers = new Map<number, Scorer>();
+  private scoring = 0;
+
+  constructor(state: State, middleOfView: () => { x: number; y: number }) {
+    this.state = state;
+    this.middleOfView = middleOfView;
+    replace(this.element,
+      h("p", { class: "soft" },
+        "Put a map where you know it belongs, save the poses, and merge again with them. Nothing here changes the merged map itself."),
+      h("label", { class: "field" }, "Map in hand ", this.picker), this.tools, this.saving);
+    state.on("scene", () => this.rebuild());
+    state.on("hand", () => this.update());
+    state.on("grids", () => this.score());
+    this.rebuild();
+  }
+
+  /** Takes a map in hand, and brings it into the scene if it is not there. */
+  take(map: number): void {
+    const grid = this.state.grids[map];
+    if (!this.state.poseOf(map)) {
+      const to = this.middleOfView();
+      const from = grid ? grid.middle() : { x: 0, y: 0 };
+      this.state.byHand().set(map, { x: to.x - from.x, y: to.y - from.y, theta: 0 });
+    }
+    this.answer.textContent = "";
+    this.state.take(map);
+  }
+
+  /** Asks the engine to climb from where the map in hand lies. */
+  async refine(): Promise<void> {
+    const { state } = this;
+    const map = state.handled;
+    const pose = map === null ? null : state.poseOf(map);
+    if (map === null || !pose) return;
+    if (!state.report.live) {
+      this.answer.textContent = "Only a running gridmerge can refine: open the folder with gridmerge view.";
+      return;
+    }
+    this.answer.textContent = "Refining…";
+    try {
+      const refined = await refine(map, pose, this.others(map));
+      if (state.handled !== map) return;
+      state.put(map, refined.transform);
+      this.answer.textContent = `Moved by ${fixed(refined.moved, 2)} m. Score ${fixed(refined.start_score, 0)} → ` +
+        `${fixed(refined.score, 0)}, probability ${probability(refined.probability)}.`;
+    } catch (error) {
+      this.answer.textContent = `Not refined: ${error instanceof Error ? error.message : String(error)}`;
+    }
+  }
+
+  private others(map: number): Placed[] {
+    return this.state.placed().filter((placed) => placed.map !== map);
+  }
+
+  private pick(): void {
+    const map = Number(this.picker.value);
+    if (this.picker.value === "") this.state.take(null);
+    else this.take(map);
+  }
+
+  private rebuild(): void {
+    replace(this.picker, h("option", { value: "" }, "none"), ...this.state.names.map(
+      (name, i) => h("option", { value: i }, `${i + 1}: ${name}`)));
+    this.toolsOf = null;
+    this.update();
+  }
+
+  private update(): void {
+    const { handled } = this.state;
+    this.picker.value = handled === null ? "" : String(handled);
+    if (handled !== this.toolsOf || (handled !== null && this.inputs.length === 0)) this.rebuildTools();
+    const pose = handled === null ? null : this.state.poseOf(handled);
+    for (const input of this.inputs) {
+      if (pose && document.activeElement !== input.element) input.element.value = fixed(input.get(pose), 3);
+    }
+    if (this.scoring === 0) this.scoring = requestAnimationFrame(() => this.score());
+    this.updateSaving();
+  }
+
+  private rebuildTools(): void {
+    const map = this.toolsOf = this.state.handled;
+    this.inputs = [];
+    if (map === null) {
+      replace(this.tools);
+      return;
+    }
+    this.inputs = [
+      this.poseInput("hand-x", 0.05, (pose) => pose.x, (pose, x) => ({ ...pose, x })),
+      this.poseInput("hand-y", 0.05, (pose) => pose.y, (pose, y) => ({ ...pose, y })),
+      this.poseInput("hand-theta", 1, (pose) => degrees(pose.theta), (pose, value) => this.turned(map, pose, value)),
+    ];
+    const labels = ["x [m] ", "y [m] ", "θ [°] "];
+    const live = this.state.report.live;
+    replace(this.tools,
+      h("p", { class: "soft" }, "Drag the map; turn it by its handle, or drag with Shift. Keys: arrows by a cell, q and e by half a degree, with Shift more."),
+      h("div", { class: "pose-inputs" }, ...this.inputs.map((input, i) => h("label", {}, labels[i], input.element))),
+      this.scoreLine,
+      h("div", { class: "buttons" },
+        h("button", {
+          type: "button", id: "hand-refine", disabled: !live, click: () => void this.refine(),
+          title: live ? "Climb to the best fit near here" : "Needs a running gridmerge: gridmerge view DIR",
+        }, "Refine from here"),
+        h("button", { type: "button", click: () => this.state.putBack(map) }, "Put back"),
+        h("button", { type: "button", click: () => this.state.take(null) }, "Let go")),
+      live ? null : h("p", { class: "soft" }, "To refine with the engine, open this folder with ", h("code", {}, "gridmerge view DIR"), "."),
+      this.answer);
+  }
+
+  private poseInput(
+    id: string, step: number, get: (pose: SE2) => number, set: (pose: SE2, value: number) => SE2): PoseInput {
+    const element = h("input", {
+      type: "number", id, step, input: () => {
+        const map = this.state.handled;
+        const pose = map === null ? null : this.state.poseOf(map);
+        if (map !== null && pose && Number.isFinite(element.valueAsNumber)) {
+          this.state.put(map, set(pose, element.valueAsNumber));
+        }
+      },
+    });
+    return { element, get, set };
+  }
+
+  /** Turned to an angle in degrees about the map's middle, which people look at, not about its origin. */
+  private turned(map: number, pose: SE2, angle: number): SE2 {
+    const middle = this.state.grids[map]?.middle() ?? { x: 0, y: 0 };
+    const before = apply(pose, middle);
+    const after = apply({ x: 0, y: 0, theta: radians(angle) }, middle);
+    return { x: before.x - after.x, y: before.y - after.y, theta: radians(angle) };
+  }
+
+  private score(): void {
+    this.scoring = 0;
+    const map = this.state.handled;
+    const grid = map === null ? null : this.state.grids[map];
+    const pose = map === null ? null : this.state.poseOf(map);
+    if (map === null || !grid || !pose) return;
+    const others = this.others(map).flatMap((placed) => {
+      const other = this.state.grids[placed.map];
+      return other ? [{ grid: other, pose: placed.T_scene_map }] : [];
+    });
+    const score = this.scorerOf(map).score(pose, others);
+    this.scoreLine.textContent = score
+      ? `Walls met ${percent(score.wallsMet)} · cells equal ${percent(score.agreement)} · overlap ${percent(score.overlap)}`
+      : "Nothing in common with the other maps here.";
+  }
+
+  private scorerOf(map: number): Scorer {
+    let scorer = this.scorers.get(map);
+    if (!scorer) this.scorers.set(map, (scorer = new Scorer(this.state.grids[map]!)));
+    return scorer;
+  }
+
+  private updateSaving(): void {
+    const moved = [...this.state.byHand().keys()].filter((map) => this.state.poseOf(map));
+    if (moved.length === 0) {
+      replace(this.saving);
+      return;
+    }
+    if (this.saving.dataset.maps === moved.join(" ") && this.saving.childElementCount > 0) return;
+    this.saving.dataset.maps = moved.join(" ");
+    const names = this.state.report.maps.map((map) => map.name);
+    const command = mergeCommand(names, fileName);
+    replace(this.saving,
+      h("h3", {}, "Placed by hand"),
+      h("ul", {}, ...moved.map((map) => h("li", {}, mapLabel(this.state, map)))),
+      h("p", {}, "Known to within ", h("label", {}, this.sure, " m"), " and ", h("label", {}, this.sureAngle, " °")),
+      h("div", { class: "buttons" }, h("button", { type: "button", id: "hand-save", class: "primary", click: () => this.save() },
+        `Save ${fileName}`)),
+      command === null
+        ? h("p", { class: "soft" }, "The maps' names hold characters that a table of poses cannot: rename the files first.")
+        : h("div", {}, h("p", { class: "soft" }, "Then, from the folder in which the maps were merged, with the file there too:"),
+          h("pre", {}, command), copyButton("Copy command", () => command, "Copy the command")));
+  }
+
+  private save(): void {
+    const sd = Math.max(0.001, this.sure.valueAsNumber || 0.3);
+    const sdTheta = radians(Math.max(0.01, this.sureAngle.valueAsNumber || 3));
+    const byHand = this.state.byHand();
+    const text = asInitialPoses(this.state.placed().map(({ map, T_scene_map }) => ({
+      name: this.state.report.maps[map].name,
+      transform: T_scene_map,
+      sd: byHand.has(map) ? sd : keptSd.position,
+      sdTheta: byHand.has(map) ? sdTheta : keptSd.theta,
+    })));
+    if (text === null) {
+      announce("Not saved: a map's name cannot be written in a table");
+      return;
+    }
+    download(fileName, text);
+    announce(`${fileName} saved`);
+  }
+}

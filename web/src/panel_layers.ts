@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+import { badge, pointsOut } from "./badge";
+import { disagreement, ink } from "./color";
+import { h, name, replace, swatch } from "./dom";
+import { Cell } from "./grid";
+import { fixed } from "./numbers";
+import { count } from "./report";
+import { apply, inverse } from "./se2";
+import type { Look, State } from "./state";
+
+const cellWords: Record<number, string> = { [Cell.unknown]: "unknown", [Cell.free]: "free", [Cell.occupied]: "wall" };
+
+/** The layers of the scene: what is seen, in which colour and how strongly, and where the cursor is in each frame. */
+export class LayersPanel {
+  readonly element = h("div", { class: "panel", id: "panel-layers" });
+  private readonly state: State;
+  private readonly mapRows = h("div");
+  private readonly ownRows = h("div");
+  private readonly showLeftOut: (map: number) => void;
+  private readonly placeByHand: (map: number) => void;
+  private readings = new Map<number, HTMLElement>();
+
+  constructor(state: State, actions: { show(map: number): void; placeByHand(map: number): void }) {
+    this.state = state;
+    this.showLeftOut = actions.show;
+    this.placeByHand = actions.placeByHand;
+    replace(this.element, this.ownRows,
+      h("div", { class: "row-heading" },
+        h("h3", {}, "Maps"),
+        h("button", { type: "button", click: () => this.setAll(true) }, "All"),
+        h("button", { type: "button", click: () => this.setAll(false) }, "None")),
+      this.mapRows, this.leftOut());
+    state.on("scene", () => this.rebuild());
+    state.on("hand", () => this.rebuild());
+    state.on("looks", () => this.update());
+    state.on("cursor", () => this.read());
+    this.rebuild();
+  }
+
+  toggle(look: Look): void {
+    look.visible = !look.visible;
+    this.state.changed("looks");
+  }
+
+  /** The map that stands at this place in the list. */
+  toggleNth(index: number): void {
+    const placed = this.state.placed()[index];
+    if (placed) this.toggle(this.state.looks[placed.map]);
+  }
+
+  private setAll(visible: boolean): void {
+    for (const { map } of this.state.placed()) this.state.looks[map].visible = visible;
+    this.state.changed("looks");
+  }
+
+  private shownMaps = "";
+
+  private rebuild(): void {
+    const { state } = this;
+    const maps = state.placed().map(({ map }) => map);
+    const key = JSON.stringify([state.scene.id, maps]);
+    if (key === this.shownMaps) return;
+    this.shownMaps = key;
+    const { component } = state.scene;
+    const { agreeing, conflicting } = component === null ? { agreeing: 0, conflicting: 0 } : state.report.components[component];
+    const counts = `${count(agreeing, "cell")} that several maps know agree, ${conflicting} do not`;
+    replace(this.ownRows,
+      component === null ? null : this.ownRow("merged", "Merged map", state.merged, null, "m"),
+      maps.length < 2 ? null : this.ownRow("agreement", "Agreement", state.agreement, h("span", { class: "legend" },
+        swatch(rgb(ink)), "walls in two maps or more ", swatch(rgb(disagreement)), "one says wall, another free",
+        component === null ? null : h("span", { class: "soft" }, ` · ${counts}`)), "a"));
+    this.readings = new Map();
+    replace(this.mapRows, ...maps.map((map, i) => this.mapRow(map, i)));
+  }
+
+  private ownRow(id: string, label: string, look: Look, legend: Node | null, key: string): HTMLElement {
+    return h("div", { class: "layer" },
+      h("label", { class: "layer-name" }, this.checkbox(`layer-${id}`, look), label, h("kbd", {}, key)),
+      this.slider(label, look), legend);
+  }
+
+  private mapRow(map: number, index: number): HTMLElement {
+    const { state } = this;
+    const look = state.looks[map];
+    const mapName = state.names[map];
+    const reading = h("span", { class: "reading soft" }, "–");
+    this.readings.set(map, reading);
+    const color = h("input", {
+      type: "color", value: look.color, "aria-label": `Colour of ${mapName}`, "data-map": map,
+      input: (event) => {
+        look.color = (event.target as HTMLInputElement).value;
+        state.changed("looks");
+      },
+    });
+    const row = h("div", { class: "layer", "data-map": map },
+      h("label", { class: "layer-name" }, this.checkbox(`layer-${map}`, look), badge(state, map), name(mapName, state.report.maps[map].name),
+        index < 9 ? h("kbd", {}, String(index + 1)) : null),
+      color, this.slider(mapName, look), reading);
+    pointsOut(row, state, map);
+    return row;
+  }
+
+  private checkbox(id: string, look: Look): HTMLInputElement {
+    const box = h("input", { type: "checkbox", id, change: () => this.toggle(look) });
+    box.checked = look.visible;
+    this.boxes.set(box, look);
+    return box;
+  }
+
+  private readonly boxes = new Map<HTMLInputElement, Look>();
+
+  private slider(label: string, look: Look): HTMLInputElement {
+    const slider = h("input", {
+      type: "range", min: 0, max: 100, value: 100 * look.opacity, "aria-label": `How strongly ${label} is drawn`,
+      input: () => {
+        look.opacity = Number(slider.value) / 100;
+        this.state.changed("looks");
+      },
+    });
+    return slider;
+  }
+
+  private update(): void {
+    for (const [box, look] of this.boxes) {
+      if (box.isConnected) box.checked = look.visible;
+      else this.boxes.delete(box);
+    }
+    for (const row of this.mapRows.querySelectorAll<HTMLElement>(".layer")) {
+      const map = Number(row.dataset.map);
+      row.querySelector(".badge")!.replaceWith(badge(this.state, map));
+    }
+  }
+
+  private read(): void {
+    const { cursor } = this.state;
+    for (const { map, T_scene_map } of this.state.placed()) {
+      const reading = this.readings.get(map);
+      if (!reading) continue;
+      const grid = this.state.grids[map];
+      if (!cursor || !grid) {
+        reading.textContent = "–";
+        continue;
+      }
+      const p = apply(inverse(T_scene_map), cursor);
+      reading.textContent = `${fixed(p.x, 2)}, ${fixed(p.y, 2)} m · ${cellWords[grid.at(p)]}`;
+    }
+  }
+
+  private leftOut(): HTMLElement | null {
+    const { left_out: leftOut, maps, components } = this.state.report;
+    if (leftOut.length === 0) return null;
+    const items = leftOut.map(({ map, explanation }) => h("li", { "data-map": map },
+      h("div", {}, badge(this.state, map), name(this.state.names[map], maps[map].name)),
+      h("p", { class: "soft" }, explanation + "."),
+      h("div", { class: "buttons" },
+        h("button", { type: "button", click: () => this.showLeftOut(map) }, "Show"),
+        components.length === 0 && maps.length < 2 ? null
+          : h("button", { type: "button", click: () => this.placeByHand(map) }, "Place by hand"))));
+    return h("section", { class: "left-out" },
+      h("h3", {}, "Left out"),
+      h("p", { class: "soft" }, "Could not be joined to another map with confidence."),
+      h("ul", {}, ...items));
+  }
+}
+
+function rgb(color: readonly number[]): string {
+  return `rgb(${color.join(" ")})`;
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+import { mapLabel } from "./badge";
+import { copyButton } from "./clipboard";
+import { h, replace } from "./dom";
+import { type NamedPose, asJson, asStaticTransforms, asYaml, frameIds } from "./formats";
+import { degrees, fixed, probability } from "./numbers";
+import type { Member } from "./report";
+import type { State } from "./state";
+
+/** Where the maps of the scene lie, to read and to copy. */
+export class TransformsPanel {
+  readonly element = h("div", { class: "panel", id: "panel-transforms" });
+  private readonly state: State;
+  private pending = 0;
+
+  constructor(state: State) {
+    this.state = state;
+    state.on("scene", () => this.rebuild());
+    state.on("hand", () => this.rebuild());
+    state.on("looks", () => this.rebuild());
+    this.rebuild();
+  }
+
+  private rebuild(): void {
+    if (this.pending !== 0) return;
+    // Once a frame is enough while a map is dragged.
+    this.pending = requestAnimationFrame(() => {
+      this.pending = 0;
+      this.draw();
+    });
+  }
+
+  private draw(): void {
+    const { state } = this;
+    const { scene } = state;
+    const rows = state.placed().flatMap(({ map }) => this.rows(map));
+    replace(this.element,
+      h("p", { class: "soft" }, "A transform takes a point of the map's frame to ",
+        scene.component !== null && state.report.components[scene.component].frame === null
+          ? scene.frame : h("span", {}, "the frame of ", h("bdi", {}, scene.frame)), "."),
+      h("div", { class: "table" }, h("table", {},
+        h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Map"),
+          ...["x [m]", "y [m]", "θ [rad]"].map((head) => h("th", { class: "number", scope: "col" }, head)))),
+        h("tbody", {}, ...rows))),
+      h("div", { class: "buttons" }, h("span", {}, "Copy all:"), ...this.buttons(() => state.placed().map(({ map }) => map))));
+  }
+
+  /** One with the pose, one with how sure it is. */
+  private rows(map: number): HTMLElement[] {
+    const pose = this.state.poseOf(map)!;
+    const byHand = this.state.byHand().has(map);
+    const number = (text: string) => h("td", { class: "number" }, text);
+    return [
+      h("tr", { class: "pose", "data-map": map },
+        h("td", { class: "name" }, mapLabel(this.state, map)),
+        number(fixed(pose.x, 3)), number(fixed(pose.y, 3)), number(fixed(pose.theta, 5))),
+      h("tr", { class: "more" }, h("td", { colspan: 4 }, h("div", { class: "buttons" },
+        ...this.buttons(() => [map]),
+        h("span", { class: "soft" }, `${fixed(degrees(pose.theta), 2)}°`, byHand ? ", placed by hand" : certainty(this.memberOf(map)))))),
+    ];
+  }
+
+  private memberOf(map: number): Member | undefined {
+    const { component } = this.state.scene;
+    return component === null ? undefined : this.state.report.components[component].members.find((m) => m.map === map);
+  }
+
+  private buttons(maps: () => number[]): HTMLButtonElement[] {
+    const { report, scene } = this.state;
+    const poses = (): NamedPose[] => maps().map((map) => ({ name: report.maps[map].name, transform: this.state.poseOf(map)! }));
+    const ids = frameIds(report.maps.map((map) => map.name));
+    const parent = scene.component !== null ? frameIds([scene.title])[0] : `${ids[this.state.placed()[0].map]}`;
+    const children = () => maps().map((map) => (ids[map] === parent ? `${ids[map]}_map` : ids[map]));
+    return [
+      copyButton("YAML", () => asYaml(scene.frame, poses()), "Copy as YAML"),
+      copyButton("JSON", () => asJson(scene.frame, poses()), "Copy as JSON"),
+      copyButton("TF", () => asStaticTransforms(parent, poses(), children()), "Copy as static_transform_publisher commands"),
+    ];
+  }
+}
+
+function certainty(member: Member | undefined): string {
+  const parts: string[] = [];
+  if (member?.probability != null) parts.push(`probability ${probability(member.probability)}`);
+  if (member?.sd) parts.push(`± ${fixed(member.sd.position, 3)} m, ± ${fixed(degrees(member.sd.theta), 2)}°`);
+  return parts.map((part) => `, ${part}`).join("");
+}

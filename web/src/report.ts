@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { SE2 } from "./se2";
+
+// What a merge has to tell, as the program writes it into the page.
+
+/** An occupancy grid: `cells` is base64 of a zlib stream of width * height bytes, row 0 at the bottom; see Cell. */
+export interface PackedGrid {
+  width: number;
+  height: number;
+  resolution: number;
+  origin: SE2;
+  cells: string;
+}
+
+export interface InputMap extends PackedGrid {
+  name: string;
+  color: string;
+}
+
+export interface Member {
+  map: number;
+  transform: SE2;
+  probability: number | null;
+  sd: { position: number; theta: number } | null;
+}
+
+export interface Component extends PackedGrid {
+  file: string;
+  /** The map whose frame the component's is; null: the world's, in which poses were given. */
+  frame: number | null;
+  agreeing: number;
+  conflicting: number;
+  members: Member[];
+}
+
+export type Outcome = "accepted" | "rescued" | "known" | "rejected" | "refused";
+
+export const outcomes: readonly Outcome[] = ["accepted", "rescued", "known", "rejected", "refused"];
+
+export const outcomeMeaning: Record<Outcome, string> = {
+  accepted: "believed by itself",
+  rescued: "too weak by itself, but it agrees with what the other maps say",
+  known: "they lie so because their poses were given",
+  rejected: "would be believed by itself, but contradicts the other maps",
+  refused: "not believed",
+};
+
+export interface Hypothesis {
+  transform: SE2;
+  score: number;
+  probability: number;
+}
+
+export interface Join {
+  fixed: number;
+  moving: number;
+  outcome: Outcome;
+  reason: string | null;
+  transform: SE2;
+  probability: number;
+  acceptance_index: number;
+  agreement: number;
+  disagreement: number;
+  overlap: number;
+  hypotheses: Hypothesis[];
+}
+
+export interface LeftOut {
+  map: number;
+  reason: string;
+  explanation: string;
+}
+
+export interface Report {
+  version: string;
+  /** Served by a running gridmerge, which can refine poses. */
+  live: boolean;
+  maps: InputMap[];
+  components: Component[];
+  joins: Join[];
+  left_out: LeftOut[];
+}
+
+/** Whether maps lie in the result as the join says. */
+export function isUsed(join: Join): boolean {
+  return join.outcome !== "refused" && join.outcome !== "rejected";
+}
+
+/** "1 map", "2 maps". */
+export function count(number: number, what: string): string {
+  return `${number} ${what}${number === 1 ? "" : "s"}`;
+}
+
+/** One sentence that says how the merge went. */
+export function summary(report: Report): string {
+  const joined = report.components.reduce((sum, component) => sum + component.members.length, 0);
+  const into = report.components.length === 0 ? "" : ` into ${count(report.components.length, "merged map")}`;
+  return `${count(report.maps.length, "map")}: ${joined} joined${into}, ${report.left_out.length} left out.`;
+}
+
+/** Names without the folders that all of them lie in: enough to tell the maps apart. */
+export function shortNames(names: string[]): string[] {
+  const folders = names.map((name) => name.split("/").slice(0, -1));
+  const [first = []] = folders;
+  const differs = first.findIndex((part, i) => !folders.every((folder) => folder[i] === part));
+  const common = differs < 0 ? first.length : differs;
+  return names.map((name) => name.split("/").slice(common).join("/"));
+}

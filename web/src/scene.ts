@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+import { type Report, shortNames } from "./report";
+import { type SE2, identity } from "./se2";
+
+/** What can be looked at: a merged map, two maps under a hypothesis of their comparison, or a map by itself. */
+export type SceneId =
+  | { kind: "component"; component: number }
+  | { kind: "join"; join: number; hypothesis: number }
+  | { kind: "map"; map: number };
+
+export interface Placed {
+  map: number;
+  T_scene_map: SE2;
+}
+
+export interface Scene {
+  id: SceneId;
+  title: string;
+  /** Whose frame coordinates are in. */
+  frame: string;
+  placed: Placed[];
+  /** Index of the component whose fused map belongs to it. */
+  component: number | null;
+}
+
+/** The same for the same place, whatever is drawn of it. */
+export function placeOf(id: SceneId): string {
+  switch (id.kind) {
+    case "component":
+      return `component ${id.component}`;
+    case "join":
+      return `join ${id.join}`;
+    case "map":
+      return `map ${id.map}`;
+  }
+}
+
+export function makeScene(report: Report, id: SceneId): Scene {
+  const names = shortNames(report.maps.map((map) => map.name));
+  switch (id.kind) {
+    case "component": {
+      const component = report.components[id.component];
+      return {
+        id,
+        title: component.file,
+        frame: component.frame === null ? "the frame in which poses were given" : report.maps[component.frame].name,
+        placed: component.members.map((member) => ({ map: member.map, T_scene_map: member.transform })),
+        component: id.component,
+      };
+    }
+    case "join": {
+      const join = report.joins[id.join];
+      const transform = id.hypothesis < 0 ? join.transform : join.hypotheses[id.hypothesis].transform;
+      return {
+        id,
+        title: `${names[join.fixed]} and ${names[join.moving]}`,
+        frame: report.maps[join.fixed].name,
+        placed: [{ map: join.fixed, T_scene_map: identity }, { map: join.moving, T_scene_map: transform }],
+        component: null,
+      };
+    }
+    case "map":
+      return {
+        id,
+        title: names[id.map],
+        frame: report.maps[id.map].name,
+        placed: [{ map: id.map, T_scene_map: identity }],
+        component: null,
+      };
+  }
+}
+
+/** What is shown first: the largest merged map, or if nothing joined, the first map. */
+export function firstScene(report: Report): SceneId {
+  return report.components.length > 0 ? { kind: "component", component: 0 } : { kind: "map", map: 0 };
+}

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+import { parseColor } from "./color";
+import type { Picture } from "./compose";
+import { type DecorColors, drawAxes, drawCrosshair, drawGrid, drawScaleBar } from "./decor";
+import { h } from "./dom";
+import type { Grid } from "./grid";
+import { placeOf } from "./scene";
+import { type Point, apply } from "./se2";
+import { Stamp, handleOf, outline } from "./stamp";
+import type { State } from "./state";
+import { Tiles } from "./tiles";
+import { type Viewport, boxAround, fit, panned, toScene, zoomed } from "./viewport";
+
+const paintBudget = 9; // milliseconds a frame
+
+/** The canvas that shows a scene: what is drawn, and from where it is looked at. */
+export class Stage {
+  readonly canvas: HTMLCanvasElement;
+  view: Viewport = { width: 1, height: 1, center: { x: 0, y: 0 }, scale: 20 };
+  gridShown = true;
+  /** Keyboard users point with the middle of the canvas. */
+  crosshair = false;
+  private readonly state: State;
+  private readonly context: CanvasRenderingContext2D;
+  private readonly tiles = new Tiles();
+  private readonly stamps = new Map<string, Stamp>();
+  private place = "";
+  private shown = "";
+  private ratio = 1;
+  private frame = 0;
+  private touched = false;
+
+  constructor(state: State) {
+    this.state = state;
+    this.canvas = h("canvas", {
+      tabindex: 0,
+      role: "application",
+      "aria-label": "The maps, drawn over each other. Arrows move, plus and minus zoom, 0 shows all, ? lists all keys.",
+    });
+    this.context = this.canvas.getContext("2d", { alpha: false })!;
+    state.on("scene", () => this.arrange());
+    state.on("grids", () => this.arrange());
+    state.on("looks", () => this.compose());
+    state.on("hand", () => this.compose());
+    state.on("spotlight", () => this.redraw());
+    new ResizeObserver(() => this.resize()).observe(this.canvas);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
+  }
+
+  /** Shows all of the scene. */
+  fit(): void {
+    this.touched = false;
+    const corners = this.state.placed().flatMap(({ map, T_scene_map }) => {
+      const grid = this.state.grids[map];
+      return grid ? grid.corners().map((p) => apply(T_scene_map, p)) : [];
+    });
+    const merged = this.mergedGrid();
+    const points = corners.length > 0 ? corners : merged ? merged.corners() : [];
+    this.look(fit(boxAround(points), this.view.width, this.view.height));
+    this.touched = false;
+  }
+
+  pan(dx: number, dy: number): void {
+    this.look(panned(this.view, dx, dy));
+  }
+
+  zoom(factor: number, at: Point = { x: this.view.width / 2, y: this.view.height / 2 }): void {
+    this.look(zoomed(this.view, factor, at));
+  }
+
+  /** The cursor at a pixel of the canvas; null: nowhere. */
+  pointAt(pixel: Point | null): void {
+    this.state.cursor = pixel && toScene(this.view, pixel);
+    this.state.changed("cursor");
+  }
+
+  redraw(): void {
+    if (this.frame === 0) this.frame = requestAnimationFrame(() => this.draw());
+  }
+
+  private look(view: Viewport): void {
+    this.view = view;
+    this.touched = true;
+    if (this.crosshair) this.pointAt({ x: view.width / 2, y: view.height / 2 });
+    this.redraw();
+  }
+
+  private resize(): void {
+    this.ratio = window.devicePixelRatio || 1;
+    const { width, height } = this.canvas.getBoundingClientRect();
+    if (width === 0 || height === 0) return;
+    this.canvas.width = Math.round(width * this.ratio);
+    this.canvas.height = Math.round(height * this.ratio);
+    this.view = { ...this.view, width, height };
+    if (!this.touched) this.fit();
+    this.redraw();
+  }
+
+  private mergedGrid(): Grid | null {
+    const { component } = this.state.scene;
+    return component === null ? null : this.state.mergedGrids[component];
+  }
+
+  private arrange(): void {
+    const place = placeOf(this.state.scene.id);
+    const moved = place !== this.place;
+    this.place = place;
+    this.compose(!moved);
+    if (moved || !this.touched) this.fit();
+  }
+
+  private compose(similar = true): void {
+    const { state } = this;
+    const layers: Picture["layers"] = [];
+    const parts: unknown[] = [this.place, state.merged, state.agreement];
+    for (const { map, T_scene_map } of state.placed()) {
+      const grid = state.grids[map];
+      const look = state.looks[map];
+      if (!grid || map === state.handled) continue;
+      layers.push({ grid, T_scene_map, color: parseColor(look.color), opacity: look.visible ? look.opacity : 0 });
+      parts.push(map, T_scene_map, look);
+    }
+    const grid = this.mergedGrid();
+    parts.push(grid !== null);
+    // A map in hand is no part of the picture: while it moves, nothing has to be painted anew.
+    const shown = JSON.stringify(parts);
+    if (shown === this.shown) return this.redraw();
+    this.shown = shown;
+    const picture: Picture = {
+      merged: grid && state.merged.visible ? { grid, opacity: state.merged.opacity } : null,
+      layers,
+      agreement: state.agreement.visible ? state.agreement.opacity : 0,
+    };
+    const resolutions = layers.map((layer) => layer.grid.finest.resolution);
+    if (grid) resolutions.push(grid.finest.resolution);
+    this.tiles.show(picture, resolutions.length > 0 ? Math.min(...resolutions) : 0.05, similar);
+    this.redraw();
+  }
+
+  private colors(): DecorColors & { unknown: string } {
+    const style = getComputedStyle(document.documentElement);
+    const of = (name: string) => style.getPropertyValue(name).trim();
+    return { line: of("--grid"), text: of("--ink"), halo: of("--halo"), unknown: of("--unknown") };
+  }
+
+  private draw(): void {
+    this.frame = 0;
+    const { context, view, ratio } = this;
+    const colors = this.colors();
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.fillStyle = colors.unknown;
+    context.fillRect(0, 0, this.canvas.width, this.canvas.height);
+    const complete = this.tiles.draw(context, scaledBy(view, ratio), paintBudget);
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    this.drawStamps();
+    if (this.gridShown) drawGrid(context, view, colors);
+    if (this.gridShown) drawAxes(context, view, colors);
+    drawScaleBar(context, view, colors);
+    if (this.crosshair) drawCrosshair(context, view, colors);
+    this.canvas.dataset.complete = String(complete);
+    if (!complete) this.redraw();
+  }
+
+  private drawStamps(): void {
+    const { handled, spotlight } = this.state;
+    if (spotlight !== null && spotlight !== handled) this.drawStamp(spotlight, false);
+    if (handled !== null) this.drawStamp(handled, true);
+  }
+
+  private drawStamp(map: number, inHand: boolean): void {
+    const { context, view } = this;
+    const grid = this.state.grids[map];
+    const pose = this.state.poseOf(map);
+    if (!grid || !pose) return;
+    const { color } = this.state.looks[map];
+    this.stampOf(map, grid, color).draw(context, view, pose);
+    context.strokeStyle = color;
+    context.lineWidth = 2;
+    context.setLineDash([6, 4]);
+    context.beginPath();
+    for (const corner of outline(view, grid, pose)) context.lineTo(corner.x, corner.y);
+    context.closePath();
+    context.stroke();
+    context.setLineDash([]);
+    if (!inHand) return;
+    const handle = handleOf(view, grid, pose);
+    context.beginPath();
+    context.moveTo(handle.from.x, handle.from.y);
+    context.lineTo(handle.at.x, handle.at.y);
+    context.stroke();
+    context.beginPath();
+    context.arc(handle.at.x, handle.at.y, 9, 0, 2 * Math.PI);
+    context.fillStyle = color;
+    context.fill();
+    context.strokeStyle = "#fff";
+    context.stroke();
+  }
+
+  private stampOf(map: number, grid: Grid, color: string): Stamp {
+    const key = `${map} ${color}`;
+    let stamp = this.stamps.get(key);
+    if (!stamp) {
+      // A few are enough: those that were pointed at last.
+      if (this.stamps.size >= 8) this.stamps.delete(this.stamps.keys().next().value!);
+      this.stamps.set(key, (stamp = new Stamp(grid, color)));
+    }
+    return stamp;
+  }
+}
+
+/** The same part of the scene, on a canvas with `ratio` times as many pixels. */
+function scaledBy(view: Viewport, ratio: number): Viewport {
+  return { width: view.width * ratio, height: view.height * ratio, center: view.center, scale: view.scale * ratio };
+}

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+import { mix, parseColor, tint, white } from "./color";
+import { Cell, type Grid, type Level } from "./grid";
+import { type Point, type SE2, apply, compose } from "./se2";
+import { type Viewport, toScreen } from "./viewport";
+
+const mostPixels = 1600;
+
+/** One map as a picture of its own, which can be laid anywhere at once: what tiles are too slow for. */
+export class Stamp {
+  private readonly grid: Grid;
+  private readonly level: Level;
+  private readonly canvas = document.createElement("canvas");
+
+  constructor(grid: Grid, color: string) {
+    this.grid = grid;
+    const { width, height } = grid.finest;
+    this.level = grid.level(Math.max(0, Math.ceil(Math.log2(Math.max(width, height, 1) / mostPixels))));
+    this.canvas.width = Math.max(1, this.level.width);
+    this.canvas.height = Math.max(1, this.level.height);
+    if (this.level.cells.length > 0) this.fill(color);
+  }
+
+  private fill(color: string): void {
+    const { width, height, cells } = this.level;
+    const wall = parseColor(color);
+    const free = mix(white, wall, 2 * tint);
+    const image = new ImageData(width, height);
+    for (let row = 0; row < height; row++) {
+      for (let column = 0; column < width; column++) {
+        const cell = cells[row * width + column];
+        if (cell === Cell.unknown) continue;
+        const at = 4 * ((height - 1 - row) * width + column);
+        const [red, green, blue] = cell === Cell.occupied ? wall : free;
+        image.data.set([red, green, blue, cell === Cell.occupied ? 255 : 120], at);
+      }
+    }
+    this.canvas.getContext("2d")!.putImageData(image, 0, 0);
+  }
+
+  draw(context: CanvasRenderingContext2D, view: Viewport, T_scene_map: SE2): void {
+    const T = compose(T_scene_map, this.grid.origin);
+    const { height, resolution } = this.level;
+    const corner = toScreen(view, apply(T, { x: 0, y: height * resolution }));
+    const cos = view.scale * resolution * Math.cos(T.theta);
+    const sin = view.scale * resolution * Math.sin(T.theta);
+    context.save();
+    context.imageSmoothingEnabled = view.scale * resolution < 1;
+    context.transform(cos, -sin, sin, cos, corner.x, corner.y);
+    context.drawImage(this.canvas, 0, 0);
+    context.restore();
+  }
+}
+
+/** The map's rectangle on the screen, counter-clockwise from its lower left corner. */
+export function outline(view: Viewport, grid: Grid, T_scene_map: SE2): Point[] {
+  return grid.corners().map((p) => toScreen(view, apply(T_scene_map, p)));
+}
+
+/** Where a map in hand is turned: above the middle of its upper edge. */
+export function handleOf(view: Viewport, grid: Grid, T_scene_map: SE2): { from: Point; at: Point } {
+  const [, , upperRight, upperLeft] = outline(view, grid, T_scene_map);
+  const from = { x: (upperRight.x + upperLeft.x) / 2, y: (upperRight.y + upperLeft.y) / 2 };
+  const turn = T_scene_map.theta + grid.origin.theta;
+  return { from, at: { x: from.x - 28 * Math.sin(turn), y: from.y - 28 * Math.cos(turn) } };
+}
+
+/** Whether a point lies in a convex quadrilateral. */
+export function inside(quad: Point[], p: Point): boolean {
+  const sides = quad.map((a, i) => {
+    const b = quad[(i + 1) % quad.length];
+    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+  });
+  return sides.every((side) => side >= 0) || sides.every((side) => side <= 0);
+}

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { test } from "node:test";
+import { asInitialPoses, asJson, asStaticTransforms, asYaml, frameIds, mergeCommand } from "../src/formats";
+
+export const hostileNames = [
+  "$(touch /tmp/owned)", "`id`; rm -rf ~", "a b'c\"d", "</script><script>alert(1)</script>", "-o", "two\nlines", "tab\there",
+  "\u202eover", "{}%s\\", "", "x".repeat(3000), "\u2028\u0085", "\ufffd",
+];
+
+const pose = { x: 1.25, y: -3, theta: 0.1 + 0.2 };
+
+test("JSON holds names and numbers to the bit", () => {
+  const poses = hostileNames.map((name) => ({ name, transform: pose }));
+  const parsed = JSON.parse(asJson("frame\n", poses)) as { frame: string; transforms: { map: string; theta: number }[] };
+  assert.equal(parsed.frame, "frame\n");
+  assert.deepEqual(parsed.transforms.map(({ map }) => map), hostileNames);
+  assert.equal(parsed.transforms[0].theta, 0.1 + 0.2);
+});
+
+test("YAML quotes names so that none of them can be anything else", () => {
+  const yaml = asYaml("the \"frame\"", hostileNames.map((name) => ({ name, transform: pose })));
+  const lines = yaml.trimEnd().split("\n");
+  assert.equal(lines[0], 'frame: "the \\"frame\\""');
+  assert.equal(lines[1], "transforms:");
+  assert.equal(lines.length, 2 + 4 * hostileNames.length);
+  hostileNames.forEach((name, i) => {
+    const [map, x, y, theta] = lines.slice(2 + 4 * i, 6 + 4 * i);
+    assert.ok(map.startsWith('  - map: "') && map.endsWith('"'));
+    assert.ok(!/[\u0000-\u001f\u007f-\u009f\u2028\u2029]/.test(map));
+    assert.equal(JSON.parse(map.slice("  - map: ".length)), name);
+    assert.deepEqual([x, y, theta], ["    x: 1.25", "    y: -3", "    theta: 0.30000000000000004"]);
+  });
+});
+
+test("no number is written as -0", () => {
+  assert.ok(!asYaml("a", [{ name: "b", transform: { x: -0, y: -0, theta: -0 } }]).includes("-0"));
+});
+
+test("static transforms hold nothing but what frames may be called", () => {
+  const ids = frameIds(hostileNames);
+  assert.equal(new Set(ids).size, hostileNames.length);
+  for (const id of ids) assert.match(id, /^[A-Za-z0-9_]+$/);
+  const text = asStaticTransforms("merged", hostileNames.map((name) => ({ name, transform: pose })), ids);
+  for (const line of text.trimEnd().split("\n")) {
+    assert.match(line, /^ros2 run tf2_ros static_transform_publisher --x 1\.25 --y -3 --yaw 0\.30000000000000004 --frame-id merged --child-frame-id [A-Za-z0-9_]+$/);
+  }
+});
+
+test("frames are named after files, with the folder where that tells maps apart", () => {
+  assert.deepEqual(frameIds(["maps/robot_1.yaml", "maps/robot-2.yaml"]), ["robot_1", "robot_2"]);
+  assert.deepEqual(frameIds(["a/map.yaml", "b/map.yaml"]), ["a_map", "b_map"]);
+  assert.deepEqual(frameIds(["a-b.yaml", "a b.yaml"]), ["a_b", "a_b_2"]);
+});
+
+test("a shell reads back every name that the merge command holds", () => {
+  const names = hostileNames.filter((name) => name !== "" && !/[\u0000-\u001f\ufffd]/.test(name));
+  const command = mergeCommand(names, "poses.tsv")!;
+  const read = execFileSync("/bin/sh", ["-c", command.replace("gridmerge merge", "printf '%s\\n'")], { encoding: "utf8" });
+  const expected = [...names.map((name) => (name === "-o" ? "./-o" : name)), "--init", "poses.tsv", "-o", "merged"];
+  assert.deepEqual(read.trimEnd().split("\n"), expected);
+});
+
+test("names that a table cannot hold are not written", () => {
+  for (const name of ["two\nlines", "tab\there", "", "\ufffd", "\u0000"]) {
+    assert.equal(asInitialPoses([{ name, transform: pose, sd: 1, sdTheta: 0.1 }]), null);
+    assert.equal(mergeCommand(["a.yaml", name], "poses.tsv"), null);
+  }
+});
+
+test("a table of initial poses names its columns", () => {
+  assert.equal(asInitialPoses([{ name: "a b.yaml", transform: pose, sd: 0.3, sdTheta: 0.05 }]),
+    "map\tx\ty\ttheta\tsd\tsd_theta\na b.yaml\t1.25\t-3\t0.30000000000000004\t0.3\t0.05\n");
+});

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { probability } from "../src/numbers";
+import { type Report, shortNames, summary } from "../src/report";
+
+test("short names drop only folders that all maps share", () => {
+  assert.deepEqual(shortNames(["m/a/1.yaml", "m/a/2.yaml"]), ["1.yaml", "2.yaml"]);
+  assert.deepEqual(shortNames(["m/a/map.yaml", "m/b/map.yaml"]), ["a/map.yaml", "b/map.yaml"]);
+  assert.deepEqual(shortNames(["m/ab/1", "m/a/1"]), ["ab/1", "a/1"]);
+  assert.deepEqual(shortNames(["/x/1", "y/1", "1"]), ["/x/1", "y/1", "1"]);
+  assert.deepEqual(shortNames(["only.yaml"]), ["only.yaml"]);
+  assert.deepEqual(shortNames([]), []);
+});
+
+test("the summary counts", () => {
+  const report = (joined: number[], leftOut: number, maps: number) => ({
+    maps: Array(maps).fill(null), components: joined.map((n) => ({ members: Array(n).fill(null) })), left_out: Array(leftOut).fill(null),
+  }) as unknown as Report;
+  assert.equal(summary(report([3], 1, 4)), "4 maps: 3 joined into 1 merged map, 1 left out.");
+  assert.equal(summary(report([3, 2], 0, 5)), "5 maps: 5 joined into 2 merged maps, 0 left out.");
+  assert.equal(summary(report([], 2, 2)), "2 maps: 0 joined, 2 left out.");
+});
+
+test("a probability is never rounded to certainty", () => {
+  assert.equal(probability(0.99996), "> 0.999");
+  assert.equal(probability(1e-9), "< 0.001");
+  assert.equal(probability(0.8), "0.800");
+  assert.equal(probability(0), "0.000");
+});
