@@ -13,8 +13,8 @@ class Cancelled : public std::runtime_error {
   Cancelled();
 };
 
-/// Runs `work` so that it ends with Cancelled soon after `cancelled` becomes true, from whichever thread: when
-/// its next parallel_for() begins a call, or at its next throw_if_cancelled(). The threads of its
+/// Runs `work` so that it ends with Cancelled soon after `cancelled` becomes true, from whichever thread:
+/// when its next parallel_for() begins a call, or at its next throw_if_cancelled(). The threads of its
 /// parallel_for() and with_threads() belong to it. An exception of `work` is passed on.
 void with_cancellation(const std::atomic<bool>& cancelled, const std::function<void()>& work);
 
