@@ -35,7 +35,9 @@ from ._simulate import BUILDING_KINDS, SimulatedMap, SimulatedPair, Simulation, 
 from ._transform import PoseLike, Transform
 
 FileError.__module__ = __name__
-FileError.__doc__ = """A file that cannot be read or written. The message is one line that names the file and the cause."""
+FileError.__doc__ = (
+    """A file that cannot be read or written. The message is one line that names the file and the cause."""
+)
 
 __version__ = version("gridmerge")
 

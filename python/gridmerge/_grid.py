@@ -246,5 +246,7 @@ def _checked_place(
 ) -> tuple[float, tuple[float, float, float]]:
     cell = _checked_resolution(f"{prefix}resolution", resolution)
     if max(abs(origin.x), abs(origin.y)) > _FARTHEST_ORIGIN:
-        raise ValueError(f"{prefix}origin: must lie within {_FARTHEST_ORIGIN:g} m, is at {origin.x}, {origin.y}")
+        raise ValueError(
+            f"{prefix}origin: must lie within {_FARTHEST_ORIGIN:g} m, is at {origin.x}, {origin.y}"
+        )
     return cell, (origin.x, origin.y, origin.theta)

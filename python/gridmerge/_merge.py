@@ -33,9 +33,9 @@ class Member:
     probability: float | None
     """That the map lies there, with all that the other maps say of it. The tree does not know."""
     sd_position: float | None
-    """Standard deviation of the middle of the map's known cells [m], 0 of what holds the frame. The tree does not know."""
+    """Standard deviation of the middle of the map's known cells [m]; 0 for what holds the frame, None up the tree."""
     sd_theta: float | None
-    """Standard deviation of the direction [rad], 0 of what holds the frame. The tree does not know."""
+    """Standard deviation of the direction [rad]; 0 for what holds the frame, None up the tree."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -82,7 +82,9 @@ def _yaw(fields: _Fields) -> float:
         raise fields.error(path, "must be a quaternion of length 1")
     length = math.sqrt(x * x + y * y + z * z + w * w)
     if abs(length - 1.0) > _UNIT:
-        raise fields.error(path, f"must be a quaternion of length 1, not {length:.6g} (upright is 0, 0, 0, 1)")
+        raise fields.error(
+            path, f"must be a quaternion of length 1, not {length:.6g} (upright is 0, 0, 0, 1)"
+        )
     if 1.0 - 2.0 * (x * x + y * y) / (length * length) < _LEAST_UPRIGHT:
         raise fields.error(path, "the map is tilted: only a turn about z is a map's")
     return 2.0 * math.atan2(z, w)
@@ -115,5 +117,7 @@ def _listed_values(name: str, data: list[Any] | tuple[Any, ...]) -> NDArray[np.i
         raise TypeError(f"{name}: must hold whole numbers, holds {values.dtype}")
     wrong = values[(values < -1) | (values > 100)]
     if wrong.size:
-        raise ValueError(f"{name}: the value {wrong[0]} is neither -1 (unknown) nor a percentage from 0 to 100")
+        raise ValueError(
+            f"{name}: the value {wrong[0]} is neither -1 (unknown) nor a percentage from 0 to 100"
+        )
     return values.astype(np.int8).reshape(-1)

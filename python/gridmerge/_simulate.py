@@ -128,8 +128,8 @@ def simulate(
     options.width, options.height = _two_numbers("size", size)
     options.robots = _arguments.whole("robots", robots, 1, 1000)
     options.overlap = None if overlap is None else _arguments.share("overlap", overlap)
-    for i, start in enumerate(starts if starts is not None else ()):
-        options.add_start(*_two_numbers(f"starts[{i}]", start))
+    for start in _checked_starts(starts):
+        options.add_start(*start)
     options.longest_way = _arguments.not_negative("longest_way", longest_way)
     options.clutter = _arguments.not_negative("clutter", clutter)
     options.drift = _arguments.not_negative("drift", drift)
@@ -146,10 +146,16 @@ def simulate(
     options.seed = _arguments.whole("seed", seed, 0, 2**64 - 1)
     options.threads = _arguments.threads(threads)
     return _to_simulation(
-        _core.simulate(
-            options, _arguments.whole("others", others, 0, 1000), _arguments.progress(progress)
-        )
+        _core.simulate(options, _arguments.whole("others", others, 0, 1000), _arguments.progress(progress))
     )
+
+
+def _checked_starts(starts: object) -> list[tuple[float, float]]:
+    if starts is None:
+        return []
+    if not isinstance(starts, (Sequence, np.ndarray)) or isinstance(starts, (str, bytes)):
+        raise TypeError(f"starts: must be a sequence of points, is {_arguments.kind_of(starts)}")
+    return [_two_numbers(f"starts[{i}]", start) for i, start in enumerate(starts)]
 
 
 def _two_numbers(name: str, values: object) -> tuple[float, float]:

@@ -31,7 +31,8 @@ EvaluateOptions make_options(int threads, double accept, bool up_the_tree) {
   options.matcher = [match_options](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
     return match(fixed, moving, match_options);
   };
-  options.merger = [match_options, up_the_tree, matcher = options.matcher](const std::vector<OccupancyGrid>& maps) {
+  options.merger = [match_options, up_the_tree,
+                    matcher = options.matcher](const std::vector<OccupancyGrid>& maps) {
     if (up_the_tree) return merge_up_tree(maps, matcher);
     MergeOptions joint;
     joint.match = match_options;

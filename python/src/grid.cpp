@@ -56,7 +56,8 @@ Map from_percentages(const Percentages& data, double resolution, const Pose& ori
   OccupancyGrid grid = frame(data.shape(0), data.shape(1), resolution, origin);
   const nb::gil_scoped_release others_may_run;
   const std::int8_t *begin = data.data(), *end = begin + data.size();
-  const auto wrong = std::find_if(begin, end, [](std::int8_t value) { return value < kUnknown || value > kOccupied; });
+  const auto wrong =
+      std::find_if(begin, end, [](std::int8_t value) { return value < kUnknown || value > kOccupied; });
   if (wrong != end) {
     const auto at = static_cast<std::size_t>(wrong - begin);
     throw std::invalid_argument("data: the value " + std::to_string(*wrong) + " in row " +

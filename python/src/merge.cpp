@@ -105,14 +105,16 @@ void bind_results(nb::module_& module) {
           [](const Merged& merged, std::size_t i) { return merged.result->components.at(i).in_world_frame; },
           nb::arg("component"))
       .def_prop_ro("joins", [](const Merged& merged) { return merged.result->joins; })
-      .def_prop_ro("left_out", [](const Merged& merged) {
-        std::vector<std::tuple<std::size_t, std::string, std::string>> left_out;
-        for (std::size_t i = 0; i < merged.result->left_out.size(); ++i) {
-          const Reason reason = merged.result->left_out_reasons[i];
-          left_out.emplace_back(merged.result->left_out[i], name_of(reason), explain_left_out(reason));
-        }
-        return left_out;
-      })
+      .def_prop_ro("left_out",
+                   [](const Merged& merged) {
+                     std::vector<std::tuple<std::size_t, std::string, std::string>> left_out;
+                     for (std::size_t i = 0; i < merged.result->left_out.size(); ++i) {
+                       const Reason reason = merged.result->left_out_reasons[i];
+                       left_out.emplace_back(merged.result->left_out[i], name_of(reason),
+                                             explain_left_out(reason));
+                     }
+                     return left_out;
+                   })
       .def("save", &save, nb::arg("directory"), nb::arg("names"), nb::arg("more_inputs"));
 }
 

@@ -91,7 +91,9 @@ void bind_options(nb::module_& module) {
       .def(nb::init<>())
       .def("set_kind", &set_kind, nb::arg("name"))
       .def("add_start",
-           [](SimulateOptions& options, double x, double y) { options.starts.push_back({x, y}); })
+           [](SimulateOptions& options, double x, double y) {
+             options.starts.push_back({x, y});
+           })
       .def_rw("width", &SimulateOptions::width)
       .def_rw("height", &SimulateOptions::height)
       .def_rw("robots", &SimulateOptions::robots)
