@@ -28,7 +28,13 @@ class InitialPose:
 MapKey: TypeAlias = int | str
 """A map by its index or its name."""
 
-InitialPoses: TypeAlias = str | os.PathLike[str] | Mapping[MapKey, InitialPose | PoseLike]
+InitialPoses: TypeAlias = (
+    str
+    | os.PathLike[str]
+    | Mapping[int, InitialPose | PoseLike]
+    | Mapping[str, InitialPose | PoseLike]
+    | Mapping[MapKey, InitialPose | PoseLike]
+)
 """A table of poses (a TSV file, as `gridmerge merge --init` reads it), or poses by the maps' indices or names."""
 
 CoreKnown: TypeAlias = tuple[tuple[float, float, float], float, float, bool]

@@ -49,6 +49,7 @@ inline std::string to_string(const nb::bytes& bytes) {
 }
 
 void bind_errors(nb::module_& module);
+void bind_worker(nb::module_& module);
 void bind_grid(nb::module_& module);
 void bind_io(nb::module_& module);
 void bind_match(nb::module_& module);

@@ -2,8 +2,6 @@
 #include "gridmerge/merge/merger.hpp"
 
 #include <map>
-#include <mutex>
-#include <stdexcept>
 #include <utility>
 
 #include "merge.hpp"
@@ -13,44 +11,30 @@ namespace gridmerge::python {
 
 namespace {
 
-/// A Merger that keeps its maps, and of which one thread at a time may ask something: result() runs without
-/// the interpreter's lock.
-class SharedMerger {
+/// A Merger that keeps its maps. One thread at a time may use it, which the package sees to: most of it runs
+/// without the interpreter's lock.
+class MapMerger {
  public:
-  SharedMerger(int threads, double accept, double output_resolution)
+  MapMerger(int threads, double accept, double output_resolution)
       : merger_(make_options(threads, accept, output_resolution, share_)) {}
 
   std::size_t add(const Map& map, const std::optional<Known>& known) {
-    const std::unique_lock lock = take();
     const std::size_t id = merger_.add(*map.grid, to_known_pose(known));
     maps_.emplace(id, map);
     return id;
   }
 
   void update(std::size_t id, const Map& map) {
-    const std::unique_lock lock = take();
     merger_.update(id, *map.grid);
     maps_.at(id) = map;
   }
 
-  void set_known_pose(std::size_t id, const std::optional<Known>& known) {
-    const std::unique_lock lock = take();
-    merger_.set_known_pose(id, to_known_pose(known));
-  }
-
   void remove(std::size_t id) {
-    const std::unique_lock lock = take();
     merger_.remove(id);
     maps_.erase(id);
   }
 
-  std::vector<std::size_t> ids() {
-    const std::unique_lock lock = take();
-    return merger_.maps();
-  }
-
   Merged result(const nb::object& progress) {
-    const std::unique_lock lock = take();
     MergeResult result = compute_in_worker(progress, [&](const Report& report) {
       *share_ = report;
       return merger_.result();
@@ -62,12 +46,6 @@ class SharedMerger {
   }
 
  private:
-  std::unique_lock<std::mutex> take() {
-    std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock) throw std::runtime_error("the Merger is at work in another thread");
-    return lock;
-  }
-
   static MergeOptions make_options(int threads, double accept, double output_resolution,
                                    std::shared_ptr<Report> share) {
     MergeOptions options;
@@ -80,7 +58,6 @@ class SharedMerger {
     return options;
   }
 
-  std::mutex mutex_;
   std::shared_ptr<Report> share_ = std::make_shared<Report>();  // of the result() that is at work
   Merger merger_;
   std::map<std::size_t, Map> maps_;
@@ -89,15 +66,15 @@ class SharedMerger {
 }  // namespace
 
 void bind_merger(nb::module_& module) {
-  nb::class_<SharedMerger>(module, "Merger")
+  nb::class_<MapMerger>(module, "Merger")
       .def(nb::init<int, double, double>(), nb::arg("threads"), nb::arg("accept"),
            nb::arg("output_resolution"))
-      .def("add", &SharedMerger::add, nb::arg("map"), nb::arg("known").none())
-      .def("update", &SharedMerger::update, nb::arg("id"), nb::arg("map"))
-      .def("set_known_pose", &SharedMerger::set_known_pose, nb::arg("id"), nb::arg("known").none())
-      .def("remove", &SharedMerger::remove, nb::arg("id"))
-      .def("ids", &SharedMerger::ids)
-      .def("result", &SharedMerger::result, nb::arg("progress").none());
+      .def("add", &MapMerger::add, nb::arg("map"), nb::arg("known").none(),
+           nb::call_guard<nb::gil_scoped_release>())
+      .def("update", &MapMerger::update, nb::arg("id"), nb::arg("map"),
+           nb::call_guard<nb::gil_scoped_release>())
+      .def("remove", &MapMerger::remove, nb::arg("id"))
+      .def("result", &MapMerger::result, nb::arg("progress").none());
 }
 
 }  // namespace gridmerge::python

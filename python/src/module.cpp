@@ -7,6 +7,7 @@ NB_MODULE(_core, module) {
   // A thread that still runs when Python ends keeps its maps alive; nanobind would print a page about that.
   nb::set_leak_warnings(false);
   bind_errors(module);
+  bind_worker(module);
   bind_grid(module);
   bind_io(module);
   bind_match(module);

@@ -221,11 +221,12 @@ def test_maps_too_far_apart_to_merge(tmp_path: Path) -> None:
         gridmerge.merge([grid, grid], init=poses, fix=[0, 1])
 
 
+@pytest.mark.filterwarnings("ignore:nanobind. attempted to access an uninitialized instance")
 def test_an_uninitialised_core_object_is_no_crash() -> None:
     from gridmerge import _core
 
-    for kind in (_core.Grid, _core.MatchResult, _core.Merged):
-        with pytest.raises(TypeError):
-            kind()
-        with pytest.raises(Exception):  # noqa: B017  an object without a value, in whichever words
-            _core.match(kind.__new__(kind), kind.__new__(kind), 0, 0.8, 10, None)
+    with pytest.raises(TypeError):
+        _core.Grid()
+    empty = _core.Grid.__new__(_core.Grid)
+    with pytest.raises(TypeError):
+        _core.match(empty, empty, 0, 0.8, 10, None)

@@ -74,6 +74,27 @@ def test_ctrl_c_ends_long_work(what: str, tmp_path: Path) -> None:
     assert waited < 10.0  # it would be minutes
 
 
+DAEMON = """
+import atexit, sys, threading, time
+import gridmerge
+
+grid = gridmerge.simulate("office", size=(25, 20), robots=1, others=0).maps[0].grid
+atexit.register(lambda: print(gridmerge.match(grid, grid).accepted, flush=True))
+work = lambda: gridmerge.merge([grid] * 60)
+for _ in range(3):
+    threading.Thread(target=work, daemon=True).start()
+time.sleep(0.3)
+"""
+
+
+@pytest.mark.parametrize("attempt", range(5))
+def test_a_program_ends_while_daemon_threads_work(attempt: int) -> None:
+    ended = subprocess.run(
+        [sys.executable, "-c", DAEMON], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "True\n", "")
+
+
 def test_other_threads_run_meanwhile() -> None:
     steps: list[float] = []
     done = threading.Event()
@@ -131,7 +152,16 @@ def test_a_merger_refuses_a_second_thread(robots: list[str]) -> None:
         other.join()
 
     merger.result(progress=intrude)
-    assert refusals and "another thread" in str(refusals[0])
+    assert refusals and str(refusals[0]) == "the Merger is at work"
+
+
+def test_a_merger_refuses_its_own_progress(robots: list[str]) -> None:
+    merger = gridmerge.Merger()
+    merger.add(robots[0])
+    with pytest.raises(RuntimeError, match="at work"):
+        merger.result(progress=lambda share: merger.add(robots[1]))
+    merger.add(robots[1])
+    assert merger.result().complete
 
 
 def test_an_exception_of_progress_ends_the_work() -> None:

@@ -9,7 +9,8 @@ from gridmerge import Transform
 
 
 def random_transform(rng: np.random.Generator) -> Transform:
-    return Transform(*rng.uniform(-10.0, 10.0, size=2), rng.uniform(-math.pi, math.pi))
+    x, y = rng.uniform(-10.0, 10.0, size=2)
+    return Transform(x, y, rng.uniform(-math.pi, math.pi))
 
 
 @pytest.mark.parametrize("seed", range(20))
