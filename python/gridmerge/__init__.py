@@ -34,11 +34,6 @@ from ._message import OccupancyGridMessage
 from ._simulate import BUILDING_KINDS, SimulatedMap, SimulatedPair, Simulation, simulate
 from ._transform import PoseLike, Transform
 
-FileError.__module__ = __name__
-FileError.__doc__ = (
-    """A file that cannot be read or written. The message is one line that names the file and the cause."""
-)
-
 __version__ = version("gridmerge")
 
 __all__ = [
@@ -79,3 +74,12 @@ __all__ = [
     "save",
     "simulate",
 ]
+
+# In messages and help() things are where they are imported from.
+for _name in __all__:
+    if hasattr(globals()[_name], "__module__"):
+        globals()[_name].__module__ = __name__
+
+FileError.__doc__ = (
+    """A file that cannot be read or written. The message is one line that names the file and the cause."""
+)

@@ -17,7 +17,6 @@ import pytest
 LONG_WORK = {
     "simulate": "gridmerge.simulate('office', size=(300, 250), robots=8, drift=0.5)",
     "simulate with overlap": "gridmerge.simulate('office', size=(200, 150), robots=8, overlap=0.4)",
-    "match": "gridmerge.match(large, large)",
     "merge": "gridmerge.merge([small] * 60)",
     "merge up the tree": "gridmerge.merge([small] * 60, strategy='tree')",
     "evaluate": "gridmerge.evaluate(pairs)",
@@ -32,7 +31,6 @@ import gridmerge
 folder = sys.argv[1]
 grid = gridmerge.simulate("office", size=(25, 20), robots=1, others=0).maps[0].grid
 small = gridmerge.OccupancyGrid(grid.to_numpy(), grid.resolution)
-large = gridmerge.OccupancyGrid(np.tile(small.to_numpy(), (8, 8)), small.resolution)
 gridmerge.save(small, folder + "/small.yaml")
 pairs = folder + "/pairs.tsv"
 with open(pairs, "w") as table:
@@ -58,6 +56,8 @@ def test_ctrl_c_ends_long_work(what: str, tmp_path: Path) -> None:
         text=True,
     )
     assert process.stdout is not None
+    hung = threading.Timer(60.0, process.kill)
+    hung.start()
     try:
         assert process.stdout.readline() == "begin\n"
         time.sleep(0.5)
@@ -68,10 +68,11 @@ def test_ctrl_c_ends_long_work(what: str, tmp_path: Path) -> None:
         assert process.stdout.readline() == "True\n"
         assert process.wait() == 0
     finally:
+        hung.cancel()
         process.kill()
         process.stdout.close()
     print(f"{what}: {waited:.3f} s from the signal to KeyboardInterrupt")
-    assert waited < 10.0  # it would be minutes
+    assert waited < 5.0  # without it, it would be minutes
 
 
 DAEMON = """

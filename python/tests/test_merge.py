@@ -193,6 +193,17 @@ def test_plots(robots: list[str], elsewhere: str) -> None:
     gridmerge.load(robots[0]).plot().figure.canvas.draw()
 
 
+def test_a_plot_puts_maps_where_their_members_lie(robots: list[str]) -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    result = gridmerge.merge(robots)
+    axes = result.plot()
+    drawn = [(image.get_transform() - axes.transData).transform((0.5, 0.25)) for image in axes.get_images()]
+    for member in result.components[0].members:
+        expected = member.transform.apply(result.maps[member.map].origin.apply([0.5, 0.25]))
+        assert sum(np.allclose(point, expected, atol=1e-9) for point in drawn) == 2  # free space and walls
+
+
 def test_a_plot_puts_walls_where_they_are() -> None:
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")

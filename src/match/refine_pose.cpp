@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "hypotheses.hpp"
@@ -81,6 +82,8 @@ double displacement(const PreparedMap& fixed, const PreparedMap& moving, const S
 }  // namespace
 
 RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_start) {
+  if (!std::isfinite(T_start.x) || !std::isfinite(T_start.y) || !std::isfinite(T_start.theta))
+    throw std::invalid_argument("the pose to start from is not finite");
   const bool swapped = is_smaller(fixed, moving);
   const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);
   const SE2 T_start_maps = swapped ? inverse(T_start) : T_start;

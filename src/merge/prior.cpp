@@ -60,7 +60,18 @@ void apply_known_poses(const KnownPose& fixed, const KnownPose& moving, const Ma
         difference(fixed_extent, moving_extent, candidate.T_fixed_moving, T_fixed_moving) <= near;
     candidate.log_odds += is_near ? nats : -nats;
   }
-  if (sd <= tolerance) pair.candidates.push_back({T_fixed_moving, nats, sd, true});
+  if (sd > tolerance) return;
+  // What the maps themselves propose there is the same way to lie, not a rival of it.
+  CandidateJoin* there = nullptr;
+  for (CandidateJoin& candidate : pair.candidates) {
+    const bool is_there =
+        difference(fixed_extent, moving_extent, candidate.T_fixed_moving, T_fixed_moving) <= tolerance;
+    if (is_there && (there == nullptr || candidate.log_odds > there->log_odds)) there = &candidate;
+  }
+  if (there == nullptr)
+    pair.candidates.push_back({T_fixed_moving, nats, sd, true});
+  else
+    there->log_odds = std::max(there->log_odds, nats);
 }
 
 }  // namespace gridmerge

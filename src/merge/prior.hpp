@@ -12,7 +12,7 @@ void validate_known_pose(const KnownPose& known);
 
 /// What two known poses, not both fixed, say of how their maps lie to each other: candidates near it become
 /// likelier, others less likely, by more the better the poses are known; and if they are known as well as a
-/// match tells a pose, what is known is one more candidate.
+/// match tells a pose, what is known is a candidate too, of its own if none of the maps' lies there.
 void apply_known_poses(const KnownPose& fixed, const KnownPose& moving, const MapExtent& fixed_extent,
                        const MapExtent& moving_extent, PairCandidates& pair);
 

@@ -2,6 +2,7 @@
 #include "gridmerge/merge/refine_member.hpp"
 
 #include <stdexcept>
+#include <string>
 
 #include "gridmerge/merge/fuse.hpp"
 #include "joins.hpp"
@@ -14,10 +15,14 @@ constexpr double kMostCells = 67108864.0;  // 2^26
 
 OccupancyGrid fuse_in_bounds(const std::vector<PlacedMap>& maps) {
   const double resolution = finest_resolution(maps);
-  const Lattice lattice = cover(maps, resolution);
-  if (static_cast<double>(lattice.width) * lattice.height > kMostCells)
-    throw std::invalid_argument("the fixed maps lie too far apart: together they would exceed 2^26 cells");
-  return fuse(maps, resolution).grid;
+  try {
+    const Lattice lattice = cover(maps, resolution);
+    if (static_cast<double>(lattice.width) * lattice.height > kMostCells)
+      throw std::invalid_argument("the merged map would exceed 2^26 cells");
+    return fuse(maps, resolution).grid;
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("the fixed maps: ") + error.what());
+  }
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <stdexcept>
 
 extern char** environ;
@@ -113,6 +114,13 @@ void drain(Channel& out, std::string& out_text, Channel& err, std::string& err_t
   }
 }
 
+int exit_code_of(pid_t child) {
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
 }  // namespace
 
 Outcome run(const std::vector<std::string>& arguments, const RunOptions& options) {
@@ -125,10 +133,38 @@ Outcome run(const std::vector<std::string>& arguments, const RunOptions& options
 
   Outcome outcome;
   drain(out, outcome.out, err, outcome.err);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  outcome.exit_code = exit_code_of(child);
+  return outcome;
+}
+
+RunningProgram::RunningProgram(const std::vector<std::string>& arguments) {
+  Channel out = open_channel(false);
+  Channel err = open_channel(false);
+  child_ = start(arguments, {}, out, err);
+  out.close_write_end();
+  err.close_write_end();
+  out_ = out.read_end;
+  err_ = err.read_end;
+}
+
+RunningProgram::~RunningProgram() {
+  if (child_ != 0) end_with(SIGKILL);
+}
+
+std::string RunningProgram::read_line() {
+  std::string line;
+  char c = 0;
+  while (::read(out_, &c, 1) == 1 && c != '\n') line += c;
+  return line;
+}
+
+Outcome RunningProgram::end_with(int signal) {
+  ::kill(child_, signal);
+  Outcome outcome;
+  Channel out{out_, -1}, err{err_, -1};
+  drain(out, outcome.out, err, outcome.err);
+  outcome.exit_code = exit_code_of(child_);
+  child_ = 0;
   return outcome;
 }
 

@@ -25,6 +25,26 @@ struct RunOptions {
 /// Runs the built program with these arguments and waits for it.
 Outcome run(const std::vector<std::string>& arguments, const RunOptions& options = {});
 
+/// A run of the program that goes on beside the test. Ended with SIGKILL if need be when the object goes.
+class RunningProgram {
+ public:
+  explicit RunningProgram(const std::vector<std::string>& arguments);
+  ~RunningProgram();
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+
+  /// The next line of stdout, without its end; "" when there will be none.
+  std::string read_line();
+
+  /// Sends the signal and waits for the end. The outcome's stdout is what was not read before.
+  Outcome end_with(int signal);
+
+ private:
+  int child_ = 0;
+  int out_ = -1;
+  int err_ = -1;
+};
+
 /// Number of lines; a last one without its newline counts.
 std::size_t count_lines(const std::string& text);
 

@@ -9,7 +9,7 @@
 namespace gridmerge::test {
 namespace {
 
-const std::vector<std::string> kCommands = {"info", "match", "merge", "report", "evaluate"};
+const std::vector<std::string> kCommands = {"info", "match", "merge", "report", "view", "evaluate"};
 
 class WrongUsage : public testing::TestWithParam<std::vector<std::string>> {};
 
@@ -44,6 +44,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "0"},
                     Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "1e-7"},
                     Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "1e5"},
+                    Words{"view"}, Words{"view", "a", "--port", "65536"}, Words{"view", "a", "--port", "-1"},
+                    Words{"view", "a", "--port", "http"}, Words{"view", "a", "--address", "0.0.0.0"},
+                    Words{"view", "a", "--address", "::"}, Words{"view", "a", "--address", ""},
                     Words{"report"}, Words{"report", "a", "b"}, Words{"report", "a", "--resolution", "0"},
                     Words{"evaluate"}, Words{"evaluate", "--json", "result.json"},
                     Words{"evaluate", "a.tsv", "b.tsv"}));

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
+#include <stdexcept>
 
 #include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/match/match.hpp"
@@ -131,6 +133,13 @@ TEST(RefinePose, StaysWhereNothingSpeaksForAnyPose) {
   EXPECT_EQ(refined.score, 0.0);
   EXPECT_EQ(refined.probability, 0.0);
   EXPECT_EQ(refined.agreement + refined.disagreement, 0);
+}
+
+TEST(RefinePose, RefusesAStartThatIsNotFinite) {
+  const PreparedMap map(test::draw_building(1));
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (const SE2& T : {SE2{kNaN, 0, 0}, SE2{0, kNaN, 0}, SE2{0, 0, std::numeric_limits<double>::infinity()}})
+    EXPECT_THROW(refine_pose(map, map, T), std::invalid_argument);
 }
 
 TEST(RefinePose, OfMapsWithNothingToGoBy) {

@@ -135,10 +135,15 @@ function layOver(out: Uint8ClampedArray, sums: Float32Array, opacities: Float32A
     opacities[pixel]);
 }
 
-/** What layers agree on is black and white, what they contradict each other in has a colour of its own. */
+/**
+ * What layers agree on is black and white, what they contradict each other in has a colour of its own: in full where as
+ * many say wall as floor, fainter the fewer say otherwise, since many bent maps differ a little everywhere.
+ */
 function mark(out: Uint8ClampedArray, walls: number, frees: number, pixel: number, opacity: number): void {
   if (walls + frees < 2) return;
-  const color = walls === 0 ? white : frees === 0 ? ink : disagreement;
+  const agreed = walls >= frees ? ink : white;
+  const discord = (2 * Math.min(walls, frees)) / (walls + frees);
+  const color = discord === 0 ? agreed : mix(agreed, disagreement, discord);
   over(out, 4 * pixel, color[0], color[1], color[2], opacity);
 }
 

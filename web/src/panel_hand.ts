@@ -31,7 +31,7 @@ export class HandPanel {
   private readonly answer = h("p", { class: "answer", role: "status" });
   private readonly saving = h("div", { class: "saving" });
   private readonly sure = h("input", { type: "number", id: "hand-sd", min: 0.01, step: 0.1, value: 0.3 });
-  private readonly sureAngle = h("input", { type: "number", id: "hand-sd-theta", min: 0.1, step: 0.5, value: 3 });
+  private readonly sureAngle = h("input", { type: "number", id: "hand-sd-theta", min: 0.1, step: 0.5, value: 2 });
   private inputs: PoseInput[] = [];
   private toolsOf: number | null = null;
   private scorers = new Map<number, Scorer>();
@@ -78,7 +78,7 @@ export class HandPanel {
       if (state.handled !== map) return;
       state.put(map, refined.transform);
       this.answer.textContent = `Moved by ${fixed(refined.moved, 2)} m. Score ${fixed(refined.start_score, 0)} → ` +
-        `${fixed(refined.score, 0)}, probability ${probability(refined.probability)}.`;
+        `${fixed(refined.score, 0)}. Probability by the maps alone ${probability(refined.probability)}.`;
     } catch (error) {
       this.answer.textContent = `Not refined: ${error instanceof Error ? error.message : String(error)}`;
     }
@@ -210,7 +210,7 @@ export class HandPanel {
 
   private save(): void {
     const sd = Math.max(0.001, this.sure.valueAsNumber || 0.3);
-    const sdTheta = radians(Math.max(0.01, this.sureAngle.valueAsNumber || 3));
+    const sdTheta = radians(Math.max(0.01, this.sureAngle.valueAsNumber || 2));
     const byHand = this.state.byHand();
     const text = asInitialPoses(this.state.placed().map(({ map, T_scene_map }) => ({
       name: this.state.report.maps[map].name,

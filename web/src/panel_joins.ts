@@ -153,5 +153,9 @@ function figures(join: Join): HTMLElement {
     ["Cells that do not", String(join.disagreement)],
     ["Overlap", percent(join.overlap)],
   ];
-  return h("dl", { class: "figures" }, ...pairs.flatMap(([term, value]) => [h("dt", {}, term), h("dd", {}, value)]));
+  const list = h("dl", { class: "figures" }, ...pairs.flatMap(([term, value]) => [h("dt", {}, term), h("dd", {}, value)]));
+  const [best] = join.hypotheses;
+  // Counts are made for the best hypothesis; consistency may have chosen another one.
+  const isBest = !best || JSON.stringify(best.transform) === JSON.stringify(join.transform);
+  return h("div", {}, list, isBest ? null : h("p", { class: "soft" }, "Index, cells and overlap are those of hypothesis 1."));
 }

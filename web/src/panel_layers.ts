@@ -151,7 +151,7 @@ export class LayersPanel {
     if (leftOut.length === 0) return null;
     const items = leftOut.map(({ map, explanation }) => h("li", { "data-map": map },
       h("div", {}, badge(this.state, map), name(this.state.names[map], maps[map].name)),
-      h("p", { class: "soft" }, explanation + "."),
+      h("p", { class: "soft" }, `${explanation.charAt(0).toUpperCase()}${explanation.slice(1)}.`),
       h("div", { class: "buttons" },
         h("button", { type: "button", click: () => this.showLeftOut(map) }, "Show"),
         components.length === 0 && maps.length < 2 ? null

@@ -39,7 +39,7 @@ export const outcomes: readonly Outcome[] = ["accepted", "rescued", "known", "re
 
 export const outcomeMeaning: Record<Outcome, string> = {
   accepted: "believed by itself",
-  rescued: "too weak by itself, but it agrees with what the other maps say",
+  rescued: "too weak by itself, but it agrees with the other maps, or with a pose that was given",
   known: "they lie so because their poses were given",
   rejected: "would be believed by itself, but contradicts the other maps",
   refused: "not believed",

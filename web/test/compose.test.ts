@@ -46,6 +46,16 @@ test("what two layers say alike is black or white, what they contradict each oth
   assert.deepEqual(both(Cell.free, Cell.occupied, 0), [...orange, 255], "a wall lies over free space");
 });
 
+test("the fewer maps say otherwise, the fainter is the contradiction", () => {
+  const vote = (walls: number, frees: number) => pixel({
+    layers: [...Array(walls).fill(layer(one(Cell.occupied))), ...Array(frees).fill(layer(one(Cell.free)))], agreement: 1,
+  });
+  assert.deepEqual(vote(2, 2), [...disagreement, 255]);
+  const blueOf = (color: number[]) => color[2];
+  assert.ok(blueOf(vote(1, 9)) > blueOf(vote(3, 7)) && blueOf(vote(3, 7)) > blueOf(vote(5, 5)), "from white to vermilion");
+  assert.ok(blueOf(vote(9, 1)) > blueOf(vote(7, 3)) && vote(9, 1)[0] < vote(7, 3)[0], "from black to vermilion");
+});
+
 test("the merged map lies below", () => {
   const merged = { grid: one(Cell.occupied), opacity: 1 };
   assert.deepEqual(pixel({ merged }), [...ink, 255]);

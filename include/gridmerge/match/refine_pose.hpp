@@ -30,8 +30,9 @@ struct RefinedPose {
 /// Where another pose explains the maps better, the lead is negative and the probability below a half; where
 /// the pose explains nothing it is 0. That somebody proposed the pose counts for nothing in it.
 ///
-/// `T_start` is finite. Neither pose nor figures depend on which map is called fixed, but for rounding, nor
-/// on the number of threads. Runs in the calling TBB arena; about twice the time of match().
+/// Throws std::invalid_argument for a start that is not finite. Neither pose nor figures depend on which map
+/// is called fixed, but for rounding, nor on the number of threads. Runs in the calling TBB arena; about
+/// twice the time of match().
 RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_start);
 
 }  // namespace gridmerge

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/report/refine_request.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "io/support.hpp"
+
+namespace gridmerge {
+namespace {
+
+using test::contains;
+using test::message_of;
+
+std::string complaint(const std::string& text) {
+  return message_of<std::invalid_argument>([&] { parse_refine_request(text, 3); });
+}
+
+TEST(RefineRequest, HoldsWhatWasAsked) {
+  const RefineRequest request = parse_refine_request(
+      R"({"moving": 2, "transform": {"x": 1.25, "y": -3, "theta": 7}, "more": [],
+          "fixed": [{"map": 0, "transform": {"x": 0, "y": 0, "theta": 0}},
+                    {"map": 1, "transform": {"x": 1e7, "y": 4.5, "theta": -0.25}}]})",
+      3);
+  EXPECT_EQ(request.moving.map, 2u);
+  EXPECT_EQ(request.moving.T_page_map, (SE2{1.25, -3.0, normalize_angle(7.0)}));
+  ASSERT_EQ(request.fixed.size(), 2u);
+  EXPECT_EQ(request.fixed[0].map, 0u);
+  EXPECT_EQ(request.fixed[1].map, 1u);
+  EXPECT_EQ(request.fixed[1].T_page_map, (SE2{1e7, 4.5, -0.25}));
+}
+
+TEST(RefineRequest, SaysWhatIsWrongAndWhere) {
+  const std::string pose = R"("transform": {"x": 0, "y": 0, "theta": 0})";
+  const auto with_fixed = [&](const std::string& fixed) {
+    return "{\"moving\": 0, " + pose + ", \"fixed\": " + fixed + "}";
+  };
+  EXPECT_TRUE(contains(complaint("nonsense"), "is no JSON"));
+  EXPECT_EQ(complaint("[]"), "the text is no object");
+  EXPECT_EQ(complaint("{}"), "moving is missing");
+  EXPECT_EQ(complaint("{\"moving\": 3}"), "moving is no map: 3 of 3, counted from 0");
+  EXPECT_EQ(complaint("{\"moving\": 0}"), "transform is missing");
+  EXPECT_TRUE(
+      contains(complaint(R"({"moving": 0, "transform": {"x": 1e308, "y": 0, "theta": 0}})"), "transform.x"));
+  EXPECT_TRUE(
+      contains(complaint(R"({"moving": 0, "transform": {"x": 1e999, "y": 0, "theta": 0}})"), "is no JSON"));
+  EXPECT_TRUE(contains(complaint(R"({"moving": 0, "transform": {"x": 0, "y": 0, "theta": 101}})"), "theta"));
+  EXPECT_EQ(complaint("{\"moving\": 0, " + pose + "}"), "fixed is missing");
+  EXPECT_EQ(complaint(with_fixed("{}")), "fixed is no list");
+  EXPECT_EQ(complaint(with_fixed("[]")), "fixed holds no map");
+  EXPECT_EQ(complaint(with_fixed("[{\"map\": 1}]")), "fixed[0].transform is missing");
+  EXPECT_EQ(complaint(with_fixed("[{\"map\": 0, " + pose + "}]")), "fixed[0].map is the moving map");
+  EXPECT_EQ(complaint(with_fixed("[{\"map\": 1, " + pose + "}, {\"map\": 1, " + pose + "}]")),
+            "fixed[1].map is there twice");
+}
+
+TEST(RefineRequest, TheAnswerIsTheDocumentedText) {
+  RefinedPose pose;
+  pose.T_fixed_moving = {1.25, -0.0, 0.5};
+  pose.score = 512.5;
+  pose.start_score = -3.0;
+  pose.moved = 0.75;
+  pose.probability = 0.875;
+  pose.acceptance_index = 0.9375;
+  pose.agreement = 15;
+  pose.disagreement = 1;
+  pose.overlap = 0.25;
+  EXPECT_EQ(refined_pose_json(pose),
+            R"({"transform":{"x":1.25,"y":0.0,"theta":0.5},"score":512.5,"probability":0.875,)"
+            R"("acceptance_index":0.9375,"agreement":15,"disagreement":1,"overlap":0.25,"start_score":-3.0,)"
+            R"("moved":0.75})"
+            "\n");
+}
+
+}  // namespace
+}  // namespace gridmerge

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// All tests in a real browser, one after the other.
+import { after, before } from "node:test";
+import { start, stop } from "./browser";
+import "./opening";
+import "./looking";
+import "./joins";
+import "./transforms";
+import "./by_hand";
+import "./hostile";
+import "./palette";
+
+before(start);
+after(stop);

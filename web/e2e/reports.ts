@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+import { spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, statSync } from "node:fs";
+import { join } from "node:path";
+
+export const program = process.env.GRIDMERGE!;
+export const source = process.env.GRIDMERGE_SOURCE!;
+const work = join(source, "build/web");
+
+/** Where pictures of the pages go, to be looked at. */
+export const screenshots = join(work, "screenshots");
+mkdirSync(screenshots, { recursive: true });
+
+export const examples = [1, 2, 3].map((i) => `examples/three_robots/robot_${i}.yaml`);
+export const elsewhere = "examples/three_robots/elsewhere.yaml";
+
+/** Runs gridmerge from the project's folder; returns its exit code and what it printed. */
+export function gridmerge(...args: string[]): { status: number | null; output: string } {
+  const { status, stdout, stderr } = spawnSync(program, args, { cwd: source, encoding: "utf8" });
+  return { status, output: stdout + stderr };
+}
+
+function must(allowed: number[], ...args: string[]): void {
+  const { status, output } = gridmerge(...args);
+  if (status === null || !allowed.includes(status)) throw new Error(`gridmerge ${args.join(" ")}: ${output}`);
+}
+
+/** Merges maps into a folder of that name. Returns the folder. */
+export function mergeInto(name: string, maps: string[], ...options: string[]): string {
+  const folder = join(work, "reports", name);
+  must([0, 3], "merge", ...maps, "-o", folder, "--quiet", ...options);
+  return folder;
+}
+
+/** The maps of simulated robots; made once, since the same options give the same maps. */
+export function simulated(name: string, robots: number, options: string[]): string[] {
+  const folder = join(work, "maps", name);
+  const last = join(folder, `robot_${robots}.yaml`);
+  const made = existsSync(last) && statSync(last).mtimeMs > statSync(program).mtimeMs;
+  if (!made) must([0], "simulate", "--robots", String(robots), ...options, "-o", folder, "--quiet");
+  return [...Array(robots).keys()].map((i) => join(folder, `robot_${i + 1}.yaml`));
+}
+
+export const six = () => simulated("six", 6, ["--kind", "office", "--size", "50x30", "--overlap", "0.4", "--seed", "5"]);
+export const eighteen = () =>
+  simulated("eighteen", 18, ["--kind", "office", "--size", "60x40", "--overlap", "0.8", "--seed", "5"]);
+/** Merged, they are of more than 4000 by 4000 cells. */
+export const large = () =>
+  simulated("large", 3, ["--kind", "office", "--size", "80x80", "--resolution", "0.02", "--overlap", "0.5", "--seed", "3"]);
