@@ -12,6 +12,7 @@ that is named first: that of ``match(fixed, moving)`` takes a point of the movin
 """
 
 from importlib.metadata import version
+from types import FunctionType
 
 from ._core import FileError
 from ._evaluate import (
@@ -75,11 +76,11 @@ __all__ = [
     "simulate",
 ]
 
-# In messages and help() things are where they are imported from.
-for _name in __all__:
-    if hasattr(globals()[_name], "__module__"):
-        globals()[_name].__module__ = __name__
-
 FileError.__doc__ = (
-    """A file that cannot be read or written. The message is one line that names the file and the cause."""
+    "A file that cannot be read or written. The message is one line that names the file and the cause."
 )
+
+# In messages and help() things are where they are imported from.
+for _public in [globals()[_name] for _name in __all__]:
+    if isinstance(_public, (type, FunctionType)):
+        _public.__module__ = __name__
