@@ -60,6 +60,7 @@ void save(const Merged& merged, const nb::bytes& directory, const std::vector<nb
   for (const Map& map : merged.maps) inputs.insert(inputs.end(), map.files.begin(), map.files.end());
   for (const nb::bytes& input : more_inputs) inputs.emplace_back(to_string(input));
   std::vector<std::string> texts;
+  texts.reserve(names.size());
   for (const nb::bytes& name : names) texts.push_back(to_string(name));
   const std::filesystem::path path = to_string(directory);
   const nb::gil_scoped_release others_may_run;

@@ -101,8 +101,8 @@ class Registry {
 
 // Never destroyed: threads that sleep for ever may still be told of in it.
 Registry& registry() {
-  static auto* const kOne = new Registry;
-  return *kOne;
+  static auto* const one = new Registry;
+  return *one;
 }
 
 Worker::Worker(const std::function<void(const Report&)>& work) : thread_([this, &work] { run(work); }) {

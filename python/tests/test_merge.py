@@ -67,8 +67,6 @@ def assert_equals_the_command_lines(
     names = sorted(path.name for path in (folder / "cli").iterdir())
     assert names == sorted(path.name for path in (folder / "python").iterdir())
     for name in names:
-        if name == "report.html":  # tells how long each match took
-            continue
         assert (folder / "cli" / name).read_bytes() == (folder / "python" / name).read_bytes(), name
     transforms = json.loads((folder / "cli" / "transforms.json").read_text())
     assert to_bits(as_json(result)) == to_bits(transforms)
