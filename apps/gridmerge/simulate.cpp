@@ -74,15 +74,6 @@ SimulateOptions make_options(const SimulateCommandOptions& options) {
   return simulation;
 }
 
-/// One robot in another building of the same kind.
-SimulateOptions elsewhere_options(SimulateOptions simulation, int number) {
-  simulation.robots = 1;
-  simulation.overlap.reset();
-  simulation.starts.clear();
-  simulation.seed = simulation.seed * 1000003 + static_cast<std::uint64_t>(number) + 1;
-  return simulation;
-}
-
 std::string describe(const Simulation& simulation, const std::string& output) {
   std::string text;
   const auto out = std::back_inserter(text);
@@ -108,7 +99,7 @@ int run_simulate(const SimulateCommandOptions& options) {
   const Simulation simulation = simulate(simulation_options);
   std::vector<Simulation> elsewhere;
   for (int i = 0; i < options.others; ++i) {
-    SimulateOptions other = elsewhere_options(simulation_options, i);
+    SimulateOptions other = gridmerge::elsewhere(simulation_options, i);
     other.progress = [&](double share) { console.progress((i + 1 + share) / (1.0 + options.others)); };
     elsewhere.push_back(simulate(other));
   }

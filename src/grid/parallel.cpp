@@ -11,15 +11,20 @@
 
 #include <atomic>
 
+#include "cancellation_scope.hpp"
+#include "gridmerge/grid/cancellation.hpp"
+
 namespace gridmerge {
 
 void with_threads(int threads, const std::function<void()>& work) {
   std::atomic<int> begun{0};
   std::atomic<int> ended{0};
+  const std::atomic<bool>* const cancellation = current_cancellation();
   begun.store(1, std::memory_order_release);
   tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : threads);
   arena.execute([&] {
     (void)begun.load(std::memory_order_acquire);
+    const CancellationScope scope(cancellation);
     work();
     ended.store(1, std::memory_order_release);
   });
@@ -29,9 +34,12 @@ void with_threads(int threads, const std::function<void()>& work) {
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
   std::atomic<int> begun{0};
   std::atomic<std::size_t> ended{0};
+  const std::atomic<bool>* const cancellation = current_cancellation();
   begun.store(1, std::memory_order_release);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     (void)begun.load(std::memory_order_acquire);
+    const CancellationScope scope(cancellation);
+    throw_if_cancelled();
     body(i);
     ended.fetch_add(1, std::memory_order_release);
   });

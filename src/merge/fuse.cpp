@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "gridmerge/grid/cancellation.hpp"
+
 namespace gridmerge {
 
 namespace {
@@ -47,7 +49,10 @@ FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution) {
 
   Totals total{std::vector<std::int32_t>(fused.grid.cells.size(), 0),
                std::vector<std::uint8_t>(fused.grid.cells.size(), 0)};
-  for (const PlacedMap& input : inputs) add(draw_log_odds(input, lattice), lattice, total);
+  for (const PlacedMap& input : inputs) {
+    throw_if_cancelled();
+    add(draw_log_odds(input, lattice), lattice, total);
+  }
 
   for (std::size_t i = 0; i < fused.grid.cells.size(); ++i) {
     const bool conflict = (total.witnesses[i] & kSawFree) != 0 && (total.witnesses[i] & kSawOccupied) != 0;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "gridmerge/grid/cancellation.hpp"
+
 namespace gridmerge {
 
 namespace {
@@ -79,6 +81,7 @@ Exploration explore(const FloorPlan& plan, const RayCaster& caster, const Errand
     if (goal < 0) break;
     const std::vector<Point2> path = search.path_to(goal);
     for (std::size_t i = 1; i < path.size() && way < errand.longest_way; ++i) {
+      throw_if_cancelled();
       const Point2 d{path[i].x - path[i - 1].x, path[i].y - path[i - 1].y};
       const double step = std::hypot(d.x, d.y);
       const double heading = std::atan2(d.y, d.x);

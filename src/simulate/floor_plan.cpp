@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "gridmerge/grid/cancellation.hpp"
+
 namespace gridmerge {
 
 namespace {
@@ -46,6 +48,7 @@ FloorPlan::FloorPlan(const std::vector<Edge>& edges, double robot_radius) {
   free_.assign(static_cast<std::size_t>(width_) * height_, 1);
 
   for (const Edge& edge : edges) {
+    throw_if_cancelled();
     const double length = std::hypot(edge.b.x - edge.a.x, edge.b.y - edge.a.y);
     const int pieces = std::max(1, static_cast<int>(length / (0.5 * kCell)));
     const int reach = static_cast<int>(robot_radius / kCell);
@@ -135,6 +138,7 @@ PathSearch::PathSearch(const FloorPlan& plan)
       parent_(visit_.size()) {}
 
 int PathSearch::search(int from, double reach, const std::function<bool(int, double)>& stop) {
+  throw_if_cancelled();
   ++searches_;
   constexpr double kUnit = FloorPlan::kCell / kStraight;  // [m]
   std::array<std::vector<int>, kBuckets> buckets;

@@ -208,4 +208,12 @@ Simulation simulate(const SimulateOptions& options) {
   return simulation;
 }
 
+SimulateOptions elsewhere(SimulateOptions options, int number) {
+  options.robots = 1;
+  options.overlap.reset();
+  options.starts.clear();
+  options.seed = options.seed * 1000003 + static_cast<std::uint64_t>(number) + 1;
+  return options;
+}
+
 }  // namespace gridmerge

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "drift.hpp"
+#include "gridmerge/grid/cancellation.hpp"
 #include "mapper.hpp"
 #include "tidy.hpp"
 #include "visit.hpp"
@@ -122,6 +123,7 @@ Survey survey(const SimulateOptions& options, const Visit& visit, const Errand& 
   Mapper mapper(options.resolution, farthest(path) + options.sensor.range + 5.0);
   const int beams = static_cast<int>(options.sensor.field_of_view / options.sensor.angular_step) + 1;
   for (const SE2& pose : path) {
+    throw_if_cancelled();
     const SE2 T_map_robot = T_map_building * belief.follow(pose);
     for (int i = 0; i < beams; ++i) {
       const double angle = -0.5 * options.sensor.field_of_view + i * options.sensor.angular_step;

@@ -93,4 +93,8 @@ struct Simulation {
 /// times the planning where an overlap is asked for.
 Simulation simulate(const SimulateOptions& options);
 
+/// The options for one robot in another building of the same kind, a different one for each `number` from 0
+/// on: its map is a negative.
+SimulateOptions elsewhere(SimulateOptions options, int number);
+
 }  // namespace gridmerge

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <stdexcept>
+
+namespace gridmerge {
+
+/// What work ends with that was asked to stop.
+class Cancelled : public std::runtime_error {
+ public:
+  Cancelled();
+};
+
+/// Runs `work` so that it ends with Cancelled soon after `cancelled` becomes true, from whichever thread:
+/// when its next parallel_for() begins a call, or at its next throw_if_cancelled(). The threads of its
+/// parallel_for() and with_threads() belong to it. An exception of `work` is passed on.
+void with_cancellation(const std::atomic<bool>& cancelled, const std::function<void()>& work);
+
+/// For long loops that call no parallel_for(): throws Cancelled if the work they belong to was asked to stop.
+/// A few nanoseconds; without with_cancellation() it never throws.
+void throw_if_cancelled();
+
+}  // namespace gridmerge

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Merges occupancy grid maps made by robots that do not know where the others are.
+
+>>> import gridmerge
+>>> result = gridmerge.merge(["robot_1.yaml", "robot_2.yaml", "robot_3.yaml"])
+>>> for member in result.components[0].members:
+...     print(member.name, member.transform)
+>>> result.save("merged")
+
+Metres and radians, angles counter-clockwise. A transform takes points of the frame that is named last to the one
+that is named first: that of ``match(fixed, moving)`` takes a point of the moving map to the fixed one.
+"""
+
+from importlib.metadata import version
+from types import FunctionType
+
+from ._core import FileError
+from ._evaluate import (
+    Evaluation,
+    MatchCase,
+    NegativeCounts,
+    PairCounts,
+    SetCase,
+    SetCounts,
+    TimeSummary,
+    evaluate,
+)
+from ._grid import MapLike, OccupancyGrid, load, save
+from ._inputs import MapWarning
+from ._known_poses import InitialPose
+from ._match import Hypothesis, MatchResult, Reason, Verdict, match
+from ._merge import Component, Join, JoinOutcome, LeftOut, Member, MergeResult, merge
+from ._merger import Merger
+from ._message import OccupancyGridMessage
+from ._simulate import BUILDING_KINDS, SimulatedMap, SimulatedPair, Simulation, simulate
+from ._transform import PoseLike, Transform
+
+__version__ = version("gridmerge")
+
+__all__ = [
+    "BUILDING_KINDS",
+    "Component",
+    "Evaluation",
+    "FileError",
+    "Hypothesis",
+    "InitialPose",
+    "Join",
+    "JoinOutcome",
+    "LeftOut",
+    "MapLike",
+    "MapWarning",
+    "MatchCase",
+    "MatchResult",
+    "Member",
+    "MergeResult",
+    "Merger",
+    "NegativeCounts",
+    "OccupancyGrid",
+    "OccupancyGridMessage",
+    "PairCounts",
+    "PoseLike",
+    "Reason",
+    "SetCase",
+    "SetCounts",
+    "SimulatedMap",
+    "SimulatedPair",
+    "Simulation",
+    "TimeSummary",
+    "Transform",
+    "Verdict",
+    "evaluate",
+    "load",
+    "match",
+    "merge",
+    "save",
+    "simulate",
+]
+
+FileError.__doc__ = (
+    "A file that cannot be read or written. The message is one line that names the file and the cause."
+)
+
+# In messages and help() things are where they are imported from.
+for _public in [globals()[_name] for _name in __all__]:
+    if isinstance(_public, (type, FunctionType)):
+        _public.__module__ = __name__

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of arguments. Every error begins with the argument's name."""
+
+from __future__ import annotations
+
+import math
+import numbers
+import operator
+import os
+from collections.abc import Callable
+from typing import TypeAlias
+
+PathLike: TypeAlias = str | os.PathLike[str]
+Progress: TypeAlias = Callable[[float], object]
+
+_MOST_THREADS = 2**16
+
+
+def number(name: str, value: object) -> float:
+    """A finite number."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise TypeError(f"{name}: must be a number, is {kind_of(value)}")
+    try:
+        converted = float(value)
+    except OverflowError:
+        converted = math.inf
+    if not math.isfinite(converted):
+        raise ValueError(f"{name}: must be finite, is {value}")
+    return converted
+
+
+def not_negative(name: str, value: object) -> float:
+    converted = number(name, value)
+    if converted < 0.0:
+        raise ValueError(f"{name}: must not be negative, is {value}")
+    return converted
+
+
+def share(name: str, value: object) -> float:
+    """A number in [0, 1]."""
+    converted = number(name, value)
+    if not 0.0 <= converted <= 1.0:
+        raise ValueError(f"{name}: must lie in [0, 1], is {value}")
+    return converted
+
+
+def whole(name: str, value: object, least: int, most: int) -> int:
+    try:
+        converted = None if isinstance(value, bool) else operator.index(value)  # type: ignore[arg-type]
+    except TypeError:
+        converted = None
+    if converted is None:
+        raise TypeError(f"{name}: must be a whole number, is {kind_of(value)}")
+    if not least <= converted <= most:
+        raise ValueError(f"{name}: must be between {least} and {most}, is {converted}")
+    return converted
+
+
+def threads(value: object) -> int:
+    return whole("threads", value, 0, _MOST_THREADS)
+
+
+def choice(name: str, value: object, choices: tuple[str, ...]) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: must be one of {', '.join(choices)}, is {kind_of(value)}")
+    if value not in choices:
+        raise ValueError(f"{name}: must be one of {', '.join(choices)}, is {value!r}")
+    return value
+
+
+def path(name: str, value: object) -> bytes:
+    """A path as the file system spells it."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise TypeError(f"{name}: must be a path, is {kind_of(value)}")
+    converted = os.fsencode(value)
+    if not converted:
+        raise ValueError(f"{name}: is an empty path")
+    if b"\0" in converted:
+        raise ValueError(f"{name}: a path cannot hold a null character")
+    return converted
+
+
+def progress(value: object) -> Progress | None:
+    if value is not None and not callable(value):
+        raise TypeError(f"progress: must be callable, is {kind_of(value)}")
+    return value
+
+
+def kind_of(value: object) -> str:
+    """The name of a value's type, for messages."""
+    return "None" if value is None else f"of type {type(value).__name__}"

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import cast
+
+from . import _arguments, _core, _inputs
+from ._arguments import Progress
+from ._match import Reason, Verdict
+from ._merge import Strategy
+
+
+@dataclass(frozen=True, slots=True)
+class PairCounts:
+    """Pairs of maps of one place."""
+
+    total: int
+    accepted_correct: int
+    accepted_wrong: int
+    refused: int
+    best_correct: int
+    """The best hypothesis is correct, accepted or not."""
+
+
+@dataclass(frozen=True, slots=True)
+class NegativeCounts:
+    """Pairs of maps with no common place: the only right answer is to refuse."""
+
+    total: int
+    accepted: int
+
+
+@dataclass(frozen=True, slots=True)
+class SetCounts:
+    """Sets of maps that were merged."""
+
+    total: int
+    maps: int
+    maps_correct: int
+    maps_wrong: int
+    maps_left_out: int
+    complete: int
+    """Sets with every map correct."""
+
+
+@dataclass(frozen=True, slots=True)
+class TimeSummary:
+    """Wall times of the matches [s]."""
+
+    median: float
+    p90: float
+    max: float
+
+
+@dataclass(frozen=True, slots=True)
+class MatchCase:
+    """How one pair went."""
+
+    fixed: str
+    """As the table writes it."""
+    moving: str
+    """As the table writes it."""
+    negative: bool
+    """Whether the maps have no common place."""
+    tier: str
+    """How hard the pair is, in the table's own words; empty where it has none."""
+    verdict: Verdict
+    reason: Reason
+    probability: float
+    error: float | None
+    """Root mean square displacement of the best hypothesis [m]; None for a negative, and without a hypothesis."""
+    tolerance: float | None
+    """Largest error of a correct hypothesis [m]; None for a negative."""
+    correct: bool | None
+    """Whether the best hypothesis is the true pose; None for a negative."""
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class SetCase:
+    """How one set of maps went."""
+
+    name: str
+    maps: int
+    correct: int
+    wrong: int
+    left_out: int
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluation:
+    """The engine's answers, held against the truth."""
+
+    pairs: PairCounts
+    negatives: NegativeCounts
+    sets: SetCounts
+    seconds: TimeSummary
+    cases: tuple[MatchCase, ...]
+    """The pairs, then the negatives, each in the table's order."""
+    set_cases: tuple[SetCase, ...]
+    _core: _core.Evaluation = field(repr=False, compare=False)
+
+    def to_json(self) -> str:
+        """The text that `gridmerge evaluate --json` writes."""
+        return self._core.to_json()
+
+    def summary(self) -> str:
+        """The table that `gridmerge evaluate` prints."""
+        return self._core.summary()
+
+
+def evaluate(
+    pairs: str | os.PathLike[str] | None = None,
+    negatives: str | os.PathLike[str] | None = None,
+    sets: str | os.PathLike[str] | None = None,
+    *,
+    strategy: Strategy = "joint",
+    threads: int = 0,
+    accept: float = 0.8,
+    progress: Progress | None = None,
+) -> Evaluation:
+    """Matches and merges maps whose truth is known, and holds the answers against it.
+
+    Args:
+        pairs: table (TSV) of pairs of maps with true transforms.
+        negatives: table of pairs with no common place.
+        sets: table of sets of maps to merge, with true poses. At least one of the three is needed.
+        strategy, threads, accept: as for merge().
+        progress: called now and then, in the calling thread, with the share of the work that is done.
+
+    `gridmerge evaluate --help` says what the tables hold; Simulation.save() writes them. Other Python threads run
+    meanwhile, and Ctrl-C ends the work. Raises FileError for a table or map that cannot be read, and TypeError or
+    ValueError for other mistakes.
+    """
+    if pairs is None and negatives is None and sets is None:
+        raise ValueError("pairs, negatives, sets: at least one of them is needed")
+    core = _core.evaluate(
+        None if pairs is None else _arguments.path("pairs", pairs),
+        None if negatives is None else _arguments.path("negatives", negatives),
+        None if sets is None else _arguments.path("sets", sets),
+        _arguments.threads(threads),
+        _arguments.share("accept", accept),
+        _arguments.choice("strategy", strategy, ("joint", "tree")) == "tree",
+        _arguments.progress(progress),
+    )
+    _inputs.warn(core.warnings)
+    return _to_evaluation(core)
+
+
+def _to_evaluation(core: _core.Evaluation) -> Evaluation:
+    pairs, negatives, sets, seconds = core.pairs, core.negatives, core.sets, core.seconds
+    return Evaluation(
+        pairs=PairCounts(
+            pairs.total, pairs.accepted_correct, pairs.accepted_wrong, pairs.refused, pairs.best_correct
+        ),
+        negatives=NegativeCounts(negatives.total, negatives.accepted),
+        sets=SetCounts(
+            sets.total, sets.maps, sets.maps_correct, sets.maps_wrong, sets.maps_left_out, sets.complete
+        ),
+        seconds=TimeSummary(seconds.median, seconds.p90, seconds.max),
+        cases=tuple(_to_match_case(match) for match in core.matches),
+        set_cases=tuple(
+            SetCase(one.name, one.maps, one.correct, one.wrong, one.left_out) for one in core.set_outcomes
+        ),
+        _core=core,
+    )
+
+
+def _to_match_case(match: _core.MatchOutcome) -> MatchCase:
+    return MatchCase(
+        fixed=match.fixed,
+        moving=match.moving,
+        negative=match.negative,
+        tier=match.tier,
+        verdict=cast(Verdict, match.verdict),
+        reason=cast(Reason, match.reason),
+        probability=match.probability,
+        error=match.error,
+        tolerance=match.tolerance,
+        correct=None if match.negative else match.correct,
+        seconds=match.seconds,
+    )

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias, cast
+
+from . import _arguments, _core
+from ._arguments import Progress
+from ._grid import MapLike
+from ._inputs import to_map
+from ._transform import Transform
+
+Verdict: TypeAlias = Literal["accepted", "refused"]
+Reason: TypeAlias = Literal[
+    "none",
+    "nothing_to_compare",
+    "ambiguous",
+    "contradiction",
+    "too_little_overlap",
+    "several",
+    "contradicts_others",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Hypothesis:
+    """One way in which the moving map may lie on the fixed one."""
+
+    transform: Transform
+    """T_fixed_moving."""
+    score: float
+    """Log-likelihood ratio "same place" against "unrelated" [nats]; larger is better."""
+    probability: float
+    """That this pose is the true one."""
+
+
+@dataclass(frozen=True, slots=True)
+class MatchResult:
+    """How the moving map lies on the fixed one, and whether that is to be believed."""
+
+    verdict: Verdict
+    reason: Reason
+    """Why the pair was refused; "none" if it was accepted."""
+    transform: Transform
+    """T_fixed_moving of the best hypothesis, between the map frames; given for a refused pair too."""
+    probability: float
+    """That the best hypothesis is the true pose."""
+    acceptance_index: float
+    """agreement / (agreement + disagreement); 0 when nothing overlaps."""
+    agreement: int
+    """Cells known in both maps and equal."""
+    disagreement: int
+    """Cells known in both maps and different."""
+    overlap: float
+    """Share of the smaller map's known cells that are known in both."""
+    seconds: float
+    """Wall time from maps in memory to the verdict."""
+    hypotheses: tuple[Hypothesis, ...]
+    """Distinct, best first; empty only when a map has nothing to go by."""
+
+    @property
+    def accepted(self) -> bool:
+        return self.verdict == "accepted"
+
+
+def match(
+    fixed: MapLike,
+    moving: MapLike,
+    *,
+    threads: int = 0,
+    accept: float = 0.8,
+    max_hypotheses: int = 10,
+    progress: Progress | None = None,
+) -> MatchResult:
+    """Finds how `moving` lies on `fixed`, searching every pose, and says whether to believe it.
+
+    Args:
+        fixed, moving: maps, paths of map files, or messages like nav_msgs/OccupancyGrid.
+        threads: 0 = one a core. The result does not depend on it.
+        accept: the verdict is "accepted" from this probability on.
+        max_hypotheses: how many distinct hypotheses the result lists.
+        progress: called now and then, in the calling thread, with the share of the work that is done.
+
+    Other Python threads run meanwhile, and Ctrl-C ends the work. Raises FileError for a file that is no map, and
+    TypeError or ValueError, naming the argument, for anything else that is none.
+    """
+    result = _core.match(
+        to_map("fixed", fixed)._core,
+        to_map("moving", moving)._core,
+        _arguments.threads(threads),
+        _arguments.share("accept", accept),
+        _arguments.whole("max_hypotheses", max_hypotheses, 0, 2**31),
+        _arguments.progress(progress),
+    )
+    return to_match_result(result)
+
+
+def to_match_result(core: _core.MatchResult) -> MatchResult:
+    return MatchResult(
+        verdict=cast(Verdict, core.verdict),
+        reason=cast(Reason, core.reason),
+        transform=Transform(*core.transform),
+        probability=core.probability,
+        acceptance_index=core.acceptance_index,
+        agreement=core.agreement,
+        disagreement=core.disagreement,
+        overlap=core.overlap,
+        seconds=core.seconds,
+        hypotheses=tuple(
+            Hypothesis(Transform(*one.transform), one.score, one.probability) for one in core.hypotheses
+        ),
+    )

@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, TypeAlias, cast
+
+from . import _arguments, _core
+from ._arguments import Progress
+from ._grid import MapLike, OccupancyGrid
+from ._inputs import to_maps
+from ._known_poses import InitialPoses, MapKey, to_known_poses
+from ._match import MatchResult, Reason, to_match_result
+from ._transform import Transform
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+JoinOutcome: TypeAlias = Literal["refused", "accepted", "rescued", "rejected", "known"]
+Strategy: TypeAlias = Literal["joint", "tree"]
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A map in a component."""
+
+    map: int
+    """Index of the input map."""
+    name: str
+    transform: Transform
+    """Takes points of the map's frame to the component's."""
+    probability: float | None
+    """That the map lies there, with all that the other maps say of it. The tree does not know."""
+    sd_position: float | None
+    """Standard deviation of the middle of the map's known cells [m]; 0 for what holds the frame, None up the tree."""
+    sd_theta: float | None
+    """Standard deviation of the direction [rad]; 0 for what holds the frame, None up the tree."""
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """Maps that were joined, and the map that they make."""
+
+    members: tuple[Member, ...]
+    """Ascending by index, two or more."""
+    grid: OccupancyGrid
+    """The merged map, with probabilities, in the frame of the first member, or the world's."""
+    agreeing: int
+    """Cells known in two or more inputs, all equal."""
+    conflicting: int
+    """Cells that some input calls free and another occupied."""
+    in_world_frame: bool
+    """Whether the frame is that of the initial poses, because a member's pose is fixed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Join:
+    """A comparison of two maps, and what became of it."""
+
+    fixed: int
+    """Index of the input map."""
+    moving: int
+    """Index of the input map."""
+    outcome: JoinOutcome
+    used: bool
+    """Whether the maps lie so in the result."""
+    transform: Transform
+    """T_fixed_moving of the hypothesis that was used, or of the best one if none was."""
+    probability: float
+    """Of that hypothesis, from these two maps alone."""
+    match: MatchResult
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A map that joined nothing."""
+
+    map: int
+    """Index of the input map."""
+    name: str
+    reason: Reason
+    explanation: str
+    """The reason as the end of a sentence that begins with the map's name."""
+
+
+@dataclass(frozen=True, slots=True)
+class MergeResult:
+    """What became of the maps that were merged."""
+
+    components: tuple[Component, ...]
+    """Of two or more maps each, most members first."""
+    joins: tuple[Join, ...]
+    """Every comparison that was made, whatever its outcome."""
+    left_out: tuple[LeftOut, ...]
+    """Maps that joined nothing."""
+    maps: tuple[OccupancyGrid, ...]
+    """The inputs."""
+    names: tuple[str, ...]
+    """Of the inputs."""
+    _core: _core.Merged = field(repr=False, compare=False)
+    _more_inputs: tuple[bytes, ...] = field(repr=False, compare=False)
+
+    @property
+    def complete(self) -> bool:
+        """Whether all maps are in one component."""
+        return len(self.components) == 1 and not self.left_out
+
+    def save(self, directory: str | os.PathLike[str]) -> None:
+        """Writes the files that `gridmerge merge` writes: merged.yaml and merged.pgm (and merged_2.yaml and so on for
+        further components), transforms.json, preview.png and report.html.
+
+        The directory is made if need be; merged maps of an earlier run are removed from it. Raises FileError when it
+        cannot be written to, or holds an input under the name of an output; then nothing is changed.
+        """
+        path = _arguments.path("directory", directory)
+        self._core.save(path, [_to_bytes(name) for name in self.names], list(self._more_inputs))
+
+    def plot(self, ax: Axes | None = None, *, component: int = 0) -> Axes:
+        """Draws a component: each input map in its own colour, where it lies in the component's frame [m].
+
+        Without components the axes stay empty but for a title that says so. Needs matplotlib:
+        ``pip install 'gridmerge[plot]'``. Raises IndexError for a component that there is not.
+        """
+        from . import _plot
+
+        return _plot.plot_component(self, component, ax)
+
+
+def merge(
+    maps: Iterable[MapLike],
+    *,
+    names: Sequence[str] | None = None,
+    strategy: Strategy = "joint",
+    init: InitialPoses | None = None,
+    fix: MapKey | Sequence[MapKey] | None = None,
+    threads: int = 0,
+    accept: float = 0.8,
+    output_resolution: float | None = None,
+    progress: Progress | None = None,
+) -> MergeResult:
+    """Merges maps by what all pairs of them say together; a map that does not belong is left out.
+
+    Args:
+        maps: maps, paths of map files, or messages like nav_msgs/OccupancyGrid.
+        names: what to call the maps; by default the paths they were loaded from, or "map 0", "map 1", ...
+        strategy: "joint", or "tree": pairwise up a tree, as Birk & Carpin (2006).
+        init: what is known of the maps' poses: the path of a table, or poses by map index or name.
+        fix: maps whose poses are the truth, by index or name: they are not changed, and the merged map is in this
+            map's frame, or in that of `init`.
+        threads: 0 = one a core. The result does not depend on it.
+        accept: maps are joined from this probability on.
+        output_resolution: of the merged maps [m]; None = the finest of the maps'.
+        progress: called now and then, in the calling thread, with the share of the pairs that are matched.
+
+    The frame of a component is that of its first member, unless a member is fixed. Other Python threads run meanwhile,
+    and Ctrl-C ends the work. Raises FileError for a file that is no map, and TypeError or ValueError, naming the
+    argument, for other mistakes and for merged maps of more than 2^28 cells.
+    """
+    grids = to_maps("maps", maps)
+    called = to_names(names, grids)
+    up_the_tree = _arguments.choice("strategy", strategy, ("joint", "tree")) == "tree"
+    if up_the_tree and (init is not None or fix is not None):
+        raise ValueError("strategy: init and fix need 'joint'")
+    merged = _core.merge(
+        [grid._core for grid in grids],
+        to_known_poses(called, init, fix),
+        _arguments.threads(threads),
+        _arguments.share("accept", accept),
+        to_output_resolution(output_resolution),
+        up_the_tree,
+        _arguments.progress(progress),
+    )
+    more_inputs = (os.fsencode(init),) if isinstance(init, (str, os.PathLike)) else ()
+    return to_merge_result(merged, grids, called, more_inputs)
+
+
+def to_names(names: Sequence[str] | None, grids: Sequence[OccupancyGrid]) -> list[str]:
+    if names is None:
+        return [grid.source or f"map {i}" for i, grid in enumerate(grids)]
+    if isinstance(names, (str, bytes)) or not isinstance(names, Iterable):
+        raise TypeError(f"names: must be a sequence of strings, is {_arguments.kind_of(names)}")
+    called = list(names)
+    for i, name in enumerate(called):
+        if not isinstance(name, str):
+            raise TypeError(f"names[{i}]: must be a string, is {_arguments.kind_of(name)}")
+    if len(called) != len(grids):
+        raise ValueError(f"names: there are {len(called)} for {len(grids)} maps")
+    return called
+
+
+def to_output_resolution(value: float | None) -> float:
+    if value is None:
+        return 0.0
+    resolution = _arguments.number("output_resolution", value)
+    if not _core.MIN_RESOLUTION <= resolution <= _core.MAX_RESOLUTION:
+        raise ValueError(
+            f"output_resolution: must be between {_core.MIN_RESOLUTION:g} and {_core.MAX_RESOLUTION:g} metres a cell, "
+            f"is {value}"
+        )
+    return resolution
+
+
+def to_merge_result(
+    merged: _core.Merged, grids: Sequence[OccupancyGrid], names: Sequence[str], more_inputs: tuple[bytes, ...]
+) -> MergeResult:
+    return MergeResult(
+        components=tuple(_to_component(merged, i, names) for i in range(merged.component_count)),
+        joins=tuple(_to_join(join) for join in merged.joins),
+        left_out=tuple(
+            LeftOut(index, names[index], cast(Reason, reason), explanation)
+            for index, reason, explanation in merged.left_out
+        ),
+        maps=tuple(grids),
+        names=tuple(names),
+        _core=merged,
+        _more_inputs=more_inputs,
+    )
+
+
+def _to_component(merged: _core.Merged, index: int, names: Sequence[str]) -> Component:
+    agreeing, conflicting = merged.counts(index)
+    return Component(
+        members=tuple(_to_member(member, names) for member in merged.members(index)),
+        grid=OccupancyGrid._of(merged.grid(index)),
+        agreeing=agreeing,
+        conflicting=conflicting,
+        in_world_frame=merged.is_in_world_frame(index),
+    )
+
+
+def _to_member(member: _core.Member, names: Sequence[str]) -> Member:
+    return Member(
+        map=member.map,
+        name=names[member.map],
+        transform=Transform(*member.transform),
+        probability=member.probability,
+        sd_position=None if member.sd is None else member.sd.position,
+        sd_theta=None if member.sd is None else member.sd.theta,
+    )
+
+
+def _to_join(join: _core.Join) -> Join:
+    return Join(
+        fixed=join.fixed,
+        moving=join.moving,
+        outcome=cast(JoinOutcome, join.outcome),
+        used=join.used,
+        transform=Transform(*join.transform),
+        probability=join.probability,
+        match=to_match_result(join.match),
+    )
+
+
+def _to_bytes(name: str) -> bytes:
+    return name.encode("utf-8", "surrogateescape")

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of maps. Only this module needs matplotlib."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._transform import Transform
+
+try:
+    from matplotlib import pyplot as plt
+    from matplotlib.axes import Axes
+    from matplotlib.patches import Patch
+    from matplotlib.transforms import Affine2D
+except ImportError as error:
+    raise ImportError("plot() needs matplotlib: pip install 'gridmerge[plot]'") from error
+
+if TYPE_CHECKING:
+    from ._grid import OccupancyGrid
+    from ._merge import MergeResult
+
+_WALL = (32, 32, 36)
+_TINT = 0.25  # of a map's colour in its free space
+
+
+def plot_grid(grid: OccupancyGrid, ax: Axes | None) -> Axes:
+    axes = _axes(ax)
+    _draw(axes, grid, Transform(0.0, 0.0, 0.0), _WALL, tint=0.0)
+    _show(axes, [_corners(grid, Transform(0.0, 0.0, 0.0))])
+    return axes
+
+
+def plot_component(result: MergeResult, component: int, ax: Axes | None) -> Axes:
+    axes = _axes(ax)
+    if not result.components and component == 0:
+        axes.set_title("no two maps fit together")
+        return axes
+    if not 0 <= component < len(result.components):
+        raise IndexError(f"component: there is no component {component}")
+    handles, corners = [], []
+    for member in result.components[component].members:
+        colour = _core.map_colour(member.map)
+        grid = result.maps[member.map]
+        _draw(axes, grid, member.transform, colour, tint=_TINT)
+        corners.append(_corners(grid, member.transform))
+        red, green, blue = (value / 255.0 for value in colour)
+        handles.append(Patch(color=(red, green, blue), label=member.name))
+    _show(axes, corners)
+    axes.legend(handles=handles, loc="upper right", fontsize="small")
+    axes.set_title(f"{len(handles)} of {len(result.maps)} maps")
+    return axes
+
+
+def _axes(ax: Axes | None) -> Axes:
+    return plt.figure().add_subplot() if ax is None else ax
+
+
+def _draw(axes: Axes, grid: OccupancyGrid, place: Transform, wall: Sequence[int], tint: float) -> None:
+    """Free space see-through, walls above it, each in `wall`'s colour; unknown cells are not drawn."""
+    T_frame_grid = place @ grid.origin
+    to_frame = Affine2D(T_frame_grid.matrix) + axes.transData
+    extent = (0.0, grid.width * grid.resolution, 0.0, grid.height * grid.resolution)
+    for kind, alpha, zorder in ((1, tint, 1), (2, 1.0, 2)):
+        image = _coloured(grid.cells == kind, wall, alpha)
+        if kind == 1 and tint == 0.0:
+            image[grid.cells == kind] = (232, 232, 232, 255)
+        axes.imshow(
+            image, extent=extent, origin="lower", transform=to_frame, interpolation="none", zorder=zorder
+        )
+
+
+def _coloured(mask: NDArray[np.bool_], colour: Sequence[int], alpha: float) -> NDArray[np.uint8]:
+    image = np.zeros((*mask.shape, 4), dtype=np.uint8)
+    image[mask] = (*colour, round(255 * alpha))
+    return image
+
+
+def _corners(grid: OccupancyGrid, place: Transform) -> NDArray[np.float64]:
+    """Of what the map knows, in the frame that `place` takes it to: shape (4, 2) [m]."""
+    rows = np.flatnonzero((grid.cells != 0).any(axis=1))
+    columns = np.flatnonzero((grid.cells != 0).any(axis=0))
+    bottom, top = (rows[0], rows[-1] + 1) if rows.size else (0, grid.height)
+    left, right = (columns[0], columns[-1] + 1) if columns.size else (0, grid.width)
+    corners = grid.resolution * np.array([[left, bottom], [right, bottom], [left, top], [right, top]])
+    return (place @ grid.origin).apply(corners)
+
+
+def _show(axes: Axes, corners: Sequence[NDArray[np.float64]]) -> None:
+    points = np.concatenate(list(corners))
+    (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
+    margin = 0.03 * max(right - left, top - bottom)
+    axes.set_xlim(float(left - margin), float(right + margin))
+    axes.set_ylim(float(bottom - margin), float(top + margin))
+    axes.set_aspect("equal")
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")

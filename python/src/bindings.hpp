@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the parts of the extension module share.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "gridmerge/grid/occupancy_grid.hpp"
+
+namespace gridmerge::python {
+
+namespace nb = nanobind;
+
+/// A transform or pose on its way between the languages: x, y [m], theta [rad].
+using Pose = std::tuple<double, double, double>;
+
+inline SE2 to_se2(const Pose& pose) {
+  return {std::get<0>(pose), std::get<1>(pose), std::get<2>(pose)};
+}
+
+// No -0.0, as in the JSON of the command line: it reads as a direction that is not there.
+inline Pose to_pose(const SE2& T) {
+  return {T.x + 0.0, T.y + 0.0, T.theta + 0.0};
+}
+
+/// A map that Python holds. It never changes, so that views of it and work on it need no lock.
+struct Map {
+  std::shared_ptr<const OccupancyGrid> grid;
+  std::vector<std::string> warnings;         // of the file
+  std::vector<std::filesystem::path> files;  // that it was read from
+};
+
+/// Text that the library gives: names of files are any bytes, and come back as os.fsdecode() gives them.
+nb::str to_str(const std::string& text);
+
+/// Paths and names come as os.fsencode() gives them.
+inline std::string to_string(const nb::bytes& bytes) {
+  return {bytes.c_str(), bytes.size()};
+}
+
+void bind_errors(nb::module_& module);
+void bind_worker(nb::module_& module);
+void bind_grid(nb::module_& module);
+void bind_io(nb::module_& module);
+void bind_match(nb::module_& module);
+void bind_merge(nb::module_& module);
+void bind_merger(nb::module_& module);
+void bind_simulate(nb::module_& module);
+void bind_evaluate(nb::module_& module);
+
+}  // namespace gridmerge::python

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/evaluate/evaluate.hpp"
+
+#include <utility>
+
+#include "bindings.hpp"
+#include "gridmerge/evaluate/count.hpp"
+#include "gridmerge/evaluate/tables.hpp"
+#include "worker.hpp"
+
+namespace gridmerge::python {
+
+namespace {
+
+/// An evaluation, and what the files of its maps say that their authors may not have meant.
+struct Evaluated {
+  Evaluation evaluation;
+  std::vector<std::string> warnings;
+  double accept = 0.0;
+};
+
+std::string path_or_empty(const std::optional<nb::bytes>& path) {
+  return path ? to_string(*path) : std::string();
+}
+
+EvaluateOptions make_options(int threads, double accept, bool up_the_tree) {
+  MatchOptions match_options;
+  match_options.threads = threads;
+  match_options.accept_probability = accept;
+  EvaluateOptions options;
+  options.matcher = [match_options](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+    return match(fixed, moving, match_options);
+  };
+  options.merger = [match_options, up_the_tree,
+                    matcher = options.matcher](const std::vector<OccupancyGrid>& maps) {
+    if (up_the_tree) return merge_up_tree(maps, matcher);
+    MergeOptions joint;
+    joint.match = match_options;
+    return merge(maps, joint);
+  };
+  return options;
+}
+
+Evaluated evaluate_files(const std::optional<nb::bytes>& pairs, const std::optional<nb::bytes>& negatives,
+                         const std::optional<nb::bytes>& sets, int threads, double accept, bool up_the_tree,
+                         const nb::object& progress) {
+  const std::string pairs_path = path_or_empty(pairs), negatives_path = path_or_empty(negatives),
+                    sets_path = path_or_empty(sets);
+  return compute_in_worker(progress, [&](const Report& report) {
+    Truth truth;
+    if (pairs) truth.pairs = read_pairs(pairs_path);
+    if (negatives) truth.negatives = read_negatives(negatives_path);
+    if (sets) truth.sets = read_sets(sets_path);
+    Evaluated evaluated;
+    evaluated.accept = accept;
+    EvaluateOptions options = make_options(threads, accept, up_the_tree);
+    options.progress = [&](std::size_t done, std::size_t total) {
+      report(static_cast<double>(done) / static_cast<double>(total));
+    };
+    options.warn = [&](const std::string& warning) { evaluated.warnings.push_back(warning); };
+    evaluated.evaluation = evaluate(truth, options);
+    return evaluated;
+  });
+}
+
+void bind_counts(nb::module_& module) {
+  nb::class_<PairCounts>(module, "PairCounts")
+      .def_ro("total", &PairCounts::total)
+      .def_ro("accepted_correct", &PairCounts::accepted_correct)
+      .def_ro("accepted_wrong", &PairCounts::accepted_wrong)
+      .def_ro("refused", &PairCounts::refused)
+      .def_ro("best_correct", &PairCounts::best_correct);
+  nb::class_<NegativeCounts>(module, "NegativeCounts")
+      .def_ro("total", &NegativeCounts::total)
+      .def_ro("accepted", &NegativeCounts::accepted);
+  nb::class_<SetCounts>(module, "SetCounts")
+      .def_ro("total", &SetCounts::total)
+      .def_ro("maps", &SetCounts::maps)
+      .def_ro("maps_correct", &SetCounts::maps_correct)
+      .def_ro("maps_wrong", &SetCounts::maps_wrong)
+      .def_ro("maps_left_out", &SetCounts::maps_left_out)
+      .def_ro("complete", &SetCounts::complete);
+  nb::class_<TimeSummary>(module, "TimeSummary")
+      .def_ro("median", &TimeSummary::median)
+      .def_ro("p90", &TimeSummary::p90)
+      .def_ro("max", &TimeSummary::max);
+}
+
+void bind_outcomes(nb::module_& module) {
+  nb::class_<MatchOutcome>(module, "MatchOutcome")
+      .def_prop_ro("fixed", [](const MatchOutcome& match) { return to_str(match.fixed); })
+      .def_prop_ro("moving", [](const MatchOutcome& match) { return to_str(match.moving); })
+      .def_prop_ro("tier", [](const MatchOutcome& match) { return to_str(match.tier); })
+      .def_prop_ro("verdict", [](const MatchOutcome& match) { return name_of(match.verdict); })
+      .def_prop_ro("reason", [](const MatchOutcome& match) { return name_of(match.reason); })
+      .def_ro("probability", &MatchOutcome::probability)
+      .def_ro("error", &MatchOutcome::error)
+      .def_ro("tolerance", &MatchOutcome::tolerance)
+      .def_prop_ro("negative", &MatchOutcome::negative)
+      .def_prop_ro("correct", &MatchOutcome::correct)
+      .def_ro("seconds", &MatchOutcome::seconds);
+  nb::class_<SetOutcome>(module, "SetOutcome")
+      .def_prop_ro("name", [](const SetOutcome& set) { return to_str(set.name); })
+      .def_ro("maps", &SetOutcome::maps)
+      .def_ro("correct", &SetOutcome::correct)
+      .def_ro("wrong", &SetOutcome::wrong)
+      .def_ro("left_out", &SetOutcome::left_out);
+}
+
+}  // namespace
+
+void bind_evaluate(nb::module_& module) {
+  bind_counts(module);
+  bind_outcomes(module);
+  nb::class_<Evaluated>(module, "Evaluation")
+      .def_prop_ro("pairs", [](const Evaluated& it) { return count_pairs(it.evaluation.matches); })
+      .def_prop_ro("negatives", [](const Evaluated& it) { return count_negatives(it.evaluation.matches); })
+      .def_prop_ro("sets", [](const Evaluated& it) { return count_sets(it.evaluation.sets); })
+      .def_prop_ro("seconds", [](const Evaluated& it) { return summarize_times(it.evaluation.matches); })
+      .def_prop_ro("matches", [](const Evaluated& it) { return it.evaluation.matches; })
+      .def_prop_ro("set_outcomes", [](const Evaluated& it) { return it.evaluation.sets; })
+      .def_prop_ro("warnings",
+                   [](const Evaluated& it) {
+                     std::vector<nb::str> warnings;
+                     for (const std::string& warning : it.warnings) warnings.push_back(to_str(warning));
+                     return warnings;
+                   })
+      .def("to_json", [](const Evaluated& it) { return to_str(evaluation_json(it.evaluation)); })
+      .def("summary", [](const Evaluated& it) { return to_str(summary_table(it.evaluation, it.accept)); });
+  module.def("evaluate", &evaluate_files, nb::arg("pairs").none(), nb::arg("negatives").none(),
+             nb::arg("sets").none(), nb::arg("threads"), nb::arg("accept"), nb::arg("up_the_tree"),
+             nb::arg("progress").none());
+}
+
+}  // namespace gridmerge::python

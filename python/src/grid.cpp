@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nanobind/ndarray.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+#include "bindings.hpp"
+
+namespace gridmerge::python {
+
+namespace {
+
+using Percentages = nb::ndarray<const std::int8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Cells = nb::ndarray<const std::uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Probabilities = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+constexpr std::int8_t kUnknown = -1;
+constexpr std::int8_t kFree = 0;
+constexpr std::int8_t kOccupied = 100;
+
+// nav2's thresholds for maps in raw mode, so that a message means what a file of the same values does.
+Cell cell_of(std::int8_t percentage) {
+  if (percentage < 0) return Cell::unknown;
+  const double occupancy = percentage / 100.0;
+  return occupancy >= 0.65 ? Cell::occupied : occupancy <= 0.196 ? Cell::free : Cell::unknown;
+}
+
+float probability_of(std::int8_t percentage) {
+  return percentage < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(percentage / 100.0);
+}
+
+std::int8_t percentage_of(float probability) {
+  return std::isnan(probability)
+             ? kUnknown
+             : static_cast<std::int8_t>(std::lround(100.0F * std::clamp(probability, 0.0F, 1.0F)));
+}
+
+bool is_plain(std::int8_t percentage) {
+  return percentage == kUnknown || percentage == kFree || percentage == kOccupied;
+}
+
+OccupancyGrid frame(std::size_t height, std::size_t width, double resolution, const Pose& origin) {
+  OccupancyGrid grid;
+  grid.width = static_cast<int>(width);
+  grid.height = static_cast<int>(height);
+  grid.resolution = resolution;
+  grid.origin = to_se2(origin);
+  return grid;
+}
+
+Map from_percentages(const Percentages& data, double resolution, const Pose& origin) {
+  OccupancyGrid grid = frame(data.shape(0), data.shape(1), resolution, origin);
+  const nb::gil_scoped_release others_may_run;
+  const std::int8_t *begin = data.data(), *end = begin + data.size();
+  const auto wrong =
+      std::find_if(begin, end, [](std::int8_t value) { return value < kUnknown || value > kOccupied; });
+  if (wrong != end) {
+    const auto at = static_cast<std::size_t>(wrong - begin);
+    throw std::invalid_argument("data: the value " + std::to_string(*wrong) + " in row " +
+                                std::to_string(at / data.shape(1)) + ", column " +
+                                std::to_string(at % data.shape(1)) +
+                                " is neither -1 (unknown) nor a percentage from 0 to 100");
+  }
+  grid.cells.resize(data.size());
+  std::transform(begin, end, grid.cells.begin(), cell_of);
+  if (!std::all_of(begin, end, is_plain)) {
+    grid.probability.resize(data.size());
+    std::transform(begin, end, grid.probability.begin(), probability_of);
+  }
+  return {std::make_shared<const OccupancyGrid>(std::move(grid)), {}, {}};
+}
+
+Map from_cells(const Cells& cells, double resolution, const Pose& origin,
+               const std::optional<Probabilities>& probability) {
+  OccupancyGrid grid = frame(cells.shape(0), cells.shape(1), resolution, origin);
+  grid.cells.resize(cells.size());
+  std::transform(cells.data(), cells.data() + cells.size(), grid.cells.begin(), [](std::uint8_t value) {
+    if (value > static_cast<std::uint8_t>(Cell::occupied))
+      throw std::invalid_argument("cells: the value " + std::to_string(value) +
+                                  " is neither 0 (unknown) nor 1 (free) nor 2 (occupied)");
+    return static_cast<Cell>(value);
+  });
+  if (probability) {
+    if (probability->shape(0) != cells.shape(0) || probability->shape(1) != cells.shape(1))
+      throw std::invalid_argument("probability: its shape must be that of cells");
+    grid.probability.assign(probability->data(), probability->data() + probability->size());
+    for (const float value : grid.probability) {
+      if (!std::isnan(value) && !(value >= 0.0F && value <= 1.0F))
+        throw std::invalid_argument("probability: its values must lie in [0, 1], or be NaN where unknown");
+    }
+  }
+  return {std::make_shared<const OccupancyGrid>(std::move(grid)), {}, {}};
+}
+
+/// Whether the grid is one that from_percentages() makes of its percentages: then they tell all of it.
+bool follows_from_percentages(const OccupancyGrid& grid) {
+  bool plain = true;
+  for (std::size_t i = 0; i < grid.probability.size(); ++i) {
+    const std::int8_t percentage = percentage_of(grid.probability[i]);
+    plain = plain && is_plain(percentage);
+    if (cell_of(percentage) != grid.cells[i]) return false;
+    if (percentage != kUnknown && probability_of(percentage) != grid.probability[i]) return false;
+  }
+  return !plain;
+}
+
+std::int8_t plain_value(Cell cell) {
+  constexpr std::array<std::int8_t, 3> kValues{kUnknown, kFree, kOccupied};
+  return kValues[static_cast<std::size_t>(cell)];
+}
+
+/// An array that owns its values.
+nb::ndarray<nb::numpy, std::int8_t, nb::ndim<2>> to_numpy(const Map& map, std::optional<bool> probabilities) {
+  const OccupancyGrid& grid = *map.grid;
+  if (probabilities == true && grid.probability.empty())
+    throw std::invalid_argument("probabilities: the map has none");
+  auto values = std::make_unique<std::vector<std::int8_t>>(grid.cells.size());
+  {
+    const nb::gil_scoped_release others_may_run;
+    const bool as_percentages =
+        !grid.probability.empty() && probabilities.value_or(follows_from_percentages(grid));
+    if (as_percentages) {
+      std::transform(grid.probability.begin(), grid.probability.end(), values->begin(), percentage_of);
+    } else {
+      std::transform(grid.cells.begin(), grid.cells.end(), values->begin(), plain_value);
+    }
+  }
+  std::int8_t* data = values->data();
+  const nb::capsule owner(values.release(), [](void* owned) noexcept {
+    std::unique_ptr<std::vector<std::int8_t>>(static_cast<std::vector<std::int8_t>*>(owned)).reset();
+  });
+  return {data, {static_cast<std::size_t>(grid.height), static_cast<std::size_t>(grid.width)}, owner};
+}
+
+template <typename Value>
+using View = nb::ndarray<nb::numpy, const Value, nb::ndim<2>>;
+
+/// A view that keeps the grid alive.
+template <typename Value>
+View<Value> view(const Map& map, const void* values) {
+  using Kept = std::shared_ptr<const OccupancyGrid>;
+  const nb::capsule owner(std::make_unique<Kept>(map.grid).release(), [](void* kept) noexcept {
+    std::unique_ptr<Kept>(static_cast<Kept*>(kept)).reset();
+  });
+  return {static_cast<const Value*>(values),
+          {static_cast<std::size_t>(map.grid->height), static_cast<std::size_t>(map.grid->width)},
+          owner};
+}
+
+bool is_equal(const Map& a, const Map& b) {
+  const auto same_probability = [](float p, float q) { return p == q || (std::isnan(p) && std::isnan(q)); };
+  return a.grid->width == b.grid->width && a.grid->height == b.grid->height &&
+         a.grid->resolution == b.grid->resolution && a.grid->origin == b.grid->origin &&
+         a.grid->cells == b.grid->cells &&
+         std::equal(a.grid->probability.begin(), a.grid->probability.end(), b.grid->probability.begin(),
+                    b.grid->probability.end(), same_probability);
+}
+
+}  // namespace
+
+void bind_grid(nb::module_& module) {
+  nb::class_<Map>(module, "Grid")
+      .def_static("from_percentages", &from_percentages, nb::arg("data").noconvert(), nb::arg("resolution"),
+                  nb::arg("origin"))
+      .def_static("from_cells", &from_cells, nb::arg("cells").noconvert(), nb::arg("resolution"),
+                  nb::arg("origin"), nb::arg("probability").noconvert().none())
+      .def_prop_ro("width", [](const Map& map) { return map.grid->width; })
+      .def_prop_ro("height", [](const Map& map) { return map.grid->height; })
+      .def_prop_ro("resolution", [](const Map& map) { return map.grid->resolution; })
+      .def_prop_ro("origin", [](const Map& map) { return to_pose(map.grid->origin); })
+      .def_prop_ro("counts",
+                   [](const Map& map) {
+                     const CellCounts counts = count_cells(*map.grid);
+                     return std::tuple(counts.unknown, counts.free, counts.occupied);
+                   })
+      .def_prop_ro("warnings",
+                   [](const Map& map) {
+                     std::vector<nb::str> warnings;
+                     for (const std::string& warning : map.warnings) warnings.push_back(to_str(warning));
+                     return warnings;
+                   })
+      .def("to_numpy", &to_numpy, nb::arg("probabilities").none())
+      .def("cells", [](const Map& map) { return view<std::uint8_t>(map, map.grid->cells.data()); })
+      .def("probability",
+           [](const Map& map) {
+             return map.grid->probability.empty()
+                        ? std::nullopt
+                        : std::optional(view<float>(map, map.grid->probability.data()));
+           })
+      .def("equals", &is_equal, nb::arg("other"));
+}
+
+}  // namespace gridmerge::python

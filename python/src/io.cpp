@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
+#include "bindings.hpp"
+#include "gridmerge/io/initial_poses.hpp"
+#include "gridmerge/io/map_file.hpp"
+
+namespace gridmerge::python {
+
+namespace {
+
+Map load(const nb::bytes& path, double resolution) {
+  const std::filesystem::path file = to_string(path);
+  LoadOptions options;
+  options.resolution = resolution;
+  const nb::gil_scoped_release others_may_run;
+  LoadedMap loaded = load_map(file, options);
+  return {std::make_shared<const OccupancyGrid>(std::move(loaded.grid)), std::move(loaded.warnings),
+          std::move(loaded.files)};
+}
+
+void save(const Map& map, const nb::bytes& path, bool probabilities) {
+  const std::filesystem::path file = to_string(path);
+  const nb::gil_scoped_release others_may_run;
+  std::vector<StagedFile> files =
+      probabilities ? stage_probability_map(*map.grid, file) : stage_map(*map.grid, file);
+  for (StagedFile& one : files) one.commit();
+}
+
+}  // namespace
+
+void bind_io(nb::module_& module) {
+  module.attr("MIN_RESOLUTION") = kMinResolution;
+  module.attr("MAX_RESOLUTION") = kMaxResolution;
+  module.def("load", &load, nb::arg("path"), nb::arg("resolution"));
+  module.def("save", &save, nb::arg("grid"), nb::arg("path"), nb::arg("probabilities"));
+  nb::class_<InitialPose>(module, "InitialPose")
+      .def_prop_ro("name", [](const InitialPose& pose) { return to_str(pose.name); })
+      .def_prop_ro("path", [](const InitialPose& pose) { return to_str(pose.path.string()); })
+      .def_prop_ro("transform", [](const InitialPose& pose) { return to_pose(pose.T_world_map); })
+      .def_ro("sd", &InitialPose::sd)
+      .def_ro("sd_theta", &InitialPose::sd_theta);
+  module.def(
+      "read_initial_poses", [](const nb::bytes& path) { return read_initial_poses(to_string(path)); },
+      nb::arg("path"));
+}
+
+}  // namespace gridmerge::python

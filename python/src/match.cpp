@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/match/match.hpp"
+
+#include "bindings.hpp"
+#include "worker.hpp"
+
+namespace gridmerge::python {
+
+namespace {
+
+MatchResult match_maps(const Map& fixed, const Map& moving, int threads, double accept,
+                       std::size_t max_hypotheses, const nb::object& progress) {
+  MatchOptions options;
+  options.threads = threads;
+  options.accept_probability = accept;
+  options.max_hypotheses = max_hypotheses;
+  return compute_in_worker(progress, [&](const Report& report) {
+    options.progress = report;
+    return match(*fixed.grid, *moving.grid, options);
+  });
+}
+
+}  // namespace
+
+void bind_match(nb::module_& module) {
+  nb::class_<Hypothesis>(module, "Hypothesis")
+      .def_prop_ro("transform", [](const Hypothesis& it) { return to_pose(it.T_fixed_moving); })
+      .def_ro("score", &Hypothesis::score)
+      .def_ro("probability", &Hypothesis::probability);
+  nb::class_<MatchResult>(module, "MatchResult")
+      .def_prop_ro("verdict", [](const MatchResult& result) { return name_of(result.verdict); })
+      .def_prop_ro("reason", [](const MatchResult& result) { return name_of(result.reason); })
+      .def_prop_ro("transform", [](const MatchResult& result) { return to_pose(result.T_fixed_moving); })
+      .def_ro("probability", &MatchResult::probability)
+      .def_ro("acceptance_index", &MatchResult::acceptance_index)
+      .def_ro("agreement", &MatchResult::agreement)
+      .def_ro("disagreement", &MatchResult::disagreement)
+      .def_ro("overlap", &MatchResult::overlap)
+      .def_ro("seconds", &MatchResult::seconds)
+      .def_ro("hypotheses", &MatchResult::hypotheses);
+  module.def("match", &match_maps, nb::arg("fixed"), nb::arg("moving"), nb::arg("threads"), nb::arg("accept"),
+             nb::arg("max_hypotheses"), nb::arg("progress").none());
+}
+
+}  // namespace gridmerge::python

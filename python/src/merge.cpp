@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "merge.hpp"
+
+#include <utility>
+
+#include "gridmerge/merge/tree.hpp"
+#include "gridmerge/report/merge_output.hpp"
+#include "gridmerge/report/preview.hpp"
+#include "gridmerge/report/wording.hpp"
+#include "worker.hpp"
+
+namespace gridmerge::python {
+
+namespace {
+
+std::vector<OccupancyGrid> grids_of(const std::vector<Map>& maps) {
+  std::vector<OccupancyGrid> grids;
+  grids.reserve(maps.size());
+  for (const Map& map : maps) grids.push_back(*map.grid);
+  return grids;
+}
+
+MergeResult merge_grids(const std::vector<OccupancyGrid>& grids,
+                        const std::vector<std::optional<KnownPose>>& known_poses, const MergeOptions& options,
+                        bool up_the_tree) {
+  if (!up_the_tree) return merge(grids, options, known_poses);
+  validate(options.match);
+  const auto matcher = [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+    return match(fixed, moving, options.match);
+  };
+  return merge_up_tree(grids, matcher, {options.resolution, options.progress});
+}
+
+Merged merge_maps(std::vector<Map> maps, const std::vector<std::optional<Known>>& known, int threads,
+                  double accept, double output_resolution, bool up_the_tree, const nb::object& progress) {
+  std::vector<std::optional<KnownPose>> known_poses;
+  known_poses.reserve(known.size());
+  for (const std::optional<Known>& one : known) known_poses.push_back(to_known_pose(one));
+  MergeOptions options;
+  options.match.threads = threads;
+  options.match.accept_probability = accept;
+  options.resolution = output_resolution;
+  MergeResult result = compute_in_worker(progress, [&](const Report& report) {
+    options.progress = [&report](std::size_t done, std::size_t total) {
+      report(static_cast<double>(done) / static_cast<double>(total));
+    };
+    return merge_grids(grids_of(maps), known_poses, options, up_the_tree);
+  });
+  return {std::move(maps), std::make_shared<const MergeResult>(std::move(result))};
+}
+
+// Shares the result's own grid.
+Map grid_of(const std::shared_ptr<const MergeResult>& result, std::size_t component) {
+  return {{result, &result->components.at(component).fused.grid}, {}, {}};
+}
+
+void save(const Merged& merged, const nb::bytes& directory, const std::vector<nb::bytes>& names,
+          const std::vector<nb::bytes>& more_inputs) {
+  std::vector<std::filesystem::path> inputs;
+  for (const Map& map : merged.maps) inputs.insert(inputs.end(), map.files.begin(), map.files.end());
+  for (const nb::bytes& input : more_inputs) inputs.emplace_back(to_string(input));
+  std::vector<std::string> texts;
+  texts.reserve(names.size());
+  for (const nb::bytes& name : names) texts.push_back(to_string(name));
+  const std::filesystem::path path = to_string(directory);
+  const nb::gil_scoped_release others_may_run;
+  write_merge_output(path, inputs, texts, grids_of(merged.maps), *merged.result);
+}
+
+void bind_results(nb::module_& module) {
+  nb::class_<Join>(module, "Join")
+      .def_ro("fixed", &Join::fixed)
+      .def_ro("moving", &Join::moving)
+      .def_ro("match", &Join::match)
+      .def_prop_ro("outcome", [](const Join& join) { return name_of(join.outcome); })
+      .def_prop_ro("used", &Join::used)
+      .def_prop_ro("transform", [](const Join& join) { return to_pose(join.T_fixed_moving); })
+      .def_ro("probability", &Join::probability);
+  nb::class_<PoseDeviation>(module, "PoseDeviation")
+      .def_ro("position", &PoseDeviation::position)
+      .def_ro("theta", &PoseDeviation::theta);
+  nb::class_<Member>(module, "Member")
+      .def_ro("map", &Member::map)
+      .def_prop_ro("transform", [](const Member& member) { return to_pose(member.T_component_map); })
+      .def_ro("probability", &Member::probability)
+      .def_ro("sd", &Member::sd);
+  nb::class_<Merged>(module, "Merged")
+      .def_prop_ro("maps", [](const Merged& merged) { return merged.maps; })
+      .def_prop_ro("component_count", [](const Merged& merged) { return merged.result->components.size(); })
+      .def(
+          "grid", [](const Merged& merged, std::size_t i) { return grid_of(merged.result, i); },
+          nb::arg("component"))
+      .def(
+          "members",
+          [](const Merged& merged, std::size_t i) { return merged.result->components.at(i).members; },
+          nb::arg("component"))
+      .def(
+          "counts",
+          [](const Merged& merged, std::size_t i) {
+            const FusedMap& fused = merged.result->components.at(i).fused;
+            return std::pair(fused.agreeing, fused.conflicting);
+          },
+          nb::arg("component"))
+      .def(
+          "is_in_world_frame",
+          [](const Merged& merged, std::size_t i) { return merged.result->components.at(i).in_world_frame; },
+          nb::arg("component"))
+      .def_prop_ro("joins", [](const Merged& merged) { return merged.result->joins; })
+      .def_prop_ro("left_out",
+                   [](const Merged& merged) {
+                     std::vector<std::tuple<std::size_t, std::string, std::string>> left_out;
+                     for (std::size_t i = 0; i < merged.result->left_out.size(); ++i) {
+                       const Reason reason = merged.result->left_out_reasons[i];
+                       left_out.emplace_back(merged.result->left_out[i], name_of(reason),
+                                             explain_left_out(reason));
+                     }
+                     return left_out;
+                   })
+      .def("save", &save, nb::arg("directory"), nb::arg("names"), nb::arg("more_inputs"));
+}
+
+}  // namespace
+
+void bind_merge(nb::module_& module) {
+  bind_results(module);
+  module.def("merge", &merge_maps, nb::arg("maps"), nb::arg("known"), nb::arg("threads"), nb::arg("accept"),
+             nb::arg("output_resolution"), nb::arg("up_the_tree"), nb::arg("progress").none());
+  module.def(
+      "map_colour",
+      [](std::size_t map) {
+        const Colour colour = map_colour(map);
+        return std::tuple<int, int, int>(colour.red, colour.green, colour.blue);
+      },
+      nb::arg("map"));
+}
+
+}  // namespace gridmerge::python

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/merge/merger.hpp"
+
+#include <map>
+#include <utility>
+
+#include "merge.hpp"
+#include "worker.hpp"
+
+namespace gridmerge::python {
+
+namespace {
+
+/// A Merger that keeps its maps. One thread at a time may use it, which the package sees to: most of it runs
+/// without the interpreter's lock.
+class MapMerger {
+ public:
+  MapMerger(int threads, double accept, double output_resolution)
+      : merger_(make_options(threads, accept, output_resolution, share_)) {}
+
+  std::size_t add(const Map& map, const std::optional<Known>& known) {
+    const std::size_t id = merger_.add(*map.grid, to_known_pose(known));
+    maps_.emplace(id, map);
+    return id;
+  }
+
+  void update(std::size_t id, const Map& map) {
+    merger_.update(id, *map.grid);
+    maps_.at(id) = map;
+  }
+
+  void remove(std::size_t id) {
+    merger_.remove(id);
+    maps_.erase(id);
+  }
+
+  Merged result(const nb::object& progress) {
+    MergeResult result = compute_in_worker(progress, [&](const Report& report) {
+      *share_ = report;
+      return merger_.result();
+    });
+    std::vector<Map> maps;
+    maps.reserve(maps_.size());
+    for (const auto& [id, map] : maps_) maps.push_back(map);
+    return {std::move(maps), std::make_shared<const MergeResult>(std::move(result))};
+  }
+
+ private:
+  static MergeOptions make_options(int threads, double accept, double output_resolution,
+                                   std::shared_ptr<Report> share) {
+    MergeOptions options;
+    options.match.threads = threads;
+    options.match.accept_probability = accept;
+    options.resolution = output_resolution;
+    options.progress = [share = std::move(share)](std::size_t done, std::size_t total) {
+      (*share)(static_cast<double>(done) / static_cast<double>(total));
+    };
+    return options;
+  }
+
+  std::shared_ptr<Report> share_ = std::make_shared<Report>();  // of the result() that is at work
+  Merger merger_;
+  std::map<std::size_t, Map> maps_;
+};
+
+}  // namespace
+
+void bind_merger(nb::module_& module) {
+  nb::class_<MapMerger>(module, "Merger")
+      .def(nb::init<int, double, double>(), nb::arg("threads"), nb::arg("accept"),
+           nb::arg("output_resolution"))
+      .def("add", &MapMerger::add, nb::arg("map"), nb::arg("known").none(),
+           nb::call_guard<nb::gil_scoped_release>())
+      .def("update", &MapMerger::update, nb::arg("id"), nb::arg("map"),
+           nb::call_guard<nb::gil_scoped_release>())
+      .def("remove", &MapMerger::remove, nb::arg("id"))
+      .def("result", &MapMerger::result, nb::arg("progress").none());
+}
+
+}  // namespace gridmerge::python

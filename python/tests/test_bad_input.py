@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whatever is wrong with an argument is said with its name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import gridmerge
+import numpy as np
+import pytest
+
+GOOD = np.zeros((3, 4), dtype=np.int8)
+NAN, INFINITY = float("nan"), float("inf")
+
+
+def one_wrong(value: int) -> Any:
+    data = np.zeros((3, 4), dtype=np.int8)
+    data[2, 1] = value
+    return data
+
+
+DATA = [
+    (TypeError, np.zeros((3, 4))),
+    (TypeError, np.full((3, 4), NAN)),
+    (TypeError, np.zeros((3, 4), dtype=np.uint8)),
+    (TypeError, np.zeros((3, 4), dtype=np.int16)),
+    (TypeError, np.zeros((3, 4), dtype=bool)),
+    (TypeError, np.zeros((3, 4), dtype=object)),
+    (TypeError, np.zeros((3, 4), dtype="S1")),
+    (TypeError, np.zeros((3, 4), dtype=[("a", np.int8)])),
+    (TypeError, np.ma.masked_array(GOOD, mask=True)),
+    (TypeError, [[0, 1], [2, 3]]),
+    (TypeError, b"\0\0"),
+    (TypeError, "map.yaml"),
+    (TypeError, None),
+    (TypeError, np.int8(3)),
+    (ValueError, np.zeros(12, dtype=np.int8)),
+    (ValueError, np.zeros((), dtype=np.int8)),
+    (ValueError, np.zeros((3, 4, 1), dtype=np.int8)),
+    (ValueError, np.zeros((0, 4), dtype=np.int8)),
+    (ValueError, np.zeros((3, 0), dtype=np.int8)),
+    (ValueError, np.broadcast_to(np.int8(0), (2**20, 2**20))),
+    (ValueError, one_wrong(101)),
+    (ValueError, one_wrong(-2)),
+    (ValueError, one_wrong(-128)),
+    (ValueError, one_wrong(127)),
+]
+
+
+@pytest.mark.parametrize(("error", "data"), DATA)
+def test_data(error: type[Exception], data: Any) -> None:
+    with pytest.raises(error, match=r"^data: "):
+        gridmerge.OccupancyGrid(data, 0.05)
+
+
+def test_data_tells_where_the_wrong_value_is() -> None:
+    with pytest.raises(ValueError, match=r"^data: the value 101 in row 2, column 1 "):
+        gridmerge.OccupancyGrid(one_wrong(101), 0.05)
+
+
+RESOLUTIONS = [
+    (ValueError, 0.0),
+    (ValueError, -0.05),
+    (ValueError, NAN),
+    (ValueError, INFINITY),
+    (ValueError, 1e-300),
+    (ValueError, 1e300),
+    (ValueError, 10**400),
+    (TypeError, "0.05"),
+    (TypeError, None),
+    (TypeError, True),
+    (TypeError, 1j),
+    (TypeError, [0.05]),
+    (TypeError, np.array([0.05])),
+]
+
+
+@pytest.mark.parametrize(("error", "resolution"), RESOLUTIONS)
+def test_resolution(error: type[Exception], resolution: Any) -> None:
+    with pytest.raises(error, match=r"^resolution: "):
+        gridmerge.OccupancyGrid(GOOD, resolution)
+
+
+ORIGINS = [
+    (ValueError, (NAN, 0.0, 0.0)),
+    (ValueError, (0.0, INFINITY, 0.0)),
+    (ValueError, (0.0, 0.0, NAN)),
+    (ValueError, (1e12, 0.0, 0.0)),
+    (ValueError, np.full((3, 3), NAN)),
+    (ValueError, np.zeros((3, 3))),
+    (ValueError, 2.0 * np.eye(3)),
+    (ValueError, np.diag([1.0, -1.0, 1.0])),
+    (ValueError, np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 1.0]])),
+    (ValueError, np.eye(4)),
+    (TypeError, np.eye(3, dtype=complex)),
+    (TypeError, (0.0, 0.0)),
+    (TypeError, (0.0, 0.0, 0.0, 1.0)),
+    (TypeError, ("a", "b", "c")),
+    (TypeError, "abc"),
+    (TypeError, 0.0),
+    (TypeError, None),
+    (TypeError, (0.0, 0.0, True)),
+    (TypeError, {"x": 0, "y": 0, "theta": 0}),
+]
+
+
+@pytest.mark.parametrize(("error", "origin"), ORIGINS)
+def test_origin(error: type[Exception], origin: Any) -> None:
+    with pytest.raises(error, match=r"^origin(\.\w+)?: "):
+        gridmerge.OccupancyGrid(GOOD, 0.05, origin)
+
+
+CELLS: list[tuple[type[Exception], str, Any, Any]] = [
+    (TypeError, "cells", GOOD, None),
+    (ValueError, "cells", np.full((2, 2), 3, dtype=np.uint8), None),
+    (ValueError, "probability", np.zeros((2, 2), dtype=np.uint8), np.zeros((2, 3), dtype=np.float32)),
+    (ValueError, "probability", np.zeros((2, 2), dtype=np.uint8), np.full((2, 2), 1.5, dtype=np.float32)),
+    (
+        ValueError,
+        "probability",
+        np.zeros((2, 2), dtype=np.uint8),
+        np.full((2, 2), -INFINITY, dtype=np.float32),
+    ),
+    (TypeError, "probability", np.zeros((2, 2), dtype=np.uint8), np.zeros((2, 2))),
+]
+
+
+@pytest.mark.parametrize(("error", "name", "cells", "probability"), CELLS)
+def test_cells(error: type[Exception], name: str, cells: Any, probability: Any) -> None:
+    with pytest.raises(error, match=f"^{name}: "):
+        gridmerge.OccupancyGrid.from_cells(cells, 0.05, probability=probability)
+
+
+GRID = gridmerge.OccupancyGrid(GOOD, 0.05)
+Call = Callable[[], object]
+
+
+def call(function: Any, *arguments: Any, **options: Any) -> Call:
+    return lambda: function(*arguments, **options)
+
+
+ARGUMENTS: list[tuple[type[Exception], str, Call]] = [
+    (TypeError, "fixed", call(gridmerge.match, 3, GRID)),
+    (TypeError, "fixed", call(gridmerge.match, None, GRID)),
+    (TypeError, "moving", call(gridmerge.match, GRID, GOOD)),
+    (TypeError, "moving", call(gridmerge.match, GRID, [GRID])),
+    (ValueError, "path", call(gridmerge.match, "", GRID)),
+    (ValueError, "path", call(gridmerge.load, "a\0b.yaml")),
+    (TypeError, "path", call(gridmerge.load, 3)),
+    (TypeError, "path", call(gridmerge.load, b"map.yaml")),
+    (ValueError, "resolution", call(gridmerge.load, "map.pgm", 0.0)),
+    (ValueError, "resolution", call(gridmerge.load, "map.pgm", NAN)),
+    (TypeError, "grid", call(gridmerge.save, GOOD, "map.yaml")),
+    (TypeError, "path", call(gridmerge.save, GRID, None)),
+    (TypeError, "threads", call(gridmerge.match, GRID, GRID, threads=1.5)),
+    (ValueError, "threads", call(gridmerge.match, GRID, GRID, threads=-1)),
+    (ValueError, "threads", call(gridmerge.match, GRID, GRID, threads=2**70)),
+    (ValueError, "accept", call(gridmerge.match, GRID, GRID, accept=1.5)),
+    (ValueError, "accept", call(gridmerge.match, GRID, GRID, accept=NAN)),
+    (TypeError, "accept", call(gridmerge.match, GRID, GRID, accept="0.8")),
+    (ValueError, "max_hypotheses", call(gridmerge.match, GRID, GRID, max_hypotheses=-1)),
+    (TypeError, "progress", call(gridmerge.match, GRID, GRID, progress=3)),
+    (TypeError, "maps", call(gridmerge.merge, "map.yaml")),
+    (TypeError, "maps", call(gridmerge.merge, GRID)),
+    (TypeError, "maps", call(gridmerge.merge, None)),
+    (TypeError, r"maps\[1\]", call(gridmerge.merge, [GRID, 3])),
+    (ValueError, "names", call(gridmerge.merge, [GRID, GRID], names=["a"])),
+    (TypeError, "names", call(gridmerge.merge, [GRID, GRID], names="ab")),
+    (TypeError, r"names\[1\]", call(gridmerge.merge, [GRID, GRID], names=["a", 2])),
+    (ValueError, "strategy", call(gridmerge.merge, [GRID, GRID], strategy="best")),
+    (ValueError, "strategy", call(gridmerge.merge, [GRID, GRID], strategy="tree", fix=0)),
+    (ValueError, "output_resolution", call(gridmerge.merge, [GRID, GRID], output_resolution=0.0)),
+    (TypeError, "init", call(gridmerge.merge, [GRID, GRID], init=3)),
+    (ValueError, "init", call(gridmerge.merge, [GRID, GRID], init={5: (0, 0, 0)})),
+    (ValueError, "init", call(gridmerge.merge, [GRID, GRID], init={"other": (0, 0, 0)})),
+    (TypeError, r"init\[0\]", call(gridmerge.merge, [GRID, GRID], init={0: (0, 0)})),
+    (ValueError, r"init\[0\].theta", call(gridmerge.merge, [GRID, GRID], init={0: (0, 0, NAN)})),
+    (ValueError, "fix", call(gridmerge.merge, [GRID, GRID], fix=2)),
+    (ValueError, "fix", call(gridmerge.merge, [GRID, GRID], fix=[0, 1])),
+    (TypeError, "fix", call(gridmerge.merge, [GRID, GRID], fix=1.0)),
+    (ValueError, "kind", call(gridmerge.simulate, "castle")),
+    (TypeError, "kind", call(gridmerge.simulate, 3)),
+    (TypeError, "size", call(gridmerge.simulate, size=40)),
+    (TypeError, "size", call(gridmerge.simulate, size=(1, 2, 3))),
+    (ValueError, "size", call(gridmerge.simulate, size=(NAN, 2))),
+    (ValueError, "robots", call(gridmerge.simulate, robots=0)),
+    (ValueError, "overlap", call(gridmerge.simulate, overlap=2.0)),
+    (TypeError, r"starts\[0\]", call(gridmerge.simulate, starts=[3.0])),
+    (TypeError, "starts", call(gridmerge.simulate, starts=3.0)),
+    (ValueError, "seed", call(gridmerge.simulate, seed=-1)),
+    (ValueError, "noise", call(gridmerge.simulate, noise=-1.0)),
+    (ValueError, "others", call(gridmerge.simulate, others=-1)),
+    (ValueError, "pairs, negatives, sets", call(gridmerge.evaluate)),
+    (TypeError, "pairs", call(gridmerge.evaluate, 3)),
+    (TypeError, "probabilities", call(GRID.to_numpy, probabilities=1)),
+    (ValueError, "probabilities", call(GRID.to_numpy, probabilities=True)),
+    (TypeError, "x", call(gridmerge.Transform, "1", 0.0, 0.0)),
+    (ValueError, "theta", call(gridmerge.Transform, 0.0, 0.0, NAN)),
+    (ValueError, "points", call(gridmerge.Transform(0.0, 0.0, 0.0).apply, [1.0, 2.0, 3.0])),
+]
+
+
+@pytest.mark.parametrize(("error", "name", "made"), ARGUMENTS)
+def test_arguments(error: type[Exception], name: str, made: Call) -> None:
+    with pytest.raises(error, match=f"^{name}: "):
+        made()
+
+
+def test_simulate_passes_on_what_the_engine_says() -> None:
+    with pytest.raises(ValueError, match="an overlap takes two robots"):
+        gridmerge.simulate(robots=1, overlap=0.5)
+
+
+def test_maps_too_far_apart_to_merge(tmp_path: Path) -> None:
+    cells = np.zeros((3, 3), dtype=np.int8)
+    grid = gridmerge.OccupancyGrid(cells, 0.05)
+    poses = {0: (0.0, 0.0, 0.0), 1: (9e6, 0.0, 0.0)}
+    with pytest.raises(ValueError, match="2\\^28|cells"):
+        gridmerge.merge([grid, grid], init=poses, fix=[0, 1])
+
+
+@pytest.mark.filterwarnings("ignore:nanobind. attempted to access an uninitialized instance")
+def test_an_uninitialised_core_object_is_no_crash() -> None:
+    from gridmerge import _core
+
+    with pytest.raises(TypeError):
+        _core.Grid()
+    empty = _core.Grid.__new__(_core.Grid)
+    with pytest.raises(TypeError):
+        _core.match(empty, empty, 0, 0.8, 10, None)

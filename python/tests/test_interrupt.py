@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What happens around long work: Ctrl-C, other threads, progress functions that raise."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import gridmerge
+import numpy as np
+import pytest
+
+LONG_WORK = {
+    "simulate": "gridmerge.simulate('office', size=(300, 250), robots=8, drift=0.5)",
+    "simulate with overlap": "gridmerge.simulate('office', size=(200, 150), robots=8, overlap=0.4)",
+    "merge": "gridmerge.merge([small] * 60)",
+    "merge up the tree": "gridmerge.merge([small] * 60, strategy='tree')",
+    "evaluate": "gridmerge.evaluate(pairs)",
+    "Merger": "merger.result()",
+}
+
+PROGRAM = """
+import sys, time
+import numpy as np
+import gridmerge
+
+folder = sys.argv[1]
+grid = gridmerge.simulate("office", size=(25, 20), robots=1, others=0).maps[0].grid
+small = gridmerge.OccupancyGrid(grid.to_numpy(), grid.resolution)
+gridmerge.save(small, folder + "/small.yaml")
+pairs = folder + "/pairs.tsv"
+with open(pairs, "w") as table:
+    table.write("fixed\\tmoving\\tx\\ty\\ttheta\\ttolerance\\n" + "small.yaml\\tsmall.yaml\\t0\\t0\\t0\\t1\\n" * 5000)
+merger = gridmerge.Merger()
+for _ in range(60):
+    merger.add(small)
+print("begin", flush=True)
+try:
+    WORK
+    print("ended before the interrupt", flush=True)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+print(gridmerge.match(small, small).accepted, flush=True)  # all is well afterwards
+"""
+
+
+@pytest.mark.parametrize("what", LONG_WORK)
+def test_ctrl_c_ends_long_work(what: str, tmp_path: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-c", PROGRAM.replace("WORK", LONG_WORK[what]), str(tmp_path)],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    hung = threading.Timer(60.0, process.kill)
+    hung.start()
+    try:
+        assert process.stdout.readline() == "begin\n"
+        time.sleep(0.5)
+        begin = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        assert process.stdout.readline() == "interrupted\n"
+        waited = time.monotonic() - begin
+        assert process.stdout.readline() == "True\n"
+        assert process.wait() == 0
+    finally:
+        hung.cancel()
+        process.kill()
+        process.stdout.close()
+    print(f"{what}: {waited:.3f} s from the signal to KeyboardInterrupt")
+    assert waited < 5.0  # without it, it would be minutes
+
+
+DAEMON = """
+import atexit, sys, threading, time
+import gridmerge
+
+grid = gridmerge.simulate("office", size=(25, 20), robots=1, others=0).maps[0].grid
+atexit.register(lambda: print(gridmerge.match(grid, grid).accepted, flush=True))
+work = lambda: gridmerge.merge([grid] * 60)
+for _ in range(3):
+    threading.Thread(target=work, daemon=True).start()
+time.sleep(0.3)
+"""
+
+
+@pytest.mark.parametrize("attempt", range(5))
+def test_a_program_ends_while_daemon_threads_work(attempt: int) -> None:
+    ended = subprocess.run(
+        [sys.executable, "-c", DAEMON], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "True\n", "")
+
+
+def test_other_threads_run_meanwhile() -> None:
+    steps: list[float] = []
+    done = threading.Event()
+
+    def count() -> None:
+        while not done.is_set():
+            steps.append(time.monotonic())
+            time.sleep(0.001)
+
+    other = threading.Thread(target=count)
+    other.start()
+    begin = time.monotonic()
+    gridmerge.simulate("office", size=(40, 30), robots=2, others=0, seed=4, threads=1)
+    end = time.monotonic()
+    done.set()
+    other.join()
+    during = [step for step in steps if begin < step < end]
+    # A thread that is kept out for all of the work, or for most of it, leaves a gap as long as that.
+    gaps = np.diff([begin, *during, end])
+    assert gaps.max() < 0.5 * (end - begin)
+    assert len(during) > 10
+
+
+def test_results_are_the_same_from_several_threads(robots: list[str]) -> None:
+    expected = gridmerge.match(*robots[:2]).hypotheses
+    results: list[object] = []
+
+    def work() -> None:
+        for _ in range(3):
+            results.append(gridmerge.match(*robots[:2]).hypotheses)
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert results == [expected] * 12
+
+
+def test_a_merger_refuses_a_second_thread(robots: list[str]) -> None:
+    merger = gridmerge.Merger()
+    for path in robots * 3:
+        merger.add(path)
+    refusals: list[RuntimeError] = []
+
+    def intrude(share: float) -> None:
+        def add() -> None:
+            try:
+                merger.add(robots[0])
+            except RuntimeError as error:
+                refusals.append(error)
+
+        other = threading.Thread(target=add)
+        other.start()
+        other.join()
+
+    merger.result(progress=intrude)
+    assert refusals and str(refusals[0]) == "the Merger is at work"
+
+
+def test_a_merger_refuses_its_own_progress(robots: list[str]) -> None:
+    merger = gridmerge.Merger()
+    merger.add(robots[0])
+    with pytest.raises(RuntimeError, match="at work"):
+        merger.result(progress=lambda share: merger.add(robots[1]))
+    merger.add(robots[1])
+    assert merger.result().complete
+
+
+def test_an_exception_of_progress_ends_the_work() -> None:
+    class Enough(Exception):
+        pass
+
+    def stop(share: float) -> None:
+        raise Enough(share)
+
+    with pytest.raises(Enough):
+        gridmerge.merge(
+            [gridmerge.simulate("apartment", size=(15, 10), robots=1).maps[0].grid] * 40, progress=stop
+        )
+
+
+def test_progress_is_called_in_the_calling_thread(robots: list[str]) -> None:
+    callers: set[int] = set()
+    shares: list[float] = []
+
+    def note(share: float) -> None:
+        callers.add(threading.get_ident())
+        shares.append(share)
+
+    gridmerge.merge(robots * 4, progress=note)
+    assert callers == {threading.get_ident()}
+    assert len(shares) > 1
+    assert shares == sorted(shares) and shares[-1] == 1.0

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import json
+import pickle
+from pathlib import Path
+from typing import Any
+
+import gridmerge
+import numpy as np
+import pytest
+from conftest import Cli, pose_of, to_bits
+
+
+def as_json(result: gridmerge.MatchResult) -> dict[str, Any]:
+    """What the command line writes, but for names and seconds."""
+    return {
+        "verdict": result.verdict,
+        "reason": None if result.accepted else result.reason,
+        "transform": pose_of(result.transform),
+        "probability": result.probability,
+        "acceptance_index": result.acceptance_index,
+        "agreement": result.agreement,
+        "disagreement": result.disagreement,
+        "overlap": result.overlap,
+        "hypotheses": [
+            {"transform": pose_of(one.transform), "score": one.score, "probability": one.probability}
+            for one in result.hypotheses
+        ],
+    }
+
+
+def ask(cli: Cli, *arguments: object) -> dict[str, Any]:
+    answer = json.loads(cli("match", "--json", *arguments).stdout)
+    assert isinstance(answer, dict)
+    return {key: value for key, value in answer.items() if key not in ("fixed", "moving", "seconds")}
+
+
+@pytest.mark.parametrize("pair", [(0, 1), (1, 0), (1, 2), (0, 3)])
+def test_results_equal_the_command_lines_to_the_bit(
+    cli: Cli, robots: list[str], elsewhere: str, pair: tuple[int, int]
+) -> None:
+    paths = [*robots, elsewhere]
+    fixed, moving = (paths[i] for i in pair)
+    assert to_bits(as_json(gridmerge.match(fixed, moving))) == to_bits(ask(cli, fixed, moving))
+
+
+def test_so_do_those_of_simulated_maps(cli: Cli, team: gridmerge.Simulation, team_folder: Path) -> None:
+    fixed, moving = (team_folder / f"robot_{i}.yaml" for i in (1, 2))
+    expected = to_bits(ask(cli, fixed, moving, "--accept", 0.99))
+    assert to_bits(as_json(gridmerge.match(fixed, moving, accept=0.99))) == expected
+    of_arrays = [
+        gridmerge.OccupancyGrid(one.grid.to_numpy(), one.grid.resolution, one.grid.origin)
+        for one in team.maps[:2]
+    ]
+    assert to_bits(as_json(gridmerge.match(*of_arrays, accept=0.99))) == expected
+
+
+def test_threads_change_nothing(robots: list[str]) -> None:
+    results = [as_json(gridmerge.match(*robots[:2], threads=threads)) for threads in (0, 1, 2, 5)]
+    assert all(to_bits(result) == to_bits(results[0]) for result in results)
+
+
+def test_unrelated_maps_are_refused(robots: list[str], elsewhere: str) -> None:
+    result = gridmerge.match(robots[0], elsewhere)
+    assert result.verdict == "refused"
+    assert not result.accepted
+    assert result.reason != "none"
+
+
+def test_maps_with_nothing_in_them_are_refused() -> None:
+    for value in (-1, 0, 100):
+        grid = gridmerge.OccupancyGrid(np.full((50, 50), value, dtype=np.int8), 0.05)
+        result = gridmerge.match(grid, grid)
+        assert not result.accepted
+        assert value == 100 or (result.reason == "nothing_to_compare" and result.hypotheses == ())
+
+
+def test_a_map_lies_on_itself_turned(robots: list[str]) -> None:
+    grid = gridmerge.load(robots[0])
+    place = gridmerge.Transform(3.0, -1.0, 0.7)
+    moved = gridmerge.OccupancyGrid(grid.to_numpy(), grid.resolution, place.inverse() @ grid.origin)
+    result = gridmerge.match(grid, moved)
+    assert result.accepted
+    np.testing.assert_allclose(list(result.transform), list(place), atol=0.05)
+
+
+def test_hypotheses_are_as_many_as_asked_for(robots: list[str]) -> None:
+    assert len(gridmerge.match(*robots[:2], max_hypotheses=2).hypotheses) == 2
+
+
+def test_results_can_be_pickled(robots: list[str]) -> None:
+    result = gridmerge.match(*robots[:2])
+    assert pickle.loads(pickle.dumps(result)) == result
+
+
+def test_progress_ends_with_one(robots: list[str]) -> None:
+    shares: list[float] = []
+    gridmerge.match(*robots[:2], progress=shares.append)
+    assert shares[-1] == 1.0
+    assert shares == sorted(shares)

@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import gridmerge
+import numpy as np
+import pytest
+from conftest import Cli, pose_of, to_bits
+
+
+def as_json(result: gridmerge.MergeResult) -> dict[str, Any]:
+    """transforms.json, made of the typed result."""
+    components = []
+    for i, component in enumerate(result.components):
+        members = [
+            {
+                "source": one.name,
+                "transform": pose_of(one.transform),
+                "probability": one.probability,
+                "sd": None
+                if one.sd_position is None
+                else {"position": one.sd_position, "theta": one.sd_theta},
+            }
+            for one in component.members
+        ]
+        frame = None if component.in_world_frame else component.members[0].name
+        name = "merged.yaml" if i == 0 else f"merged_{i + 1}.yaml"
+        components.append({"map": name, "frame": frame, "members": members})
+    joins = [
+        {
+            "fixed": result.names[join.fixed],
+            "moving": result.names[join.moving],
+            "transform": pose_of(join.transform),
+            "verdict": "accepted" if join.used else "refused",
+            "probability": join.probability,
+            "outcome": join.outcome,
+            "reason": None if join.match.accepted else join.match.reason,
+            "acceptance_index": join.match.acceptance_index,
+            "agreement": join.match.agreement,
+            "disagreement": join.match.disagreement,
+            "overlap": join.match.overlap,
+            "hypotheses": [
+                {"transform": pose_of(one.transform), "score": one.score, "probability": one.probability}
+                for one in join.match.hypotheses
+            ],
+        }
+        for join in result.joins
+    ]
+    return {
+        "maps": list(result.names),
+        "components": components,
+        "joins": joins,
+        "left_out": [one.name for one in result.left_out],
+        "left_out_reasons": [one.reason for one in result.left_out],
+    }
+
+
+def assert_equals_the_command_lines(
+    result: gridmerge.MergeResult, cli: Cli, folder: Path, *arguments: object
+) -> None:
+    answer = cli("merge", *arguments, "-o", folder / "cli")
+    assert answer.returncode == (0 if result.complete else 3), answer.stderr
+    result.save(folder / "python")
+    names = sorted(path.name for path in (folder / "cli").iterdir())
+    assert names == sorted(path.name for path in (folder / "python").iterdir())
+    for name in names:
+        assert (folder / "cli" / name).read_bytes() == (folder / "python" / name).read_bytes(), name
+    transforms = json.loads((folder / "cli" / "transforms.json").read_text())
+    assert to_bits(as_json(result)) == to_bits(transforms)
+
+
+def test_files_and_results_equal_the_command_lines(
+    cli: Cli, robots: list[str], elsewhere: str, tmp_path: Path
+) -> None:
+    maps = [*robots, elsewhere]
+    result = gridmerge.merge(maps)
+    assert_equals_the_command_lines(result, cli, tmp_path, *maps)
+    assert [one.name for one in result.left_out] == [elsewhere]
+    assert len(result.components[0].members) == 3
+    assert gridmerge.load(tmp_path / "cli" / "merged.yaml").to_numpy().tobytes() == (
+        result.components[0].grid.to_numpy().tobytes()
+    )
+
+
+@pytest.mark.parametrize(
+    ("options", "arguments"),
+    [
+        ({"strategy": "tree"}, ["--strategy", "tree"]),
+        ({"output_resolution": 0.1}, ["--output-resolution", "0.1"]),
+        ({"accept": 0.999, "threads": 1}, ["--accept", "0.999"]),
+    ],
+)
+def test_so_do_those_with_options(
+    cli: Cli, team_folder: Path, tmp_path: Path, options: dict[str, Any], arguments: list[str]
+) -> None:
+    maps = [str(team_folder / f"robot_{i}.yaml") for i in (1, 2, 3)]
+    assert_equals_the_command_lines(gridmerge.merge(maps, **options), cli, tmp_path, *maps, *arguments)
+
+
+def test_known_poses_as_a_table_and_as_a_mapping(cli: Cli, robots: list[str], tmp_path: Path) -> None:
+    first = gridmerge.Transform(10.0, 5.0, 0.5)
+    x, y, theta = third = first @ gridmerge.merge(robots).components[0].members[2].transform
+    table = tmp_path / "poses.tsv"
+    table.write_text(
+        f"map\tx\ty\ttheta\tsd\n{robots[0]}\t10\t5\t0.5\t0.1\n{robots[2]}\t{x}\t{y}\t{theta}\t0.5\n"
+    )
+    of_table = gridmerge.merge(robots, init=table, fix=robots[0])
+    poses: dict[int | str, gridmerge.InitialPose] = {
+        0: gridmerge.InitialPose((10, 5, 0.5), sd=0.1),
+        robots[2]: gridmerge.InitialPose(third, sd=0.5),
+    }
+    of_mapping = gridmerge.merge(robots, init=poses, fix=[0])
+    assert to_bits(as_json(of_table)) == to_bits(as_json(of_mapping))
+    assert of_table.components[0].in_world_frame
+    assert of_table.components[0].members[0].transform == first
+    assert_equals_the_command_lines(of_table, cli, tmp_path, *robots, "--init", table, "--fix", robots[0])
+    with pytest.raises(ValueError, match="none of the maps"):
+        gridmerge.merge(robots[:2], init=table)
+
+
+def test_names_of_maps(robots: list[str]) -> None:
+    grids = [gridmerge.load(path) for path in robots]
+    assert gridmerge.merge(grids).names == tuple(robots)
+    named = gridmerge.merge(grids, names=["a", "b", "c"])
+    assert [one.name for one in named.components[0].members] == ["a", "b", "c"]
+    bare = gridmerge.OccupancyGrid(np.zeros((3, 3), dtype=np.int8), 0.05)
+    assert gridmerge.merge([bare, bare]).names == ("map 0", "map 1")
+
+
+def test_inputs_are_not_replaced(robots: list[str], tmp_path: Path) -> None:
+    gridmerge.merge(robots[:2]).save(tmp_path)
+    before = (tmp_path / "merged.pgm").read_bytes()
+    result = gridmerge.merge([tmp_path / "merged.yaml", robots[2]])
+    with pytest.raises(gridmerge.FileError, match="is an input and would be replaced"):
+        result.save(tmp_path)
+    assert (tmp_path / "merged.pgm").read_bytes() == before
+
+
+def test_nothing_and_a_single_map(robots: list[str], tmp_path: Path) -> None:
+    assert gridmerge.merge([]).components == ()
+    single = gridmerge.merge(robots[:1])
+    assert not single.complete
+    assert [one.map for one in single.left_out] == [0]
+    single.save(tmp_path)
+    assert not (tmp_path / "merged.yaml").exists()
+
+
+def test_a_merger_gives_what_merge_gives(robots: list[str], elsewhere: str) -> None:
+    merger = gridmerge.Merger()
+    first = merger.add(elsewhere)
+    ids = [merger.add(path) for path in robots[:2]]
+    merger.result()
+    merger.update(ids[1], robots[2])
+    merger.update(ids[1], robots[1])
+    merger.remove(first)
+    merger.add(robots[2])
+    assert to_bits(as_json(merger.result())) == to_bits(as_json(gridmerge.merge(robots)))
+    with pytest.raises(KeyError):
+        merger.remove(first)
+    with pytest.raises(KeyError):
+        merger.update(99, robots[0])
+
+
+def test_a_merger_with_known_poses(robots: list[str]) -> None:
+    merger = gridmerge.Merger()
+    merger.add(robots[0], pose=(10, 5, 0.5), fixed=True)
+    merger.add(robots[1])
+    fixed = gridmerge.merge(robots[:2], init={0: (10, 5, 0.5)}, fix=0)
+    assert to_bits(as_json(merger.result())) == to_bits(as_json(fixed))
+
+
+def test_plots(robots: list[str], elsewhere: str) -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    result = gridmerge.merge([*robots, elsewhere])
+    axes = result.plot()
+    assert axes.get_title() == "3 of 4 maps"
+    legend = axes.get_legend()
+    assert legend is not None and [text.get_text() for text in legend.get_texts()] == robots
+    assert result.plot(axes) is axes
+    left, right = axes.get_xlim()
+    grid = result.components[0].grid
+    assert left < grid.origin.x + 1.0 and right > grid.origin.x + grid.width * grid.resolution - 1.0
+    axes.figure.canvas.draw()
+    with pytest.raises(IndexError, match="component"):
+        result.plot(component=1)
+    assert gridmerge.merge([robots[0], elsewhere]).plot().get_title() == "no two maps fit together"
+    gridmerge.load(robots[0]).plot().figure.canvas.draw()
+
+
+def test_a_plot_puts_maps_where_their_members_lie(robots: list[str]) -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    result = gridmerge.merge(robots)
+    axes = result.plot()
+    drawn = [(image.get_transform() - axes.transData).transform((0.5, 0.25)) for image in axes.get_images()]
+    for member in result.components[0].members:
+        expected = member.transform.apply(result.maps[member.map].origin.apply([0.5, 0.25]))
+        assert sum(np.allclose(point, expected, atol=1e-9) for point in drawn) == 2  # free space and walls
+
+
+def test_a_plot_puts_walls_where_they_are() -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    from matplotlib.transforms import Affine2DBase
+
+    data = np.full((10, 20), -1, dtype=np.int8)
+    data[2, 15] = 100
+    grid = gridmerge.OccupancyGrid(data, 0.5, (1.0, 2.0, 0.6))
+    axes = grid.plot()
+    axes.figure.canvas.draw()
+    walls = [image for image in axes.get_images() if np.asarray(image.get_array())[..., 3].any()]
+    assert len(walls) == 1
+    left, right, bottom, top = walls[0].get_extent()
+    array = np.asarray(walls[0].get_array())
+    row, column = np.argwhere(array[..., 3])[0]
+    x = left + (column + 0.5) / array.shape[1] * (right - left)
+    y = bottom + (row + 0.5) / array.shape[0] * (top - bottom)
+    to_data = walls[0].get_transform() - axes.transData
+    assert isinstance(to_data, Affine2DBase)
+    expected = grid.origin.apply([15.5 * 0.5, 2.5 * 0.5])
+    np.testing.assert_allclose(to_data.transform((x, y)), expected, atol=1e-9)

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/grid/cancellation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+#include <stdexcept>
+
+#include "gridmerge/grid/parallel.hpp"
+
+namespace gridmerge {
+namespace {
+
+TEST(Cancellation, EndsAParallelLoopLongBeforeItsEnd) {
+  std::atomic<bool> cancelled{false};
+  std::atomic<std::size_t> calls{0};
+  const auto work = [&] {
+    with_threads(2, [&] {
+      parallel_for(1000000, [&](std::size_t) {
+        if (++calls == 10) cancelled = true;
+      });
+    });
+  };
+  EXPECT_THROW(with_cancellation(cancelled, work), Cancelled);
+  EXPECT_LT(calls.load(), 1000u);
+}
+
+TEST(Cancellation, ReachesLoopsInLoopsWithThreadsOfTheirOwn) {
+  std::atomic<bool> cancelled{false};
+  std::atomic<std::size_t> calls{0};
+  const auto inner = [&] {
+    parallel_for(1000, [&](std::size_t) {
+      if (++calls == 10) cancelled = true;
+    });
+  };
+  const auto work = [&] {
+    with_threads(2, [&] { parallel_for(4, [&](std::size_t) { with_threads(1, inner); }); });
+  };
+  EXPECT_THROW(with_cancellation(cancelled, work), Cancelled);
+  EXPECT_LT(calls.load(), 1000u);
+}
+
+TEST(Cancellation, ReachesThoseWhoAskThemselves) {
+  std::atomic<bool> cancelled{true};
+  EXPECT_THROW(with_cancellation(cancelled, [] { throw_if_cancelled(); }), Cancelled);
+}
+
+TEST(Cancellation, LeavesOtherWorkAlone) {
+  const std::atomic<bool> cancelled{true};
+  EXPECT_THROW(with_cancellation(cancelled, [] { parallel_for(1, [](std::size_t) {}); }), Cancelled);
+  EXPECT_NO_THROW(throw_if_cancelled());
+  std::atomic<int> calls{0};
+  parallel_for(100, [&](std::size_t) { ++calls; });
+  EXPECT_EQ(calls.load(), 100);
+}
+
+TEST(Cancellation, PassesAnExceptionOn) {
+  const std::atomic<bool> cancelled{false};
+  EXPECT_THROW(with_cancellation(cancelled, [] { throw std::out_of_range("elsewhere"); }), std::out_of_range);
+  EXPECT_NO_THROW(throw_if_cancelled());
+}
+
+}  // namespace
+}  // namespace gridmerge
