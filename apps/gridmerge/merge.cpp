@@ -112,8 +112,8 @@ std::string describe(const std::vector<std::string>& names, const MergeResult& r
     const std::string pair =
         fmt::format("{} and {}", escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
     if (join.outcome == JoinOutcome::rescued)
-      fmt::format_to(out, "rescued: {}, {:.3f} by themselves, but the other maps or known poses agree\n", pair,
-                     join.probability);
+      fmt::format_to(out, "rescued: {}, {:.3f} by themselves, but the other maps or known poses agree\n",
+                     pair, join.probability);
     if (join.outcome == JoinOutcome::rejected)
       fmt::format_to(out, "rejected: {}, {:.3f} by themselves, but the others contradict\n", pair,
                      join.probability);

@@ -32,7 +32,8 @@ TEST(Prior, WhatIsKnownMakesTheMapsOwnCandidateThereStrongAndIsNoRivalOfIt) {
   PairCandidates pair = candidates({{-20.0, 3.0, 1.0}, nearby});
   apply_known_poses(kOrigin, kKnownThere, kExtent, kExtent, pair);
   ASSERT_EQ(pair.candidates.size(), 2u);
-  EXPECT_EQ(pair.candidates[1].T_fixed_moving, nearby) << "its walls know better than the one who gave the pose";
+  EXPECT_EQ(pair.candidates[1].T_fixed_moving, nearby)
+      << "its walls know better than the one who gave the pose";
   EXPECT_GT(pair.candidates[1].log_odds, 3.0);
 }
 
