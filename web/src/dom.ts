@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { flat } from "./text";
 
 type Child = Node | string | null;
 type Attributes = Record<string, string | number | boolean | ((event: Event) => void)>;
@@ -31,11 +32,6 @@ function fill<E extends Element>(element: E, attributes: Attributes, children: C
 /** A user's text, kept to itself: right-to-left marks in it do not reorder what stands around it. `whole` is its long form. */
 export function name(text: string, whole = text): HTMLElement {
   return h("bdi", { title: flat(whole) }, text === "" ? "(no name)" : text);
-}
-
-/** A user's text for where elements cannot isolate it: without what would reorder or break the text around it. */
-export function flat(text: string): string {
-  return text.replace(/[\u0000-\u001f\u007f-\u009f\u200e\u200f\u2028-\u202e\u2066-\u2069]/g, "\ufffd");
 }
 
 export function swatch(color: string): HTMLElement {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { flat } from "./dom";
+import { flat } from "./text";
 import { fixed } from "./numbers";
 import type { SE2 } from "./se2";
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import { readableOn } from "./badge";
-import { flat, svg } from "./dom";
+import { svg } from "./dom";
 import { probability } from "./numbers";
 import type { Join, Outcome } from "./report";
 import type { State } from "./state";
+import { flat } from "./text";
 
 const size = 320;
 const middle = size / 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { flat, h, replace } from "./dom";
+import { h, replace } from "./dom";
 import { type Grid, unpack } from "./grid";
 import { helpDialog } from "./help";
 import { fixed } from "./numbers";
@@ -7,13 +7,14 @@ import { HandPanel } from "./panel_hand";
 import { JoinsPanel } from "./panel_joins";
 import { LayersPanel } from "./panel_layers";
 import { TransformsPanel } from "./panel_transforms";
-import { type PackedGrid, type Report, count, summary } from "./report";
+import { type PackedGrid, type Report, summary } from "./report";
 import { type SceneId, firstScene } from "./scene";
 import { compose } from "./se2";
 import { Stage } from "./stage";
 import { StageInput } from "./stage_input";
 import { State } from "./state";
 import { Tabs } from "./tabs";
+import { count, flat } from "./text";
 
 /** The scenes that can be picked without a join: merged maps and maps that were left out. */
 function scenePicker(state: State): HTMLElement {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { mapLabel } from "./badge";
 import { announce, copyButton, download } from "./clipboard";
-import { flat, h, replace } from "./dom";
+import { h, replace } from "./dom";
 import { refine } from "./engine";
 import { asInitialPoses, mergeCommand } from "./formats";
 import { degrees, fixed, percent, probability, radians } from "./numbers";
@@ -9,6 +9,7 @@ import type { Placed } from "./scene";
 import { Scorer } from "./score";
 import { type SE2, normalizeAngle } from "./se2";
 import type { State } from "./state";
+import { flat } from "./text";
 
 const fileName = "poses.tsv";
 /** How well the poses of maps that were not moved are taken to be known, if the merge does not say; and never better than the last. */

@@ -4,9 +4,10 @@ import { h, replace } from "./dom";
 import { describe } from "./formats";
 import { joinGraph, joinTitle } from "./join_graph";
 import { fixed, percent, probability } from "./numbers";
-import { type Join, type Outcome, count, isUsed, outcomeMeaning, outcomes } from "./report";
+import { type Join, type Outcome, isUsed, outcomeMeaning, outcomes } from "./report";
 import type { SE2 } from "./se2";
 import type { State } from "./state";
+import { count } from "./text";
 
 /** More joins than this crowd the graph: those that were not used are then hidden at first. */
 const crowded = 15;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 import { badge, mapLabel } from "./badge";
 import { disagreement, ink, white } from "./color";
-import { flat, h, name, replace, swatch } from "./dom";
+import { h, name, replace, swatch } from "./dom";
 import { Cell } from "./grid";
 import { fixed } from "./numbers";
-import { count } from "./report";
 import { apply, inverse } from "./se2";
 import type { Look, State } from "./state";
+import { count, flat } from "./text";
 
 const cellWords: Record<number, string> = { [Cell.unknown]: "unknown", [Cell.free]: "free", [Cell.occupied]: "wall" };
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 import { mapLabel } from "./badge";
 import { copyButton } from "./clipboard";
-import { flat, h, replace } from "./dom";
+import { h, replace } from "./dom";
 import { type NamedPose, asJson, asStaticTransforms, asYaml, frameIds } from "./formats";
 import { degrees, fixed, probability } from "./numbers";
 import type { Member } from "./report";
 import type { State } from "./state";
+import { flat } from "./text";
 
 /** Where the maps of the scene lie, to read and to copy. */
 export class TransformsPanel {

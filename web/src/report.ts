@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { SE2 } from "./se2";
+import { count } from "./text";
 
 // What a merge has to tell, as the program writes it into the page.
 
@@ -86,23 +87,9 @@ export function isUsed(join: Join): boolean {
   return join.outcome !== "refused" && join.outcome !== "rejected";
 }
 
-/** "1 map", "2 maps". */
-export function count(number: number, what: string): string {
-  return `${number} ${what}${number === 1 ? "" : "s"}`;
-}
-
 /** One sentence that says how the merge went. */
 export function summary(report: Report): string {
   const joined = report.components.reduce((sum, component) => sum + component.members.length, 0);
   const into = report.components.length === 0 ? "" : ` into ${count(report.components.length, "merged map")}`;
   return `${count(report.maps.length, "map")}: ${joined} joined${into}, ${report.left_out.length} left out.`;
-}
-
-/** Names without the folders that all of them lie in: enough to tell the maps apart. */
-export function shortNames(names: string[]): string[] {
-  const folders = names.map((name) => name.split("/").slice(0, -1));
-  const [first = []] = folders;
-  const differs = first.findIndex((part, i) => !folders.every((folder) => folder[i] === part));
-  const common = differs < 0 ? first.length : differs;
-  return names.map((name) => name.split("/").slice(common).join("/"));
 }

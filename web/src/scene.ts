@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import { type Report, shortNames } from "./report";
+import type { Report } from "./report";
 import { type SE2, identity } from "./se2";
+import { shortNames } from "./text";
 
 /** What can be looked at: a merged map, two maps under a hypothesis of their comparison, or a map by itself. */
 export type SceneId =

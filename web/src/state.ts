@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Grid } from "./grid";
-import { type Report, shortNames } from "./report";
+import type { Report } from "./report";
 import { type Placed, type Scene, type SceneId, firstScene, makeScene } from "./scene";
 import type { Point, SE2 } from "./se2";
+import { shortNames } from "./text";
 
 /** How a layer is drawn. */
 export interface Look {

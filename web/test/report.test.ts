@@ -2,7 +2,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { probability } from "../src/numbers";
-import { type Report, shortNames, summary } from "../src/report";
+import { type Report, summary } from "../src/report";
+import { shortNames } from "../src/text";
 
 test("short names drop only folders that all maps share", () => {
   assert.deepEqual(shortNames(["m/a/1.yaml", "m/a/2.yaml"]), ["1.yaml", "2.yaml"]);
