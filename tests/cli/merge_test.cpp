@@ -25,6 +25,7 @@ TEST_F(Merge, WritesTheFilesOfTheContract) {
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err, "");
   EXPECT_NE(outcome.out.find("merged.yaml: 2 of 2 maps"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("look at it: " + output + "/report.html\n"), std::string::npos) << outcome.out;
   EXPECT_EQ(files_in(output), all_files);
 
   const Json json = Json::parse(read_file(output + "/transforms.json"));
