@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/preview.hpp"
@@ -16,7 +17,10 @@ namespace {
 std::vector<OccupancyGrid> grids_of(const std::vector<Map>& maps) {
   std::vector<OccupancyGrid> grids;
   grids.reserve(maps.size());
-  for (const Map& map : maps) grids.push_back(*map.grid);
+  for (const Map& map : maps) {
+    throw_if_cancelled();
+    grids.push_back(*map.grid);
+  }
   return grids;
 }
 

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "gridmerge/grid/cancellation.hpp"
+
 namespace gridmerge {
 
 namespace {
@@ -20,10 +22,11 @@ OccupancyGrid crop_to_known(const OccupancyGrid& grid) {
   static_assert(static_cast<int>(Cell::unknown) == 0);
   std::vector<std::uint8_t> columns(grid.width, 0);  // 0 where every cell is unknown
   std::vector<std::uint8_t> rows(grid.height, 0);
-  for (int row = 0; row < grid.height; ++row) {  // no branches: vectorised
+  for (int row = 0; row < grid.height; ++row) {
+    throw_if_cancelled();
     const Cell* cells = grid.cells.data() + grid.index(0, row);
     std::uint8_t any = 0;
-    for (int column = 0; column < grid.width; ++column) {
+    for (int column = 0; column < grid.width; ++column) {  // no branches: vectorised
       const std::uint8_t cell = static_cast<std::uint8_t>(cells[column]);
       columns[column] |= cell;
       any |= cell;
@@ -44,6 +47,7 @@ OccupancyGrid crop_to_known(const OccupancyGrid& grid) {
       make_grid(right - left + 1, top - bottom + 1, grid.resolution, {corner.x, corner.y, grid.origin.theta});
   if (!grid.probability.empty()) cropped.probability.resize(cropped.cells.size());
   for (int row = 0; row < cropped.height; ++row) {
+    throw_if_cancelled();
     const std::size_t from = grid.index(left, bottom + row);
     const std::size_t to = cropped.index(0, row);
     std::copy_n(grid.cells.begin() + from, cropped.width, cropped.cells.begin() + to);
@@ -94,6 +98,7 @@ OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map,
   const double c = std::cos(T_grid_target.theta) / grid.resolution;
   const double s = std::sin(T_grid_target.theta) / grid.resolution;
   for (int row = 0; row < target.height; ++row) {
+    throw_if_cancelled();
     for (int column = 0; column < target.width; ++column) {
       const Point2 p = target.cell_center(column, row);
       const double source_x = c * p.x - s * p.y + T_grid_target.x / grid.resolution;

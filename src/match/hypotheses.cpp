@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/match/walls_met.hpp"
 #include "gridmerge/similarity/wall_lines.hpp"
 
@@ -98,6 +99,7 @@ std::vector<RankedPose> find_hypotheses(const ComparedMaps& maps, std::size_t ma
                                                [&](double share) { report(0.5 + 0.45 * share); });
   std::vector<RankedPose> ranked;
   for (const ScoredPose& pose : poses) {
+    throw_if_cancelled();
     const RankedPose one = rank(pose, maps);
     if (one.hypothesis.score > 0.0) ranked.push_back(one);
   }

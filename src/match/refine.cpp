@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/parallel.hpp"
 
 namespace gridmerge {
@@ -138,7 +139,10 @@ std::vector<ScoredPose> refine(const WallMap& fixed, const WallMap& moving,
   }
   if (poses.size() > options.max_poses) poses.resize(options.max_poses);
 
-  for (ScoredPose& pose : poses) pose.evidence = all_points(pose.T_fixed_moving);
+  for (ScoredPose& pose : poses) {
+    throw_if_cancelled();
+    pose.evidence = all_points(pose.T_fixed_moving);
+  }
   sort_by_score(poses);
   return poses;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "gridmerge/grid/cancellation.hpp"
+
 namespace gridmerge {
 
 namespace {
@@ -24,6 +26,7 @@ Coverage::Coverage(const OccupancyGrid& grid)
   double count = 0.0, sum_x = 0.0, sum_y = 0.0, squares = 0.0;  // [cells, grid frame]
   int left = grid.width, right = -1, bottom = grid.height, top = -1;
   for (int row = 0; row < grid.height; ++row) {
+    throw_if_cancelled();
     for (int column = 0; column < grid.width; ++column) {
       if (grid.at(column, row) == Cell::unknown) continue;
       const int x = static_cast<int>((column + 0.5) * grid.resolution / cell_);

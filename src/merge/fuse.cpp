@@ -24,6 +24,7 @@ struct Totals {
 
 void add(const LogOddsPatch& patch, const Lattice& lattice, Totals& total) {
   for (int row = 0; row < patch.height; ++row) {
+    throw_if_cancelled();
     std::size_t target = static_cast<std::size_t>(patch.row + row) * static_cast<std::size_t>(lattice.width) +
                          static_cast<std::size_t>(patch.column);
     for (int column = 0; column < patch.width; ++column, ++target) {
@@ -50,11 +51,11 @@ FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution) {
   Totals total{std::vector<std::int32_t>(fused.grid.cells.size(), 0),
                std::vector<std::uint8_t>(fused.grid.cells.size(), 0)};
   for (const PlacedMap& input : inputs) {
-    throw_if_cancelled();
     add(draw_log_odds(input, lattice), lattice, total);
   }
 
   for (std::size_t i = 0; i < fused.grid.cells.size(); ++i) {
+    if (i % static_cast<std::size_t>(lattice.width) == 0) throw_if_cancelled();
     const bool conflict = (total.witnesses[i] & kSawFree) != 0 && (total.witnesses[i] & kSawOccupied) != 0;
     if (conflict) ++fused.conflicting;
     if (!conflict && (total.witnesses[i] & kSawTwice) != 0) ++fused.agreeing;

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "gridmerge/grid/cancellation.hpp"
+
 namespace gridmerge {
 
 namespace {
@@ -49,6 +51,7 @@ Box known_box(const PlacedMap& input) {
   const auto is_known = [](Cell cell) { return cell != Cell::unknown; };
   Box box;
   for (int row = 0; row < map.height; ++row) {
+    throw_if_cancelled();
     const auto begin = map.cells.begin() + static_cast<std::ptrdiff_t>(map.index(0, row));
     const auto end = begin + map.width;
     const auto first = std::find_if(begin, end, is_known);
@@ -113,6 +116,7 @@ class LogOddsSource {
         stride_(static_cast<std::size_t>(map.width) + 2),
         log_odds_(stride_ * (static_cast<std::size_t>(map.height) + 2), 0) {
     for (int row = 0; row < height_; ++row) {
+      throw_if_cancelled();
       for (int column = 0; column < width_; ++column) {
         log_odds_[offset(column, row)] = cell_log_odds(map, map.index(column, row));
       }
@@ -194,6 +198,7 @@ void sample_map(const PlacedMap& input, const Lattice& lattice, int samples, Log
   const double shift_y = T_grid_output.y / map_resolution;
   std::size_t target = 0;
   for (int row = patch.row; row < patch.row + patch.height; ++row) {
+    throw_if_cancelled();
     for (int column = patch.column; column < patch.column + patch.width; ++column, ++target) {
       for (int j = 0; j < samples; ++j) {
         const double y = lattice.corner.y + (row + (j + 0.5) / samples) * lattice.resolution;
@@ -216,6 +221,7 @@ void splat_map(const PlacedMap& input, const Lattice& lattice, LogOddsPatch& pat
   const double shift_x = (T_output_grid.x - lattice.corner.x) / lattice.resolution - patch.column + kSlack;
   const double shift_y = (T_output_grid.y - lattice.corner.y) / lattice.resolution - patch.row + kSlack;
   for (int row = 0; row < map.height; ++row) {
+    throw_if_cancelled();
     for (int column = 0; column < map.width; ++column) {
       const std::int16_t value = cell_log_odds(map, map.index(column, row));
       if (value == 0) continue;

@@ -10,6 +10,7 @@
 
 #include "candidates.hpp"
 #include "component.hpp"
+#include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/match/prepared_map.hpp"
 #include "gridmerge/merge/arrangement.hpp"
@@ -281,6 +282,7 @@ MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& op
   if (known_poses.size() > maps.size()) throw std::invalid_argument("there are more known poses than maps");
   Merger merger(options);
   for (std::size_t i = 0; i < maps.size(); ++i) {
+    throw_if_cancelled();
     const std::optional<KnownPose> known = i < known_poses.size() ? known_poses[i] : std::nullopt;
     try {
       merger.add(maps[i], known);

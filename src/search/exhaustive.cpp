@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "correlate.hpp"
+#include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/similarity/evidence.hpp"
 #include "local_maxima.hpp"
@@ -76,6 +77,7 @@ EvidenceImage make_evidence_image(const WallMap& fixed, const SearchFrame& frame
   const auto table = evidence_table({options.sigma, options.outliers}, fixed.background);
   std::vector<float> sums(static_cast<std::size_t>(frame.fixed_width) * frame.fixed_height, 0.0F);
   for (int y = 0; y < fixed.height; ++y) {
+    throw_if_cancelled();
     const std::size_t line = static_cast<std::size_t>(y / options.coarse_factor) * frame.fixed_width;
     for (int x = 0; x < fixed.width; ++x) {
       const int distance = fixed.places[static_cast<std::size_t>(y) * fixed.width + x].distance;

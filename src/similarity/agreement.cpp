@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gridmerge/grid/cancellation.hpp"
+
 namespace gridmerge {
 
 AgreementCounts count_agreement(const OccupancyGrid& fixed, const OccupancyGrid& moving,
@@ -15,6 +17,7 @@ AgreementCounts count_agreement(const OccupancyGrid& fixed, const OccupancyGrid&
 
   AgreementCounts result;
   for (int row = stride / 2; row < moving.height; row += stride) {
+    throw_if_cancelled();
     const double row_x = T_fixedgrid_movinggrid.x / fixed.resolution - step_y * (row + 0.5);
     const double row_y = T_fixedgrid_movinggrid.y / fixed.resolution + step_x * (row + 0.5);
     for (int column = stride / 2; column < moving.width; column += stride) {

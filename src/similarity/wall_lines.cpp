@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "gridmerge/grid/cancellation.hpp"
+
 namespace gridmerge {
 
 namespace {
@@ -126,6 +128,7 @@ double count_lines(std::vector<MetPoint> points, double diagonal) {
   std::vector<std::size_t> lengths;
   double total = 0.0;
   while (lengths.size() < kMaxLines) {
+    throw_if_cancelled();
     const std::size_t length = taker.take(points);
     if (length == 0) break;
     lengths.push_back(length);

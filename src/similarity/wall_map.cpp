@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "gridmerge/grid/cancellation.hpp"
+
 namespace gridmerge {
 
 namespace {
@@ -31,6 +33,7 @@ void chamfer_distance(std::vector<LabelledDistance>& distance, int width, int he
   constexpr LabelledDistance kStraight = kChamferStep * kLabels;
   constexpr LabelledDistance kDiagonal = kChamferDiagonal * kLabels;
   for (int y = 1; y < height; ++y) {
+    throw_if_cancelled();
     LabelledDistance* row = distance.data() + static_cast<std::size_t>(y) * width;
     const LabelledDistance* below = row - width;
     for (int x = 1; x + 1 < width; ++x) {  // independent of each other: vectorised
@@ -40,6 +43,7 @@ void chamfer_distance(std::vector<LabelledDistance>& distance, int width, int he
     for (int x = 1; x + 1 < width; ++x) row[x] = std::min(row[x], row[x - 1] + kStraight);
   }
   for (int y = height - 2; y >= 0; --y) {
+    throw_if_cancelled();
     LabelledDistance* row = distance.data() + static_cast<std::size_t>(y) * width;
     const LabelledDistance* above = row + width;
     for (int x = 1; x + 1 < width; ++x) {
@@ -56,6 +60,7 @@ class BoxSums {
   BoxSums(const std::vector<std::uint8_t>& image, int width, int height)
       : stride_(width + 1), sums_(static_cast<std::size_t>(width + 1) * (height + 1), 0) {
     for (int y = 0; y < height; ++y) {
+      throw_if_cancelled();
       int row = 0;
       for (int x = 0; x < width; ++x) {
         row += image[static_cast<std::size_t>(y) * width + x];
@@ -120,6 +125,7 @@ WallMap make_wall_map(const OccupancyGrid& grid, double cell) {
   for (int column = 0; column < grid.width; ++column)
     cell_x[column] = static_cast<int>((column + 0.5) * scale) + kMargin;
   for (int row = 0; row < grid.height; ++row) {
+    throw_if_cancelled();
     const double y = (row + 0.5) * scale + kMargin;
     const std::size_t line = static_cast<std::size_t>(y) * map.width;
     for (int column = 0; column < grid.width; ++column) {
@@ -140,6 +146,7 @@ WallMap make_wall_map(const OccupancyGrid& grid, double cell) {
 
   const BoxSums free_cells(is_free, map.width, map.height);
   for (int y = 0; y < map.height; ++y) {
+    throw_if_cancelled();
     for (int x = 0; x < map.width; ++x) {
       const std::size_t i = static_cast<std::size_t>(y) * map.width + x;
       const WallSum& wall = walls[i];

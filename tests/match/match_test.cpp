@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <stdexcept>
 
+#include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "support/building.hpp"
 
@@ -49,6 +51,15 @@ TEST(Match, RecoversARotatedMapWithinHalfACell) {
                 0.0, 0.2 * kDegree)
         << run;
   }
+}
+
+TEST(PreparedMap, CanBeCancelledWhileItIsMadeAndDrawn) {
+  const OccupancyGrid building = test::draw_building(1);
+  const PreparedMap prepared(building);
+  const std::atomic<bool> cancelled{true};
+  EXPECT_THROW(with_cancellation(cancelled, [&] { const PreparedMap another(building); }), Cancelled);
+  EXPECT_THROW(with_cancellation(cancelled, [&] { prepared.walls(0.1); }), Cancelled);
+  EXPECT_EQ(prepared.walls(0.1).cell, 0.1);  // another time it is drawn
 }
 
 TEST(Match, JoinsPartsThatOverlap) {

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <random>
 #include <stdexcept>
 
+#include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/merge/merger.hpp"
 #include "support/building.hpp"
 
@@ -224,6 +226,17 @@ TEST(Merge, APairThatContradictsTheOthersIsRejectedByName) {
   const MergeResult result = merge({team.maps[0], team.maps[1], team.maps[2]}, {}, known);
   EXPECT_EQ(result.joins[1].outcome, JoinOutcome::rejected);
   EXPECT_STREQ(name_of(result.joins[1].outcome), "rejected");
+}
+
+TEST(Merge, EndsBeforeItTakesMapsInWhenCancelled) {
+  const std::atomic<bool> cancelled{true};
+  const std::vector<OccupancyGrid> single{test::draw_building(1)};
+  EXPECT_THROW(with_cancellation(cancelled, [&] { merge(single); }), Cancelled);
+  Merger merger;
+  EXPECT_THROW(with_cancellation(cancelled, [&] { merger.add(single[0]); }), Cancelled);
+  EXPECT_TRUE(merger.maps().empty());
+  const std::vector<PlacedMap> placed{{single.data(), {}}};
+  EXPECT_THROW(with_cancellation(cancelled, [&] { fuse(placed, 0.05); }), Cancelled);
 }
 
 TEST(Merge, RefusesWhatMakesNoSense) {
