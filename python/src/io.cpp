@@ -4,6 +4,7 @@
 #include "bindings.hpp"
 #include "gridmerge/io/initial_poses.hpp"
 #include "gridmerge/io/map_file.hpp"
+#include "worker.hpp"
 
 namespace gridmerge::python {
 
@@ -13,7 +14,7 @@ Map load(const nb::bytes& path, double resolution) {
   const std::filesystem::path file = to_string(path);
   LoadOptions options;
   options.resolution = resolution;
-  const nb::gil_scoped_release others_may_run;
+  const OthersRun meanwhile;
   LoadedMap loaded = load_map(file, options);
   return {std::make_shared<const OccupancyGrid>(std::move(loaded.grid)), std::move(loaded.warnings),
           std::move(loaded.files)};
@@ -21,7 +22,7 @@ Map load(const nb::bytes& path, double resolution) {
 
 void save(const Map& map, const nb::bytes& path, bool probabilities) {
   const std::filesystem::path file = to_string(path);
-  const nb::gil_scoped_release others_may_run;
+  const OthersRun meanwhile;
   std::vector<StagedFile> files =
       probabilities ? stage_probability_map(*map.grid, file) : stage_map(*map.grid, file);
   for (StagedFile& one : files) one.commit();

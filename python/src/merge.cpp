@@ -67,7 +67,7 @@ void save(const Merged& merged, const nb::bytes& directory, const std::vector<nb
   texts.reserve(names.size());
   for (const nb::bytes& name : names) texts.push_back(to_string(name));
   const std::filesystem::path path = to_string(directory);
-  const nb::gil_scoped_release others_may_run;
+  const OthersRun meanwhile;
   write_merge_output(path, inputs, texts, grids_of(merged.maps), *merged.result);
 }
 

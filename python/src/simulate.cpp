@@ -66,7 +66,7 @@ nb::ndarray<nb::numpy, double, nb::ndim<2>> path_of(const RobotMap& robot) {
 
 void save(const Dataset& dataset, const nb::bytes& directory, bool probabilities) {
   const std::filesystem::path path = to_string(directory);
-  const nb::gil_scoped_release others_may_run;
+  const OthersRun meanwhile;
   std::vector<Simulation> elsewhere;
   elsewhere.reserve(dataset.elsewhere.size());
   for (const auto& other : dataset.elsewhere) elsewhere.push_back(*other);
@@ -127,7 +127,7 @@ void bind_results(nb::module_& module) {
   nb::class_<Dataset>(module, "Dataset")
       .def("building",
            [](const Dataset& dataset) {
-             const nb::gil_scoped_release others_may_run;
+             const OthersRun meanwhile;
              OccupancyGrid drawn = draw_building(dataset.simulation->building, kBuildingResolution);
              return Map{std::make_shared<const OccupancyGrid>(std::move(drawn)), {}, {}};
            })

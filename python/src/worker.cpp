@@ -17,6 +17,7 @@ namespace gridmerge::python {
 namespace {
 
 constexpr auto kLookEvery = std::chrono::milliseconds(50);
+constexpr auto kPatience = std::chrono::seconds(1);  // with what cannot be cancelled, when Python ends
 
 [[noreturn]] void sleep_for_ever() {
   while (true) std::this_thread::sleep_for(std::chrono::hours(1));
@@ -38,12 +39,7 @@ class Worker {
     if (failure_) std::rethrow_exception(failure_);
   }
 
-  /// The interpreter is about to end: stops the work, and lets the thread that waits for it sleep, since a
-  /// daemon thread that asks an interpreter for its lock that has ended brings the process down.
-  void abandon() {
-    abandoned_ = true;
-    cancelled_ = true;
-  }
+  void cancel() { cancelled_ = true; }
 
   bool has_ended() {
     const std::lock_guard lock(mutex_);
@@ -51,32 +47,48 @@ class Worker {
   }
 
  private:
-  /// Calls `wait` without the interpreter's lock.
-  template <typename Wait>
-  void let_others_run(Wait&& wait) {
-    const nb::gil_scoped_release released;
-    wait();
-    if (abandoned_) sleep_for_ever();
-  }
-
   void run(const std::function<void(const Report&)>& work);
 
   std::atomic<bool> cancelled_{false};
-  std::atomic<bool> abandoned_{false};
   std::atomic<double> share_{0.0};
   std::mutex mutex_;
   std::condition_variable end_;
   bool ended_ = false;
   std::exception_ptr failure_;
-  std::thread thread_;  // the last: it uses the others
+  std::thread thread_;
 };
 
-/// The workers there are.
-class Registry {
+/// What is at work without the interpreter's lock. When the interpreter ends, only the thread that ends it
+/// may go on: whatever still runs then may call us.
+class AtWork {
  public:
-  void add(Worker* worker) {
+  /// False if the thread may never take the lock again.
+  bool leave_lock() {
     const std::lock_guard lock(mutex_);
+    if (is_over()) return false;
+    ++without_lock_;
+    return true;
+  }
+
+  /// The same, of a thread that did leave it.
+  bool may_take_lock() {
+    const std::lock_guard lock(mutex_);
+    if (!is_over()) return true;
+    --without_lock_;
+    return false;
+  }
+
+  void took_lock() {
+    const std::lock_guard lock(mutex_);
+    --without_lock_;
+  }
+
+  /// False if there may be no more workers.
+  bool add(Worker* worker) {
+    const std::lock_guard lock(mutex_);
+    if (is_over()) return false;
     workers_.push_back(worker);
+    return true;
   }
 
   void remove(Worker* worker) {
@@ -84,44 +96,63 @@ class Registry {
     std::erase(workers_, worker);
   }
 
+  /// The calling thread ends the interpreter.
   void abandon_all() {
     const std::lock_guard lock(mutex_);
-    for (Worker* worker : workers_) worker->abandon();
+    ended_by_ = std::this_thread::get_id();
+    for (Worker* worker : workers_) worker->cancel();
   }
 
-  bool have_all_ended() {
+  bool have_workers_ended() {
     const std::lock_guard lock(mutex_);
     return std::all_of(workers_.begin(), workers_.end(), [](Worker* worker) { return worker->has_ended(); });
   }
 
+  bool is_none_without_lock() {
+    const std::lock_guard lock(mutex_);
+    return without_lock_ == 0;
+  }
+
  private:
+  bool is_over() const { return ended_by_ && *ended_by_ != std::this_thread::get_id(); }
+
   std::mutex mutex_;
   std::vector<Worker*> workers_;
+  int without_lock_ = 0;  // threads
+  std::optional<std::thread::id> ended_by_;
 };
 
 // Never destroyed: threads that sleep for ever may still be told of in it.
-Registry& registry() {
-  static auto* const one = new Registry;
+AtWork& at_work() {
+  static auto* const one = new AtWork;
   return *one;
 }
 
-Worker::Worker(const std::function<void(const Report&)>& work) : thread_([this, &work] { run(work); }) {
-  registry().add(this);
+Worker::Worker(const std::function<void(const Report&)>& work) {
+  if (!at_work().add(this)) {
+    const OthersRun for_ever;
+  }
+  try {
+    thread_ = std::thread([this, &work] { run(work); });
+  } catch (...) {
+    at_work().remove(this);
+    throw;
+  }
 }
 
 Worker::~Worker() {
   cancelled_ = true;
-  let_others_run([this] { thread_.join(); });
-  registry().remove(this);
+  {
+    const OthersRun meanwhile;
+    thread_.join();
+  }
+  at_work().remove(this);
 }
 
 bool Worker::wait_a_moment() {
-  bool ended = false;
-  let_others_run([&] {
-    std::unique_lock lock(mutex_);
-    ended = end_.wait_for(lock, kLookEvery, [this] { return ended_; });
-  });
-  return ended;
+  const OthersRun meanwhile;
+  std::unique_lock lock(mutex_);
+  return end_.wait_for(lock, kLookEvery, [this] { return ended_; });
 }
 
 void Worker::run(const std::function<void(const Report&)>& work) {
@@ -135,13 +166,57 @@ void Worker::run(const std::function<void(const Report&)>& work) {
   end_.notify_all();
 }
 
+/// Before an interpreter has ended it throws out the other threads that run Python code. That would unwind
+/// through nanobind, which brings the process down: the thread sleeps for ever instead.
+class StaysInPython {
+ public:
+  StaysInPython() = default;
+  StaysInPython(const StaysInPython&) = delete;
+  StaysInPython& operator=(const StaysInPython&) = delete;
+  ~StaysInPython() {
+    if (!came_back_) sleep_for_ever();
+  }
+
+  void came_back() { came_back_ = true; }
+
+ private:
+  bool came_back_ = false;
+};
+
+void call(const nb::object& progress, double share) {
+  StaysInPython thread;
+  try {
+    progress(share);
+  } catch (const std::exception&) {
+    thread.came_back();
+    throw;
+  }
+  thread.came_back();
+}
+
 void stop_all_work() {
   const nb::gil_scoped_release others_may_run;
-  registry().abandon_all();
-  while (!registry().have_all_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  at_work().abandon_all();
+  const auto wait_a_little = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
+  while (!at_work().have_workers_ended()) wait_a_little();
+  // A thread that reads from a pipe may wait for ever.
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!at_work().is_none_without_lock() && std::chrono::steady_clock::now() < end) wait_a_little();
 }
 
 }  // namespace
+
+OthersRun::OthersRun() {
+  const bool may_come_back = at_work().leave_lock();
+  state_ = PyEval_SaveThread();
+  if (!may_come_back) sleep_for_ever();
+}
+
+OthersRun::~OthersRun() {
+  if (!at_work().may_take_lock()) sleep_for_ever();
+  PyEval_RestoreThread(state_);
+  at_work().took_lock();
+}
 
 void run_in_worker(const nb::object& progress, const std::function<void(const Report&)>& work) {
   Worker worker(work);
@@ -151,10 +226,10 @@ void run_in_worker(const nb::object& progress, const std::function<void(const Re
     const double share = worker.share();
     if (progress.is_none() || share == told) continue;
     told = share;
-    progress(share);
+    call(progress, share);
   }
   worker.rethrow_failure();
-  if (!progress.is_none()) progress(1.0);
+  if (!progress.is_none()) call(progress, 1.0);
 }
 
 void bind_worker(nb::module_& /*module*/) {

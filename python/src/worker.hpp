@@ -9,6 +9,21 @@
 
 namespace gridmerge::python {
 
+/// While it lives, its thread does without the interpreter's lock, so that other threads run. Where the
+/// interpreter ends meanwhile, its end is not reached: the thread sleeps for ever, because a daemon thread
+/// that asks an interpreter for its lock that has ended brings the process down. What runs meanwhile touches
+/// no Python object.
+class OthersRun {
+ public:
+  OthersRun();
+  ~OthersRun();
+  OthersRun(const OthersRun&) = delete;
+  OthersRun& operator=(const OthersRun&) = delete;
+
+ private:
+  PyThreadState* state_;
+};
+
 /// Takes the share of the work that is done, in [0, 1], from any thread.
 using Report = std::function<void(double)>;
 

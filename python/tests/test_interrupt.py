@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -83,23 +84,65 @@ def test_ctrl_c_ends_long_work(what: str, tmp_path: Path) -> None:
 
 DAEMON = """
 import atexit, sys, threading, time
+
+# Such functions are called last in, first out: this one when the package has stopped all work.
+atexit.register(lambda: print(gridmerge.load(path).width > 0, gridmerge.match(grid, grid).accepted, flush=True))
+
+import numpy as np
 import gridmerge
 
 grid = gridmerge.simulate("office", size=(25, 20), robots=1, others=0).maps[0].grid
 atexit.register(lambda: print(gridmerge.match(grid, grid).accepted, flush=True))
-work = lambda: gridmerge.merge([grid] * 60)
+
+class Lingers:
+    def __del__(self, sleep=time.sleep):  # while the interpreter takes itself apart
+        sleep(0.2)
+
+lingers = Lingers()
+
+def work():
+    while True:
+        WORK
+
 for _ in range(3):
     threading.Thread(target=work, daemon=True).start()
 time.sleep(0.3)
 """
 
 
-@pytest.mark.parametrize("attempt", range(5))
-def test_a_program_ends_while_daemon_threads_work(attempt: int) -> None:
+DAEMONS_WORK = {
+    "merge": "gridmerge.merge([grid] * 60)",
+    "match": "gridmerge.match(grid, grid)",
+    "progress": "gridmerge.match(grid, grid, progress=lambda share: [time.sleep(0.001) for _ in range(9999)])",
+    "load": "gridmerge.load(path)",
+    "make": "gridmerge.OccupancyGrid(cells, 0.05)",
+    "to_numpy": "grid.to_numpy()",
+}
+
+
+@pytest.mark.parametrize("what", DAEMONS_WORK)
+@pytest.mark.parametrize("attempt", range(3))
+def test_a_program_ends_while_daemon_threads_work(what: str, attempt: int, robots: list[str]) -> None:
     ended = subprocess.run(
-        [sys.executable, "-c", DAEMON], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", DAEMON.replace("WORK", DAEMONS_WORK[what]), robots[0]],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
     )
-    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "True\n", "")
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "True\nTrue True\n", "")
+def test_a_program_ends_while_a_daemon_thread_waits_for_a_file(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "map.yaml")
+    program = """
+import sys, threading, time
+import gridmerge
+threading.Thread(target=gridmerge.load, args=(sys.argv[1],), daemon=True).start()
+time.sleep(0.1)
+"""
+    ended = subprocess.run(
+        [sys.executable, "-c", program, tmp_path / "map.yaml"], timeout=30, capture_output=True, check=False
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, b"", b"")
 
 
 def test_other_threads_run_meanwhile() -> None:
