@@ -44,13 +44,18 @@ def share(name: str, value: object) -> float:
     return converted
 
 
-def whole(name: str, value: object, least: int, most: int) -> int:
+def index(name: str, value: object, what: str = "a whole number") -> int:
     try:
         converted = None if isinstance(value, bool) else operator.index(value)  # type: ignore[arg-type]
     except TypeError:
         converted = None
     if converted is None:
-        raise TypeError(f"{name}: must be a whole number, is {kind_of(value)}")
+        raise TypeError(f"{name}: must be {what}, is {kind_of(value)}")
+    return converted
+
+
+def whole(name: str, value: object, least: int, most: int) -> int:
+    converted = index(name, value)
     if not least <= converted <= most:
         raise ValueError(f"{name}: must be between {least} and {most}, is {converted}")
     return converted
@@ -78,6 +83,22 @@ def path(name: str, value: object) -> bytes:
     if b"\0" in converted:
         raise ValueError(f"{name}: a path cannot hold a null character")
     return converted
+
+
+def text(name: str, value: object) -> str:
+    """Text that can be written to files."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: must be a string, is {kind_of(value)}")
+    try:
+        to_bytes(value)
+    except UnicodeEncodeError as error:
+        raise ValueError(f"{name}: {value!r} cannot be written: {error.reason}") from None
+    return value
+
+
+def to_bytes(text: str) -> bytes:
+    """Text as the engine holds it: names of files may be any bytes, which os.fsdecode() makes surrogates of."""
+    return text.encode("utf-8", "surrogateescape")
 
 
 def progress(value: object) -> Progress | None:

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -14,7 +15,6 @@ from ._transform import PoseLike, Transform, to_transform
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_MOST_CELLS = 2**28
 _FARTHEST_ORIGIN = 1e9
 
 
@@ -23,7 +23,7 @@ class OccupancyGrid:
 
     Args:
         data: int8 array of shape (height, width), row 0 at the bottom (y up): -1 unknown, 0 to 100 the occupancy
-            in percent. Any strides will do; C order is read where it lies.
+            in percent. Any strides will do; it is read where it lies.
         resolution: metres a cell.
         origin: pose of the lower left corner of cell (0, 0) in the map frame: (x, y, theta) [m, rad], a Transform
             or a 3x3 matrix.
@@ -137,6 +137,12 @@ class OccupancyGrid:
         """The path that the map was loaded from, as load() was given it."""
         return self._source
 
+    @property
+    def _file(self) -> str | None:
+        """The same, wherever the program has gone since."""
+        files = self._core.files
+        return os.fsdecode(files[0]) if files else None
+
     def to_numpy(self, *, probabilities: bool | None = None) -> NDArray[np.int8]:
         """The values of nav_msgs/OccupancyGrid: a new int8 array of shape (height, width), row 0 at the bottom.
 
@@ -175,7 +181,10 @@ class OccupancyGrid:
     def __reduce__(self) -> tuple[Any, ...]:
         return (
             _unpickle,
-            (self.cells, self.resolution, tuple(self.origin), self.probability, self.source),
+            (
+                *(self.cells, self.resolution, tuple(self.origin), self.probability),
+                *(self.source, self.warnings, self._core.files),
+            ),
         )
 
 
@@ -212,8 +221,12 @@ def _unpickle(
     origin: tuple[float, float, float],
     probability: NDArray[np.float32] | None,
     source: str | None,
+    warnings: Sequence[str],
+    files: Sequence[bytes],
 ) -> OccupancyGrid:
-    return OccupancyGrid._of(_core.Grid.from_cells(cells, resolution, origin, probability), source)
+    core = _core.Grid.from_cells(cells, resolution, origin, probability)
+    texts = [_arguments.to_bytes(warning) for warning in warnings]
+    return OccupancyGrid._of(core.with_files(texts, files), source)
 
 
 def _checked_array(name: str, data: object, dtype: np.dtype[Any]) -> Any:
@@ -225,11 +238,7 @@ def _checked_array(name: str, data: object, dtype: np.dtype[Any]) -> Any:
         raise TypeError(f"{name}: must be of dtype {dtype}, is {data.dtype}")
     if data.ndim != 2:
         raise ValueError(f"{name}: must have two dimensions (height, width), has {data.ndim}")
-    if data.size == 0:
-        raise ValueError(f"{name}: has no cells: its shape is {data.shape}")
-    if data.size > _MOST_CELLS:
-        raise ValueError(f"{name}: has more than {_MOST_CELLS} cells: its shape is {data.shape}")
-    return np.ascontiguousarray(data)
+    return np.require(data, requirements=["ALIGNED"])
 
 
 def _checked_resolution(name: str, value: object) -> float:

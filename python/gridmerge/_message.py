@@ -103,7 +103,7 @@ def _values(name: str, data: object) -> NDArray[np.int8]:
         raise TypeError(f"{name}: cannot be read as an array: {error}") from None
     if values.dtype != np.int8:
         raise TypeError(f"{name}: must hold int8 values, holds {values.dtype}")
-    return np.ascontiguousarray(values).reshape(-1)
+    return values
 
 
 def _listed_values(name: str, data: list[Any] | tuple[Any, ...]) -> NDArray[np.int8]:
@@ -120,4 +120,4 @@ def _listed_values(name: str, data: list[Any] | tuple[Any, ...]) -> NDArray[np.i
         raise ValueError(
             f"{name}: the value {wrong[0]} is neither -1 (unknown) nor a percentage from 0 to 100"
         )
-    return values.astype(np.int8).reshape(-1)
+    return values.astype(np.int8)

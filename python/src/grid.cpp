@@ -9,14 +9,20 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
+#include "worker.hpp"
 
 namespace gridmerge::python {
 
 namespace {
 
-using Percentages = nb::ndarray<const std::int8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Cells = nb::ndarray<const std::uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Probabilities = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+// Of any strides: a copy of an array that claims to be huge would be huge.
+template <typename Value>
+using Input = nb::ndarray<const Value, nb::ndim<2>, nb::device::cpu>;
+using Percentages = Input<std::int8_t>;
+using Cells = Input<std::uint8_t>;
+using Probabilities = Input<float>;
+
+constexpr std::size_t kMostCells = std::size_t{1} << 28;
 
 constexpr std::int8_t kUnknown = -1;
 constexpr std::int8_t kFree = 0;
@@ -43,7 +49,14 @@ bool is_plain(std::int8_t percentage) {
   return percentage == kUnknown || percentage == kFree || percentage == kOccupied;
 }
 
-OccupancyGrid frame(std::size_t height, std::size_t width, double resolution, const Pose& origin) {
+template <typename Value>
+OccupancyGrid frame(const char* name, const Input<Value>& values, double resolution, const Pose& origin) {
+  const std::size_t height = values.shape(0), width = values.shape(1);
+  const std::string shape = "its shape is (" + std::to_string(height) + ", " + std::to_string(width) + ")";
+  if (height == 0 || width == 0) throw std::invalid_argument(name + (": has no cells: " + shape));
+  if (height > kMostCells / width)
+    throw std::invalid_argument(name +
+                                (": has more than " + std::to_string(kMostCells) + " cells: " + shape));
   OccupancyGrid grid;
   grid.width = static_cast<int>(width);
   grid.height = static_cast<int>(height);
@@ -52,48 +65,76 @@ OccupancyGrid frame(std::size_t height, std::size_t width, double resolution, co
   return grid;
 }
 
+template <typename Value>
+std::vector<Value> copy_of(const Input<Value>& values) {
+  const std::size_t height = values.shape(0), width = values.shape(1);
+  const std::int64_t up = values.stride(0), right = values.stride(1);
+  std::vector<Value> copy(height * width);
+  for (std::size_t row = 0; row < height; ++row) {
+    const Value* from = values.data() + static_cast<std::int64_t>(row) * up;
+    Value* to = copy.data() + row * width;
+    if (right == 1) {
+      std::copy_n(from, width, to);
+    } else {
+      for (std::size_t column = 0; column < width; ++column, from += right) to[column] = *from;
+    }
+  }
+  return copy;
+}
+
+// Another thread may write into the array meanwhile: what is checked is what is used.
 Map from_percentages(const Percentages& data, double resolution, const Pose& origin) {
-  OccupancyGrid grid = frame(data.shape(0), data.shape(1), resolution, origin);
-  const nb::gil_scoped_release others_may_run;
-  const std::int8_t *begin = data.data(), *end = begin + data.size();
-  const auto wrong =
-      std::find_if(begin, end, [](std::int8_t value) { return value < kUnknown || value > kOccupied; });
-  if (wrong != end) {
-    const auto at = static_cast<std::size_t>(wrong - begin);
+  OccupancyGrid grid = frame("data", data, resolution, origin);
+  const OthersRun meanwhile;
+  const std::vector<std::int8_t> values = copy_of(data);
+  const auto wrong = std::find_if(values.begin(), values.end(),
+                                  [](std::int8_t value) { return value < kUnknown || value > kOccupied; });
+  if (wrong != values.end()) {
+    const auto at = static_cast<std::size_t>(wrong - values.begin());
     throw std::invalid_argument("data: the value " + std::to_string(*wrong) + " in row " +
                                 std::to_string(at / data.shape(1)) + ", column " +
                                 std::to_string(at % data.shape(1)) +
                                 " is neither -1 (unknown) nor a percentage from 0 to 100");
   }
-  grid.cells.resize(data.size());
-  std::transform(begin, end, grid.cells.begin(), cell_of);
-  if (!std::all_of(begin, end, is_plain)) {
-    grid.probability.resize(data.size());
-    std::transform(begin, end, grid.probability.begin(), probability_of);
+  grid.cells.resize(values.size());
+  std::transform(values.begin(), values.end(), grid.cells.begin(), cell_of);
+  if (!std::all_of(values.begin(), values.end(), is_plain)) {
+    grid.probability.resize(values.size());
+    std::transform(values.begin(), values.end(), grid.probability.begin(), probability_of);
   }
   return {std::make_shared<const OccupancyGrid>(std::move(grid)), {}, {}};
 }
 
 Map from_cells(const Cells& cells, double resolution, const Pose& origin,
                const std::optional<Probabilities>& probability) {
-  OccupancyGrid grid = frame(cells.shape(0), cells.shape(1), resolution, origin);
-  grid.cells.resize(cells.size());
-  std::transform(cells.data(), cells.data() + cells.size(), grid.cells.begin(), [](std::uint8_t value) {
+  OccupancyGrid grid = frame("cells", cells, resolution, origin);
+  if (probability && (probability->shape(0) != cells.shape(0) || probability->shape(1) != cells.shape(1)))
+    throw std::invalid_argument("probability: its shape must be that of cells");
+  const OthersRun meanwhile;
+  const std::vector<std::uint8_t> values = copy_of(cells);
+  grid.cells.resize(values.size());
+  std::transform(values.begin(), values.end(), grid.cells.begin(), [](std::uint8_t value) {
     if (value > static_cast<std::uint8_t>(Cell::occupied))
       throw std::invalid_argument("cells: the value " + std::to_string(value) +
                                   " is neither 0 (unknown) nor 1 (free) nor 2 (occupied)");
     return static_cast<Cell>(value);
   });
   if (probability) {
-    if (probability->shape(0) != cells.shape(0) || probability->shape(1) != cells.shape(1))
-      throw std::invalid_argument("probability: its shape must be that of cells");
-    grid.probability.assign(probability->data(), probability->data() + probability->size());
+    grid.probability = copy_of(*probability);
     for (const float value : grid.probability) {
       if (!std::isnan(value) && !(value >= 0.0F && value <= 1.0F))
         throw std::invalid_argument("probability: its values must lie in [0, 1], or be NaN where unknown");
     }
   }
   return {std::make_shared<const OccupancyGrid>(std::move(grid)), {}, {}};
+}
+
+/// The same map, with what is told of the files that it was read from.
+Map with_files(const Map& map, const std::vector<nb::bytes>& warnings, const std::vector<nb::bytes>& files) {
+  Map told{map.grid, {}, {}};
+  for (const nb::bytes& warning : warnings) told.warnings.push_back(to_string(warning));
+  for (const nb::bytes& file : files) told.files.emplace_back(to_string(file));
+  return told;
 }
 
 /// Whether the grid is one that from_percentages() makes of its percentages: then they tell all of it.
@@ -120,7 +161,7 @@ nb::ndarray<nb::numpy, std::int8_t, nb::ndim<2>> to_numpy(const Map& map, std::o
     throw std::invalid_argument("probabilities: the map has none");
   auto values = std::make_unique<std::vector<std::int8_t>>(grid.cells.size());
   {
-    const nb::gil_scoped_release others_may_run;
+    const OthersRun meanwhile;
     const bool as_percentages =
         !grid.probability.empty() && probabilities.value_or(follows_from_percentages(grid));
     if (as_percentages) {
@@ -183,6 +224,14 @@ void bind_grid(nb::module_& module) {
                      for (const std::string& warning : map.warnings) warnings.push_back(to_str(warning));
                      return warnings;
                    })
+      .def_prop_ro("files",
+                   [](const Map& map) {
+                     std::vector<nb::bytes> files;
+                     for (const std::filesystem::path& file : map.files)
+                       files.emplace_back(file.c_str(), file.native().size());
+                     return files;
+                   })
+      .def("with_files", &with_files, nb::arg("warnings"), nb::arg("files"))
       .def("to_numpy", &to_numpy, nb::arg("probabilities").none())
       .def("cells", [](const Map& map) { return view<std::uint8_t>(map, map.grid->cells.data()); })
       .def("probability",

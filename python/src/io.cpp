@@ -16,6 +16,8 @@ Map load(const nb::bytes& path, double resolution) {
   options.resolution = resolution;
   const OthersRun meanwhile;
   LoadedMap loaded = load_map(file, options);
+  // The program may go to another directory.
+  for (std::filesystem::path& one : loaded.files) one = std::filesystem::absolute(one);
   return {std::make_shared<const OccupancyGrid>(std::move(loaded.grid)), std::move(loaded.warnings),
           std::move(loaded.files)};
 }

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import copy
 import gc
 import math
+import os
 import pickle
 import sys
+import threading
 from pathlib import Path
 
 import gridmerge
@@ -193,6 +196,41 @@ def test_grids_can_be_pickled(team: gridmerge.Simulation, robots: list[str]) -> 
         again = pickle.loads(pickle.dumps(grid))
         assert again == grid
         assert again.source == grid.source
+
+
+def test_copies_know_what_the_file_said(tmp_path: Path) -> None:
+    (tmp_path / "map.pgm").write_bytes(b"P5 2 1 255\n" + bytes([205, 0]))
+    name = os.fsdecode(b"odd\xff.yaml")
+    (tmp_path / name).write_text("image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
+                                 "occupied_thresh: 0.65\nfree_thresh: 0.25\n")  # fmt: skip
+    grid = gridmerge.load(tmp_path / name)
+    assert grid.warnings
+    for again in (pickle.loads(pickle.dumps(grid)), copy.copy(grid), copy.deepcopy(grid)):
+        assert again == grid
+        assert (again.source, again.warnings) == (grid.source, grid.warnings)
+
+
+def test_what_is_checked_is_what_is_used() -> None:
+    data = np.full((2000, 2000), 50, dtype=np.int8)
+    done = threading.Event()
+
+    def spoil() -> None:
+        while not done.is_set():
+            data[1000:] = 120
+            data[1000:] = 50
+
+    other = threading.Thread(target=spoil)
+    other.start()
+    try:
+        for _ in range(100):
+            try:
+                grid = gridmerge.OccupancyGrid(data, 0.05)
+            except ValueError:
+                continue
+            assert grid.probability is not None and (grid.probability == 0.5).all()
+    finally:
+        done.set()
+        other.join()
 
 
 def test_equality_looks_at_everything() -> None:

@@ -163,6 +163,17 @@ def test_wrong_fields(error: type[Exception], path: str, value: Any) -> None:
         gridmerge.match(message(), wrong)
 
 
+def test_too_many_cells() -> None:
+    huge = message(np.broadcast_to(np.int8(0), (2**15, 2**14)))
+    huge.info.width, huge.info.height = 2**14, 2**15
+    with pytest.raises(
+        ValueError, match=r"^data: has more than 268435456 cells: its shape is \(32768, 16384\)"
+    ):
+        gridmerge.OccupancyGrid.from_msg(huge)
+    with pytest.raises(ValueError, match=r"^fixed.data: has more than 268435456 cells"):
+        gridmerge.match(huge, huge)
+
+
 def test_what_is_no_message_at_all() -> None:
     nothing: Any = object()
     with pytest.raises(TypeError, match="^info"):
