@@ -11,7 +11,9 @@ from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map
 from ._known_poses import InitialPose, to_core
 from ._merge import MergeResult, to_merge_result, to_output_resolution
-from ._transform import PoseLike
+from ._transform import PoseLike, Transform
+
+_IDENTITY = Transform(0.0, 0.0, 0.0)
 
 
 class Merger:
@@ -30,7 +32,10 @@ class Merger:
             to_output_resolution(output_resolution),
         )
         self._maps: dict[int, tuple[OccupancyGrid, str]] = {}
+        self._posed: set[int] = set()  # of which a pose is known
+        self._holder: int | None = None  # fixed without a pose: holds its own frame
         self._use = threading.Lock()
+        self._settled = True  # the engine has the same maps
 
     def add(
         self,
@@ -40,13 +45,27 @@ class Merger:
         pose: InitialPose | PoseLike | None = None,
         fixed: bool = False,
     ) -> int:
-        """Takes in one more map, with what is known of its pose, and returns its id. Nothing is matched yet."""
+        """Takes in one more map, with what is known of its pose, and returns its id. Nothing is matched yet.
+
+        A single map may be fixed without a pose, while no other map's pose is known: it holds its own frame.
+        """
         grid = to_map("map", map)
-        if pose is None and fixed:
-            pose = (0.0, 0.0, 0.0)
+        if name is not None:
+            _arguments.text("name", name)
         known = None if pose is None else to_core(pose, "pose", bool(fixed))
+        holds = fixed and pose is None
         with self._alone():
-            map_id = self._core.add(grid._core, known)
+            if holds and (self._posed or self._holder is not None):
+                raise ValueError("pose: a fixed map needs one, because other maps are fixed or have one")
+            if known is not None and self._holder is not None:
+                raise ValueError(
+                    f"pose: has no meaning beside map {self._holder}, which is fixed without one"
+                )
+            map_id = self._core.add(grid._core, to_core(_IDENTITY, "pose", True) if holds else known)
+            if holds:
+                self._holder = map_id
+            if known is not None:
+                self._posed.add(map_id)
             self._maps[map_id] = (grid, name or grid.source or f"map {map_id}")
         return map_id
 
@@ -54,16 +73,19 @@ class Merger:
         """Another map in the place of one that was added: of the same robot, later. KeyError for an unknown id."""
         grid = to_map("map", map)
         with self._alone():
-            name = self._known(map_id)[1]
+            map_id, name = self._known(map_id)
             self._core.update(map_id, grid._core)
             self._maps[map_id] = (grid, name)
 
     def remove(self, map_id: int) -> None:
         """Takes a map out again. KeyError for an unknown id."""
         with self._alone():
-            self._known(map_id)
-            self._core.remove(map_id)
+            map_id, _ = self._known(map_id)
             del self._maps[map_id]
+            self._core.remove(map_id)
+            self._posed.discard(map_id)
+            if map_id == self._holder:
+                self._holder = None
 
     @property
     def ids(self) -> tuple[int, ...]:
@@ -84,11 +106,19 @@ class Merger:
         if not self._use.acquire(blocking=False):
             raise RuntimeError("the Merger is at work")
         try:
+            if not self._settled:
+                self._core.keep([(map_id, grid._core) for map_id, (grid, _) in self._maps.items()])
+                self._posed &= self._maps.keys()
+                self._holder = self._holder if self._holder in self._maps else None
+            self._settled = False
             yield
+            self._settled = True
         finally:
             self._use.release()
 
-    def _known(self, map_id: int) -> tuple[OccupancyGrid, str]:
-        if map_id not in self._maps:
-            raise KeyError(f"there is no map {map_id}")
-        return self._maps[map_id]
+    def _known(self, map_id: object) -> tuple[int, str]:
+        """The id and the name of a map that is in it."""
+        known = _arguments.index("map_id", map_id)
+        if known not in self._maps:
+            raise KeyError(f"there is no map {known}")
+        return known, self._maps[known][1]

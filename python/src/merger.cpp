@@ -19,19 +19,45 @@ class MapMerger {
       : merger_(make_options(threads, accept, output_resolution, share_)) {}
 
   std::size_t add(const Map& map, const std::optional<Known>& known) {
-    const std::size_t id = merger_.add(*map.grid, to_known_pose(known));
-    maps_.emplace(id, map);
-    return id;
+    std::optional<std::size_t> id;
+    try {
+      run_in_worker(nb::none(),
+                    [&](const Report& /*report*/) { id = merger_.add(*map.grid, to_known_pose(known)); });
+    } catch (...) {
+      if (id) merger_.remove(*id);  // an interrupt that came too late to cancel it
+      throw;
+    }
+    maps_.emplace(*id, map);
+    return *id;
   }
 
   void update(std::size_t id, const Map& map) {
-    merger_.update(id, *map.grid);
+    bool is_updated = false;
+    try {
+      run_in_worker(nb::none(), [&](const Report& /*report*/) {
+        merger_.update(id, *map.grid);
+        is_updated = true;
+      });
+    } catch (...) {
+      if (is_updated) merger_.update(id, *maps_.at(id).grid);
+      throw;
+    }
     maps_.at(id) = map;
   }
 
   void remove(std::size_t id) {
     merger_.remove(id);
     maps_.erase(id);
+  }
+
+  /// These maps and no others, where an interrupt came between this and what Python knows of it.
+  void keep(const std::vector<std::pair<std::size_t, Map>>& wanted) {
+    std::map<std::size_t, Map> others = maps_;
+    for (const auto& [id, map] : wanted) others.erase(id);
+    for (const auto& [id, map] : others) remove(id);
+    for (const auto& [id, map] : wanted) {
+      if (maps_.at(id).grid != map.grid) update(id, map);
+    }
   }
 
   Merged result(const nb::object& progress) {
@@ -69,11 +95,10 @@ void bind_merger(nb::module_& module) {
   nb::class_<MapMerger>(module, "Merger")
       .def(nb::init<int, double, double>(), nb::arg("threads"), nb::arg("accept"),
            nb::arg("output_resolution"))
-      .def("add", &MapMerger::add, nb::arg("map"), nb::arg("known").none(),
-           nb::call_guard<nb::gil_scoped_release>())
-      .def("update", &MapMerger::update, nb::arg("id"), nb::arg("map"),
-           nb::call_guard<nb::gil_scoped_release>())
+      .def("add", &MapMerger::add, nb::arg("map"), nb::arg("known").none())
+      .def("update", &MapMerger::update, nb::arg("id"), nb::arg("map"))
       .def("remove", &MapMerger::remove, nb::arg("id"))
+      .def("keep", &MapMerger::keep, nb::arg("wanted"))
       .def("result", &MapMerger::result, nb::arg("progress").none());
 }
 

@@ -22,12 +22,12 @@ LONG_WORK = {
     "merge up the tree": "gridmerge.merge([small] * 60, strategy='tree')",
     "evaluate": "gridmerge.evaluate(pairs)",
     "Merger": "merger.result()",
-}
     "taking in large maps": "gridmerge.merge([large] * 300)",
     "taking in large maps one by one": "[merger.add(large) for _ in range(300)]",
     "matching large maps": "[gridmerge.match(large, large) for _ in range(100)]",
-
+}
 LONGEST_WAIT = {"taking in large maps": 0.5, "taking in large maps one by one": 0.5}  # [s]
+
 PROGRAM = """
 import sys, time
 import numpy as np
@@ -40,9 +40,9 @@ gridmerge.save(small, folder + "/small.yaml")
 pairs = folder + "/pairs.tsv"
 with open(pairs, "w") as table:
     table.write("fixed\\tmoving\\tx\\ty\\ttheta\\ttolerance\\n" + "small.yaml\\tsmall.yaml\\t0\\t0\\t0\\t1\\n" * 5000)
-merger = gridmerge.Merger()
 tiles = np.tile(grid.to_numpy(), (10, 10))
 large = gridmerge.OccupancyGrid(tiles, 0.05) if "large" in sys.argv[2] else None
+merger = gridmerge.Merger()
 for _ in range(60):
     merger.add(small)
 print("begin", flush=True)
@@ -91,7 +91,9 @@ atexit.register(lambda: print(gridmerge.load(path).width > 0, gridmerge.match(gr
 import numpy as np
 import gridmerge
 
+path = sys.argv[1]
 grid = gridmerge.simulate("office", size=(25, 20), robots=1, others=0).maps[0].grid
+cells = np.zeros((4000, 4000), dtype=np.int8)
 atexit.register(lambda: print(gridmerge.match(grid, grid).accepted, flush=True))
 
 class Lingers:
@@ -108,8 +110,6 @@ for _ in range(3):
     threading.Thread(target=work, daemon=True).start()
 time.sleep(0.3)
 """
-
-
 DAEMONS_WORK = {
     "merge": "gridmerge.merge([grid] * 60)",
     "match": "gridmerge.match(grid, grid)",
@@ -131,6 +131,8 @@ def test_a_program_ends_while_daemon_threads_work(what: str, attempt: int, robot
         check=False,
     )
     assert (ended.returncode, ended.stdout, ended.stderr) == (0, "True\nTrue True\n", "")
+
+
 def test_a_program_ends_while_a_daemon_thread_waits_for_a_file(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "map.yaml")
     program = """
@@ -212,6 +214,44 @@ def test_a_merger_refuses_its_own_progress(robots: list[str]) -> None:
         merger.result(progress=lambda share: merger.add(robots[1]))
     merger.add(robots[1])
     assert merger.result().complete
+
+
+def test_a_merger_is_as_it_was_after_an_interrupt() -> None:
+    class Interrupt(Exception):
+        pass
+
+    def interrupt(number: int, frame: object) -> None:
+        raise Interrupt
+
+    cells = np.zeros((2000, 2000), dtype=np.int8)
+    grids = [gridmerge.OccupancyGrid(cells, resolution) for resolution in (0.05, 0.1)]
+    merger = gridmerge.Merger()
+    first = merger.add(grids[0], name="first")
+    interrupted = 0
+    before = signal.signal(signal.SIGALRM, interrupt)
+    try:
+        for i in range(40):
+            try:
+                signal.setitimer(signal.ITIMER_REAL, 0.0005 + 0.0005 * (i // 2))
+                if i % 2:
+                    merger.add(grids[0])
+                else:
+                    merger.update(first, grids[1])
+                    signal.setitimer(signal.ITIMER_REAL, 0.0)
+                    merger.update(first, grids[0])
+                signal.setitimer(signal.ITIMER_REAL, 0.0)
+            except Interrupt:
+                interrupted += 1
+        for added in merger.ids[1:]:
+            merger.remove(added)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert interrupted
+    result = merger.result()
+    assert (merger.ids, result.names, result.maps) == ((first,), ("first",), (grids[0],))
+    assert [one.name for one in result.left_out] == ["first"]
+    assert result._core.maps[0].resolution == 0.05
 
 
 def test_an_exception_of_progress_ends_the_work() -> None:

@@ -223,3 +223,22 @@ def test_a_plot_puts_walls_where_they_are() -> None:
     assert isinstance(to_data, Affine2DBase)
     expected = grid.origin.apply([15.5 * 0.5, 2.5 * 0.5])
     np.testing.assert_allclose(to_data.transform((x, y)), expected, atol=1e-9)
+def test_a_merger_takes_one_fixed_map_without_a_pose(robots: list[str]) -> None:
+    merger = gridmerge.Merger()
+    first = merger.add(robots[0], fixed=True)
+    for options in ({"fixed": True}, {"pose": (1, 2, 3)}, {"pose": (1, 2, 3), "fixed": True}):
+        with pytest.raises(ValueError, match=r"^pose: "):
+            merger.add(robots[1], **options)
+    assert merger.ids == (first,)
+    merger.add(robots[1])
+    fixed = gridmerge.merge(robots[:2], fix=0)
+    assert to_bits(as_json(merger.result())) == to_bits(as_json(fixed))
+    merger.remove(first)
+    posed = merger.add(robots[0], pose=(10, 5, 0.5))
+    with pytest.raises(ValueError, match=r"^pose: "):
+        merger.add(robots[2], fixed=True)
+    merger.update(posed, robots[0])
+    merger.remove(np.int64(posed))  # type: ignore[arg-type]
+    merger.add(robots[2], fixed=True)
+
+
