@@ -10,7 +10,7 @@ from . import _arguments, _core
 from ._arguments import Progress
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_maps
-from ._known_poses import InitialPoses, MapKey, to_known_poses
+from ._known_poses import InitialPoses, MapKey, NamedMaps, to_known_poses
 from ._match import MatchResult, Reason, to_match_result
 from ._transform import Transform
 
@@ -114,7 +114,7 @@ class MergeResult:
         cannot be written to, or holds an input under the name of an output; then nothing is changed.
         """
         path = _arguments.path("directory", directory)
-        self._core.save(path, [_to_bytes(name) for name in self.names], list(self._more_inputs))
+        self._core.save(path, [_arguments.to_bytes(name) for name in self.names], list(self._more_inputs))
 
     def plot(self, ax: Axes | None = None, *, component: int = 0) -> Axes:
         """Draws a component: each input map in its own colour, where it lies in the component's frame [m].
@@ -133,7 +133,7 @@ def merge(
     names: Sequence[str] | None = None,
     strategy: Strategy = "joint",
     init: InitialPoses | None = None,
-    fix: MapKey | Sequence[MapKey] | None = None,
+    fix: MapKey | Iterable[MapKey] | None = None,
     threads: int = 0,
     accept: float = 0.8,
     output_resolution: float | None = None,
@@ -145,9 +145,10 @@ def merge(
         maps: maps, paths of map files, or messages like nav_msgs/OccupancyGrid.
         names: what to call the maps; by default the paths they were loaded from, or "map 0", "map 1", ...
         strategy: "joint", or "tree": pairwise up a tree, as Birk & Carpin (2006).
-        init: what is known of the maps' poses: the path of a table, or poses by map index or name.
-        fix: maps whose poses are the truth, by index or name: they are not changed, and the merged map is in this
-            map's frame, or in that of `init`.
+        init: what is known of the maps' poses: the path of a table, which names the maps' files, or poses by map index,
+            name, or path that the map was loaded from.
+        fix: a map whose pose is the truth, or several, told in the same ways: they are not changed, and the merged map
+            is in this map's frame, or in that of `init`.
         threads: 0 = one a core. The result does not depend on it.
         accept: maps are joined from this probability on.
         output_resolution: of the merged maps [m]; None = the finest of the maps'.
@@ -162,16 +163,17 @@ def merge(
     up_the_tree = _arguments.choice("strategy", strategy, ("joint", "tree")) == "tree"
     if up_the_tree and (init is not None or fix is not None):
         raise ValueError("strategy: init and fix need 'joint'")
+    # The program may go to another directory before it saves.
+    more_inputs = (os.fsencode(os.path.abspath(init)),) if isinstance(init, (str, os.PathLike)) else ()
     merged = _core.merge(
         [grid._core for grid in grids],
-        to_known_poses(called, init, fix),
+        to_known_poses(NamedMaps(called, grids), init, fix),
         _arguments.threads(threads),
         _arguments.share("accept", accept),
         to_output_resolution(output_resolution),
         up_the_tree,
         _arguments.progress(progress),
     )
-    more_inputs = (os.fsencode(init),) if isinstance(init, (str, os.PathLike)) else ()
     return to_merge_result(merged, grids, called, more_inputs)
 
 
@@ -182,8 +184,7 @@ def to_names(names: Sequence[str] | None, grids: Sequence[OccupancyGrid]) -> lis
         raise TypeError(f"names: must be a sequence of strings, is {_arguments.kind_of(names)}")
     called = list(names)
     for i, name in enumerate(called):
-        if not isinstance(name, str):
-            raise TypeError(f"names[{i}]: must be a string, is {_arguments.kind_of(name)}")
+        _arguments.text(f"names[{i}]", name)
     if len(called) != len(grids):
         raise ValueError(f"names: there are {len(called)} for {len(grids)} maps")
     return called
@@ -250,7 +251,3 @@ def _to_join(join: _core.Join) -> Join:
         probability=join.probability,
         match=to_match_result(join.match),
     )
-
-
-def _to_bytes(name: str) -> bytes:
-    return name.encode("utf-8", "surrogateescape")

@@ -127,6 +127,8 @@ void bind_results(nb::module_& module) {
 
 void bind_merge(nb::module_& module) {
   bind_results(module);
+  module.def(
+      "validate_known_pose", [](const Known& known) { validate(*to_known_pose(known)); }, nb::arg("known"));
   module.def("merge", &merge_maps, nb::arg("maps"), nb::arg("known"), nb::arg("threads"), nb::arg("accept"),
              nb::arg("output_resolution"), nb::arg("up_the_tree"), nb::arg("progress").none());
   module.def(

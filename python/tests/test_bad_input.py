@@ -141,6 +141,10 @@ def call(function: Any, *arguments: Any, **options: Any) -> Call:
     return lambda: function(*arguments, **options)
 
 
+def sure(**deviations: float) -> gridmerge.InitialPose:
+    return gridmerge.InitialPose((0.0, 0.0, 0.0), **deviations)
+
+
 ARGUMENTS: list[tuple[type[Exception], str, Call]] = [
     (TypeError, "fixed", call(gridmerge.match, 3, GRID)),
     (TypeError, "fixed", call(gridmerge.match, None, GRID)),
@@ -180,10 +184,6 @@ ARGUMENTS: list[tuple[type[Exception], str, Call]] = [
     (ValueError, "fix", call(gridmerge.merge, [GRID, GRID], fix=2)),
     (ValueError, "fix", call(gridmerge.merge, [GRID, GRID], fix=[0, 1])),
     (TypeError, "fix", call(gridmerge.merge, [GRID, GRID], fix=1.0)),
-    (ValueError, "kind", call(gridmerge.simulate, "castle")),
-    (TypeError, "kind", call(gridmerge.simulate, 3)),
-    (TypeError, "size", call(gridmerge.simulate, size=40)),
-    (TypeError, "size", call(gridmerge.simulate, size=(1, 2, 3))),
     (TypeError, "fix", call(gridmerge.merge, [GRID, GRID], fix=True)),
     (TypeError, "fix", call(gridmerge.merge, [GRID, GRID], fix=[False])),
     (TypeError, "fix", call(gridmerge.merge, [GRID, GRID], fix=b"map 0")),
@@ -203,6 +203,10 @@ ARGUMENTS: list[tuple[type[Exception], str, Call]] = [
         "cells",
         call(gridmerge.OccupancyGrid.from_cells, np.broadcast_to(np.uint8(0), (2**15, 2**14)), 0.05),
     ),
+    (ValueError, "kind", call(gridmerge.simulate, "castle")),
+    (TypeError, "kind", call(gridmerge.simulate, 3)),
+    (TypeError, "size", call(gridmerge.simulate, size=40)),
+    (TypeError, "size", call(gridmerge.simulate, size=(1, 2, 3))),
     (ValueError, "size", call(gridmerge.simulate, size=(NAN, 2))),
     (ValueError, "robots", call(gridmerge.simulate, robots=0)),
     (ValueError, "overlap", call(gridmerge.simulate, overlap=2.0)),

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import copy
 import json
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -121,6 +123,69 @@ def test_known_poses_as_a_table_and_as_a_mapping(cli: Cli, robots: list[str], tm
         gridmerge.merge(robots[:2], init=table)
 
 
+def test_a_table_names_files_whatever_the_maps_are_called(
+    robots: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    table = tmp_path / "poses.tsv"
+    table.write_text(f"map\tx\ty\ttheta\n{robots[0]}\t10\t5\t0.5\n")
+    # A file that has the name of another map.
+    (tmp_path / "b").symlink_to(robots[0])
+    monkeypatch.chdir(tmp_path)
+    grids = [gridmerge.load(path) for path in robots[:2]]
+    for maps in (robots[:2], grids):
+        named = gridmerge.merge(maps, names=["a", "b"], init=table, fix="a")
+        assert named.components[0].members[0].transform == gridmerge.Transform(10.0, 5.0, 0.5)
+        assert (
+            gridmerge.merge(maps, names=["a", "b"], init=table, fix=robots[0]).components == named.components
+        )
+    keys: list[Any] = [0, "a", robots[0], Path(robots[0])]
+    for key in keys:
+        of_mapping = gridmerge.merge(grids, names=["a", "b"], init={key: (10, 5, 0.5)}, fix=[key])
+        assert of_mapping.components == named.components
+
+
+def test_maps_that_are_no_files_are_named_in_tables_too(robots: list[str], tmp_path: Path) -> None:
+    grids = []
+    for path in robots[:2]:
+        grid = gridmerge.load(path)
+        grids.append(gridmerge.OccupancyGrid(grid.to_numpy(), grid.resolution, grid.origin))
+    table = tmp_path / "poses.tsv"
+    table.write_text("map\tx\ty\ttheta\nb\t10\t5\t0.5\n")
+    named = gridmerge.merge(grids, names=["a", "b"], init=table, fix="b")
+    assert named.components[0].members[1].transform == gridmerge.Transform(10.0, 5.0, 0.5)
+
+
+def test_maps_are_found_from_another_directory(
+    robots: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(Path(robots[0]).parent)
+    grids = [gridmerge.load(Path(path).name) for path in robots[:2]]
+    monkeypatch.chdir(tmp_path)
+    assert gridmerge.merge(grids, fix=robots[1]).components[0].in_world_frame
+    with pytest.raises(ValueError, match=r"^fix: "):
+        gridmerge.merge(grids, fix=robots[2])
+
+
+def test_fixed_maps_are_told_as_any_others_are(robots: list[str]) -> None:
+    poses = {0: (0.0, 0.0, 0.0), 1: (30.0, 0.0, 0.0)}
+    expected = gridmerge.merge(robots[:2], init=poses, fix=[0, 1]).components
+    of_numpy = np.arange(2)
+    ways: list[Any] = [
+        of_numpy,
+        set(of_numpy),
+        {0, 1},
+        iter(robots[:2]),
+        tuple(map(Path, robots[:2])),
+        range(2),
+    ]
+    for way in ways:
+        assert gridmerge.merge(robots[:2], init=poses, fix=way).components == expected
+    alone = gridmerge.merge(robots[:2], fix=1).components
+    ones: list[Any] = [np.int64(1), np.array(1), Path(robots[1]), robots[1], np.uint8(1)]
+    for one in ones:
+        assert gridmerge.merge(robots[:2], fix=one).components == alone
+
+
 def test_names_of_maps(robots: list[str]) -> None:
     grids = [gridmerge.load(path) for path in robots]
     assert gridmerge.merge(grids).names == tuple(robots)
@@ -137,6 +202,32 @@ def test_inputs_are_not_replaced(robots: list[str], tmp_path: Path) -> None:
     with pytest.raises(gridmerge.FileError, match="is an input and would be replaced"):
         result.save(tmp_path)
     assert (tmp_path / "merged.pgm").read_bytes() == before
+
+
+@pytest.mark.parametrize("way", ["loaded", "pickled", "copied"])
+def test_nor_are_they_from_another_directory(
+    robots: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str
+) -> None:
+    gridmerge.merge(robots[:2]).save(tmp_path)
+    before = (tmp_path / "merged.pgm").read_bytes()
+    table = tmp_path / "preview.png"
+    table.write_text("map\tx\ty\ttheta\nmerged.yaml\t1\t2\t0\n")
+    monkeypatch.chdir(tmp_path)
+    grid = gridmerge.load("merged.yaml")
+    if way == "pickled":
+        grid = pickle.loads(pickle.dumps(grid))
+    if way == "copied":
+        grid = copy.copy(copy.deepcopy(grid))
+    result = gridmerge.merge([grid, robots[2]])
+    with_table = gridmerge.merge([robots[0], "merged.yaml"], init="preview.png")
+    monkeypatch.chdir("/")
+    with pytest.raises(gridmerge.FileError, match="is an input and would be replaced"):
+        result.save(tmp_path)
+    for name in ("merged.yaml", "merged.pgm"):
+        (tmp_path / name).rename(tmp_path / f"moved{name}")
+    with pytest.raises(gridmerge.FileError, match="preview.png"):
+        with_table.save(tmp_path)
+    assert (tmp_path / "movedmerged.pgm").read_bytes() == before
 
 
 def test_nothing_and_a_single_map(robots: list[str], tmp_path: Path) -> None:
@@ -170,6 +261,25 @@ def test_a_merger_with_known_poses(robots: list[str]) -> None:
     merger.add(robots[1])
     fixed = gridmerge.merge(robots[:2], init={0: (10, 5, 0.5)}, fix=0)
     assert to_bits(as_json(merger.result())) == to_bits(as_json(fixed))
+
+
+def test_a_merger_takes_one_fixed_map_without_a_pose(robots: list[str]) -> None:
+    merger = gridmerge.Merger()
+    first = merger.add(robots[0], fixed=True)
+    for options in ({"fixed": True}, {"pose": (1, 2, 3)}, {"pose": (1, 2, 3), "fixed": True}):
+        with pytest.raises(ValueError, match=r"^pose: "):
+            merger.add(robots[1], **options)
+    assert merger.ids == (first,)
+    merger.add(robots[1])
+    fixed = gridmerge.merge(robots[:2], fix=0)
+    assert to_bits(as_json(merger.result())) == to_bits(as_json(fixed))
+    merger.remove(first)
+    posed = merger.add(robots[0], pose=(10, 5, 0.5))
+    with pytest.raises(ValueError, match=r"^pose: "):
+        merger.add(robots[2], fixed=True)
+    merger.update(posed, robots[0])
+    merger.remove(np.int64(posed))  # type: ignore[arg-type]
+    merger.add(robots[2], fixed=True)
 
 
 def test_plots(robots: list[str], elsewhere: str) -> None:
@@ -223,22 +333,3 @@ def test_a_plot_puts_walls_where_they_are() -> None:
     assert isinstance(to_data, Affine2DBase)
     expected = grid.origin.apply([15.5 * 0.5, 2.5 * 0.5])
     np.testing.assert_allclose(to_data.transform((x, y)), expected, atol=1e-9)
-def test_a_merger_takes_one_fixed_map_without_a_pose(robots: list[str]) -> None:
-    merger = gridmerge.Merger()
-    first = merger.add(robots[0], fixed=True)
-    for options in ({"fixed": True}, {"pose": (1, 2, 3)}, {"pose": (1, 2, 3), "fixed": True}):
-        with pytest.raises(ValueError, match=r"^pose: "):
-            merger.add(robots[1], **options)
-    assert merger.ids == (first,)
-    merger.add(robots[1])
-    fixed = gridmerge.merge(robots[:2], fix=0)
-    assert to_bits(as_json(merger.result())) == to_bits(as_json(fixed))
-    merger.remove(first)
-    posed = merger.add(robots[0], pose=(10, 5, 0.5))
-    with pytest.raises(ValueError, match=r"^pose: "):
-        merger.add(robots[2], fixed=True)
-    merger.update(posed, robots[0])
-    merger.remove(np.int64(posed))  # type: ignore[arg-type]
-    merger.add(robots[2], fixed=True)
-
-

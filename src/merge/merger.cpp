@@ -44,7 +44,7 @@ class Merger::State {
   }
 
   MapId add(std::shared_ptr<const OccupancyGrid> map, std::optional<KnownPose> known_pose) {
-    if (known_pose) validate_known_pose(*known_pose);
+    if (known_pose) validate(*known_pose);
     auto input = std::make_unique<const Input>(std::move(map));  // throws for an invalid map
     const MapId id = next_++;
     inputs_.emplace(id, std::move(input));
@@ -61,7 +61,7 @@ class Merger::State {
 
   void set_known_pose(MapId id, std::optional<KnownPose> known_pose) {
     require(id);
-    if (known_pose) validate_known_pose(*known_pose);
+    if (known_pose) validate(*known_pose);
     known_poses_.erase(id);
     if (known_pose) known_poses_[id] = *known_pose;
   }

@@ -36,7 +36,7 @@ double sd_between(const KnownPose& fixed, const KnownPose& moving, const MapExte
 
 }  // namespace
 
-void validate_known_pose(const KnownPose& known) {
+void validate(const KnownPose& known) {
   const SE2& T = known.T_world_map;
   if (!(std::abs(T.x) <= kFarthest && std::abs(T.y) <= kFarthest && std::isfinite(T.theta)))
     throw std::invalid_argument("a known pose must be finite, and within 10000 km");

@@ -6,10 +6,6 @@
 
 namespace gridmerge {
 
-/// Throws std::invalid_argument for a pose that is not finite or farther off than 10^7 m, or a deviation that
-/// is less than 10^-6; those of a fixed pose may be 0.
-void validate_known_pose(const KnownPose& known);
-
 /// What two known poses, not both fixed, say of how their maps lie to each other: candidates near it become
 /// likelier, others less likely, by more the better the poses are known; and if they are known as well as a
 /// match tells a pose, what is known is a candidate too, of its own if none of the maps' lies there.

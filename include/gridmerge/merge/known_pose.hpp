@@ -13,4 +13,8 @@ struct KnownPose {
   bool fixed = false;        ///< it is the truth, whatever the maps say; the deviations play no part
 };
 
+/// Throws std::invalid_argument for a pose that is not finite or farther off than 10^7 m, or a deviation that
+/// is less than 10^-6; those of a fixed pose may be 0.
+void validate(const KnownPose& known);
+
 }  // namespace gridmerge
