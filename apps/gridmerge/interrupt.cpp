@@ -14,22 +14,30 @@ namespace gridmerge::cli {
 
 namespace {
 
+constexpr std::array kSignals{SIGINT, SIGTERM};
+
 // A signal handler can reach nothing but a global, and may do little more than write.
 std::atomic<int> write_end{-1};
 
-void on_signal(int /*signal*/) {
-  const int before = errno;
+void wake() {
   const char byte = 0;
   [[maybe_unused]] const ssize_t written = ::write(write_end, &byte, 1);
-  errno = before;
 }
 
 void handle(void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
-  action.sa_flags = SA_RESTART | SA_RESETHAND;
+  action.sa_flags = SA_RESTART;
   ::sigemptyset(&action.sa_mask);
-  for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
+  for (const int signal : kSignals) ::sigaddset(&action.sa_mask, signal);
+  for (const int signal : kSignals) ::sigaction(signal, &action, nullptr);
+}
+
+void on_signal(int /*signal*/) {
+  const int before = errno;
+  handle(SIG_DFL);  // of the other signals too: whichever is the second ends the program
+  wake();
+  errno = before;
 }
 
 }  // namespace
@@ -55,7 +63,7 @@ void Interrupt::wait() const {
 }
 
 void Interrupt::raise() const {
-  on_signal(0);
+  wake();
 }
 
 }  // namespace gridmerge::cli

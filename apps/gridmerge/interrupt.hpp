@@ -4,7 +4,7 @@
 namespace gridmerge::cli {
 
 /// Waits for Ctrl-C (SIGINT) or SIGTERM. While it lives, the first of these does not end the program; a
-/// second one does. One at a time.
+/// second one does, the same or the other. One at a time.
 class Interrupt {
  public:
   /// Throws std::runtime_error when the system denies it.

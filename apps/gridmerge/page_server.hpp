@@ -8,6 +8,7 @@
 namespace gridmerge::cli {
 
 /// Answers the body of a request with JSON. Throws std::invalid_argument for a body that makes no sense.
+/// Runs under with_cancellation().
 using Answer = std::function<std::string(const std::string& body)>;
 
 /// Serves one page at "/", and answers what it asks with POST at "/refine"; nothing else is there, no file
@@ -26,16 +27,18 @@ class PageServer {
   /// "http://127.0.0.1:8750/".
   std::string url() const;
 
-  /// Serves until a signal or an error ends it, calling `ready` when it answers. Throws std::runtime_error
-  /// for an error.
+  /// Whether it can be reached from this machine alone.
+  bool is_local() const;
+
+  /// Calls `ready` and serves until a signal or an error ends it; from `ready` on connections are taken. An
+  /// answer that is being made is cancelled then. Where a connection does not end within a second, its thread
+  /// still needs what the caller would destroy, and the program is ended, with exit code 0. Throws
+  /// std::runtime_error for an error, and what `ready` throws.
   void run(const std::function<void()>& ready);
 
  private:
   class State;
   std::unique_ptr<State> state_;
 };
-
-/// Whether an address can be reached from this machine alone.
-bool is_loopback(const std::string& address);
 
 }  // namespace gridmerge::cli

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "address.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "gridmerge/grid/parallel.hpp"
@@ -44,7 +46,7 @@ int run_view(const ViewCommandOptions& options) {
   PageServer server(options.address, options.port, std::move(page), [&](const std::string& body) {
     return answer_refine(merge, options.common.threads, body);
   });
-  if (!is_loopback(options.address))
+  if (!server.is_local())
     console.warn("whoever reaches " + server.url() +
                  " sees the maps and can have this machine work for them");
   server.run([&] { print(fmt::format("{}  (Ctrl-C ends it)\n", server.url())); });
@@ -54,7 +56,10 @@ int run_view(const ViewCommandOptions& options) {
 /// A request has to name its host, and these are no host's name.
 const CLI::Validator kOneAddress(
     [](std::string& text) {
-      return text.empty() || text == "0.0.0.0" || text == "::"
+      const std::vector<Address> addresses = resolve(text);
+      const bool any =
+          std::any_of(addresses.begin(), addresses.end(), [](const Address& one) { return one.is_any; });
+      return text.empty() || any
                  ? "'" + text + "' is no single address: give the one by which others reach this machine"
                  : std::string();
     },

@@ -15,6 +15,10 @@ namespace {
 
 constexpr double kShiftReach = 1.0;   // [m] along either axis
 constexpr double kTurnReach = 0.125;  // [rad]
+/// No further than this on either side, in steps between poses: with cells of less than 2 cm, or maps of more
+/// than 8000 cells, there would be no end of poses.
+constexpr int kMostShifts = 25;
+constexpr int kMostTurns = 128;
 /// Maxima that are ranked. Those of the walls are not always those of walls and area together.
 constexpr std::size_t kMaxima = 6;
 constexpr double kDistinctMaxima = 2.0;  // [cells]
@@ -23,14 +27,16 @@ constexpr double kDistinctMaxima = 2.0;  // [cells]
 /// those from which match() climbs.
 std::vector<PoseCandidate> poses_around(const SE2& start, const ComparedMaps& maps, double spacing) {
   const PoseMetric metric = make_pose_metric(maps.moving_walls);
-  const int shifts = static_cast<int>(std::ceil(kShiftReach / maps.cell / spacing));
-  const int turns = static_cast<int>(std::ceil(kTurnReach * metric.radius / spacing));
+  const double shift_reach = std::min(kShiftReach / maps.cell, kMostShifts * spacing);
+  const double turn_reach = std::min(kTurnReach, kMostTurns * spacing / metric.radius);
+  const int shifts = static_cast<int>(std::ceil(shift_reach / spacing));
+  const int turns = static_cast<int>(std::ceil(turn_reach * metric.radius / spacing));
   std::vector<PoseCandidate> poses{{start, 0}};
   for (int turn = -turns; turn <= turns; ++turn) {
     for (int row = -shifts; row <= shifts; ++row) {
       for (int column = -shifts; column <= shifts; ++column) {
         const SE2 T =
-            metric.moved(start, column * spacing, row * spacing, turn * kTurnReach / std::max(turns, 1));
+            metric.moved(start, column * spacing, row * spacing, turn * turn_reach / std::max(turns, 1));
         poses.push_back({T, 0});
       }
     }

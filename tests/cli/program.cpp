@@ -158,8 +158,12 @@ std::string RunningProgram::read_line() {
   return line;
 }
 
-Outcome RunningProgram::end_with(int signal) {
+void RunningProgram::send(int signal) const {
   ::kill(child_, signal);
+}
+
+Outcome RunningProgram::end_with(int signal) {
+  send(signal);
   Outcome outcome;
   Channel out{out_, -1}, err{err_, -1};
   drain(out, outcome.out, err, outcome.err);

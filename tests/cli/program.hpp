@@ -36,6 +36,8 @@ class RunningProgram {
   /// The next line of stdout, without its end; "" when there will be none.
   std::string read_line();
 
+  void send(int signal) const;
+
   /// Sends the signal and waits for the end. The outcome's stdout is what was not read before.
   Outcome end_with(int signal);
 

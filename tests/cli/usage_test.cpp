@@ -46,10 +46,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "1e5"},
                     Words{"view"}, Words{"view", "a", "--port", "65536"}, Words{"view", "a", "--port", "-1"},
                     Words{"view", "a", "--port", "http"}, Words{"view", "a", "--address", "0.0.0.0"},
-                    Words{"view", "a", "--address", "::"}, Words{"view", "a", "--address", ""},
-                    Words{"report"}, Words{"report", "a", "b"}, Words{"report", "a", "--resolution", "0"},
-                    Words{"evaluate"}, Words{"evaluate", "--json", "result.json"},
-                    Words{"evaluate", "a.tsv", "b.tsv"}));
+                    Words{"view", "a", "--address", "::"}, Words{"view", "a", "--address", "0"},
+                    Words{"view", "a", "--address", "0.0"}, Words{"view", "a", "--address", "0x0"},
+                    Words{"view", "a", "--address", "::0"}, Words{"view", "a", "--address", "::ffff:0.0.0.0"},
+                    Words{"view", "a", "--address", ""}, Words{"report"}, Words{"report", "a", "b"},
+                    Words{"report", "a", "--resolution", "0"}, Words{"evaluate"},
+                    Words{"evaluate", "--json", "result.json"}, Words{"evaluate", "a.tsv", "b.tsv"}));
 
 TEST(Usage, AMisspeltCommandIsNamed) {
   EXPECT_NE(run({"mtach", "a.yaml", "b.yaml"}).err.find("'mtach'"), std::string::npos);

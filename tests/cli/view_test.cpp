@@ -1,79 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <arpa/inet.h>
+#include "view.hpp"
+
 #include <httplib.h>
+#include <ifaddrs.h>
+#include <netdb.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
-#include <cstring>
-#include <limits>
+#include <cstdlib>
 #include <thread>
-
-#include "fixture.hpp"
+#include <vector>
 
 namespace gridmerge::test {
 namespace {
-
-constexpr const char* kJson = "application/json";
-
-/// `gridmerge view` of two maps that were merged, and one that was left out.
-class View : public CliTest {
- protected:
-  View() {
-    EXPECT_EQ(run({"merge", left, right, other, "-o", output}).exit_code, 3);
-    server = std::make_unique<RunningProgram>(std::vector<std::string>{"view", output});
-    const std::string line = server->read_line();
-    const std::string start = "http://127.0.0.1:";
-    EXPECT_EQ(line.find(start), 0u) << line;
-    port = std::stoi(line.substr(start.size()));
-    host = "127.0.0.1:" + std::to_string(port);
-  }
-
-  httplib::Client client() const { return httplib::Client("127.0.0.1", port); }
-
-  /// A question about the second map, displaced from where it lies on the first.
-  Json question() const {
-    const Json members =
-        Json::parse(read_file(output + "/transforms.json")).at("components").at(0).at("members");
-    Json transform = members.at(1).at("transform");
-    transform["x"] = transform.at("x").get<double>() + 0.4;
-    transform["y"] = transform.at("y").get<double>() - 0.3;
-    return {{"moving", 1},
-            {"transform", transform},
-            {"fixed", {{{"map", 0}, {"transform", members.at(0).at("transform")}}}}};
-  }
-
-  /// What the server answers to raw bytes.
-  std::string exchange(const std::string& bytes) const {
-    const int connection = ::socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_EQ(::connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-    EXPECT_EQ(::send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL),
-              static_cast<ssize_t>(bytes.size()));
-    const timeval patience{10, 0};
-    ::setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    std::string answer;
-    std::array<char, 4096> block{};
-    for (ssize_t count = 0; (count = ::recv(connection, block.data(), block.size(), 0)) > 0;)
-      answer.append(block.data(), static_cast<std::size_t>(count));
-    ::close(connection);
-    return answer;
-  }
-
-  void expect_alive() const {
-    const auto page = client().Get("/");
-    ASSERT_TRUE(page);
-    EXPECT_EQ(page->status, 200);
-  }
-
-  const std::string output = directory.file("out");
-  std::unique_ptr<RunningProgram> server;
-  int port = 0;
-  std::string host;
-};
 
 TEST_F(View, ServesTheLivePage) {
   const auto page = client().Get("/");
@@ -167,6 +108,45 @@ TEST_F(View, TakesNoMoreThanAMebibyte) {
   expect_alive();
 }
 
+TEST_F(View, ABodyOfUntoldLengthIsNotRead) {
+  const std::string body = question().dump();
+  const auto length = [](const std::string& text) {
+    return "Content-Length: " + std::to_string(text.size()) + "\r\n";
+  };
+  ASSERT_EQ(exchange(head() + length(body) + "\r\n" + body).find("HTTP/1.1 200"), 0u);
+  const auto expect_refused = [&](const std::string& bytes) {
+    const std::string answer = exchange(bytes);
+    EXPECT_EQ(answer.find("HTTP/1.1 411"), 0u) << answer.substr(0, 300);
+    EXPECT_NE(answer.find("Content-Length\"}"), std::string::npos) << answer.substr(0, 300);
+    expect_alive();
+  };
+  std::string chunked = head() + "Transfer-Encoding: chunked\r\n\r\n";
+  for (const char c : body) chunked += std::string("1\r\n") + c + "\r\n";
+  chunked += "0\r\n\r\n";
+  expect_refused(chunked);
+  expect_refused(head() + length(body) + "Transfer-Encoding: chunked\r\n\r\n" + body);
+  expect_refused(head() + "\r\n" + body);
+  expect_refused(head() + length(body) + length("") + "\r\n" + body);
+  // Of other methods no body is wanted at all.
+  for (const char* method : {"PUT", "PATCH", "DELETE"})
+    EXPECT_EQ(exchange(head(method) + "\r\n" + body).find("HTTP/1.1 404"), 0u) << method;
+}
+
+TEST_F(View, SendsNoPageManyTimesOver) {
+  std::string ranges = "Range: bytes=0-";
+  for (int i = 0; i < 1000; ++i) ranges += ",0-";
+  for (const std::string& range : {ranges, std::string("Range: bytes=0-0")}) {
+    for (const std::string& start :
+         {"GET / HTTP/1.1\r\nHost: " + host + "\r\n", std::string("GET / HTTP/1.1\r\nHost: example.org\r\n"),
+          head() + "Content-Length: 9999999\r\n"}) {
+      const std::string answer = exchange(start + range + "\r\n\r\n");
+      EXPECT_EQ(answer.find("HTTP/1.1 416"), 0u) << answer.substr(0, 300);
+      EXPECT_LT(answer.size(), 1000u);
+    }
+  }
+  expect_alive();
+}
+
 TEST_F(View, ServesNoFile) {
   for (const char* path :
        {"/report.html", "/transforms.json", "/merged.pgm", "/../left.yaml", "/..%2fleft.yaml",
@@ -245,21 +225,50 @@ TEST_F(View, AnswersSeveralAtOnce) {
   EXPECT_NE(answers.front(), "");
 }
 
-TEST_F(View, EndsWithCtrlC) {
-  const Outcome outcome = server->end_with(SIGINT);
-  EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_EQ(outcome.err, "");
+TEST_F(View, AFullDeviceIsAnError) {
+  RunOptions options;
+  options.stdout_to = "/dev/full";
+  expect_error(run({"view", output}, options), "standard output", "No space left");
 }
 
-TEST_F(View, EndsWithCtrlCWhileSomebodyIsConnectedAndSilent) {
-  const int connection = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  ASSERT_EQ(::connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  EXPECT_EQ(server->end_with(SIGTERM).exit_code, 0);
-  ::close(connection);
+/// An address of this machine by which others can reach it; "" when there is none.
+std::string outward_address() {
+  ifaddrs* found = nullptr;
+  if (::getifaddrs(&found) != 0) return "";
+  std::string address;
+  for (const ifaddrs* entry = found; entry != nullptr; entry = entry->ifa_next) {
+    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) continue;
+    std::array<char, NI_MAXHOST> number{};
+    ::getnameinfo(entry->ifa_addr, sizeof(sockaddr_in), number.data(), number.size(), nullptr, 0,
+                  NI_NUMERICHOST);
+    if (!std::string(number.data()).starts_with("127.")) address = number.data();
+  }
+  ::freeifaddrs(found);
+  return address;
+}
+
+TEST_F(View, WarnsOfOthersWhereOthersCanReachIt) {
+  const auto serve_at = [&](const std::string& address) {
+    RunningProgram program({"view", output, "--address", address});
+    const std::string line = program.read_line();
+    const std::string start =
+        "http://" + (address.find(':') == std::string::npos ? address : "[" + address + "]") + ":";
+    EXPECT_EQ(line.find(start), 0u) << line;
+    // Browsers spell the address in their own way.
+    const int at = std::atoi(line.substr(start.size()).c_str());
+    if (address.starts_with("127")) {
+      EXPECT_EQ(httplib::Client("127.0.0.1", at).Get("/")->status, 200);
+    }
+    return program.end_with(SIGTERM).err;
+  };
+  std::vector<std::string> local{"127.0.0.1", "127.1", "localhost"};
+  const int probe = ::socket(AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (probe >= 0) local.emplace_back("::ffff:127.0.0.1");
+  ::close(probe);
+  for (const std::string& address : local) EXPECT_EQ(serve_at(address), "") << address;
+  const std::string outward = outward_address();
+  if (outward.empty()) GTEST_SKIP() << "this machine has no other address";
+  EXPECT_NE(serve_at(outward).find("whoever reaches"), std::string::npos) << outward;
 }
 
 TEST_F(View, APortThatIsTakenIsAnError) {

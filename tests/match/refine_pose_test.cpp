@@ -135,6 +135,23 @@ TEST(RefinePose, StaysWhereNothingSpeaksForAnyPose) {
   EXPECT_EQ(refined.agreement + refined.disagreement, 0);
 }
 
+TEST(RefinePose, OfSmallCellsItLooksNoFurtherThanSomeCells) {
+  const OccupancyGrid building = test::draw_building(1);
+  const auto in_cells_of = [&](double cell) {
+    OccupancyGrid grid = building;
+    grid.resolution = cell;
+    return PreparedMap(grid);
+  };
+  const auto left_over = [](const PreparedMap& map, double cell, double cells_off) {
+    const RefinedPose refined = refine_pose(map, map, {cells_off * cell, 0.0, 0.0});
+    return std::hypot(refined.T_fixed_moving.x, refined.T_fixed_moving.y) / cell;
+  };
+  const PreparedMap fine = in_cells_of(0.005);
+  EXPECT_LT(left_over(fine, 0.005, 30.0), 1.0);
+  ASSERT_GT(left_over(fine, 0.005, 150.0), 10.0) << "with yet smaller cells this would take all memory";
+  for (const double cell : {1e-4, 1e-9}) EXPECT_LT(left_over(in_cells_of(cell), cell, 30.0), 1.0) << cell;
+}
+
 TEST(RefinePose, RefusesAStartThatIsNotFinite) {
   const PreparedMap map(test::draw_building(1));
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

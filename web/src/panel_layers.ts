@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { badge, mapLabel } from "./badge";
-import { disagreement, ink, white } from "./color";
+import { type Rgb, disagreement, ink, white } from "./color";
 import { h, name, replace, swatch } from "./dom";
 import { Cell } from "./grid";
 import { fixed } from "./numbers";
@@ -67,9 +67,9 @@ export class LayersPanel {
     replace(this.ownRows,
       component === null ? null : this.ownRow("merged", "Merged map", state.merged, null, "m"),
       maps.length < 2 ? null : this.ownRow("agreement", "Agreement", state.agreement, h("span", { class: "legend" },
-        swatch(rgb(ink)), "walls in two maps or more ", swatch(rgb(white)), "floor in two maps or more ",
-        swatch(rgb(disagreement)), "they contradict each other",
-        component === null ? null : h("span", { class: "soft" }, ` · ${counts}`)), "a"));
+        legendItem(ink, "walls in two maps or more"), legendItem(white, "floor in two maps or more"),
+        legendItem(disagreement, "they contradict each other"),
+        component === null ? null : h("div", { class: "soft" }, `${counts}.`)), "a"));
     this.readings = new Map();
     replace(this.mapRows, ...maps.map((map) => this.mapRow(map)));
     this.read();
@@ -164,6 +164,10 @@ export class LayersPanel {
       h("p", { class: "soft" }, "Could not be joined to another map with confidence."),
       h("ul", {}, ...items));
   }
+}
+
+function legendItem(color: Rgb, meaning: string): HTMLElement {
+  return h("span", { class: "legend-item" }, swatch(rgb(color)), meaning);
 }
 
 function rgb(color: readonly number[]): string {

@@ -83,6 +83,7 @@ export class TransformsPanel {
 function certainty(member: Member | undefined): string {
   const parts: string[] = [];
   if (member?.probability != null) parts.push(`probability ${probability(member.probability)}`);
-  if (member?.sd) parts.push(`± ${fixed(member.sd.position, 3)} m, ± ${fixed(degrees(member.sd.theta), 2)}°`);
+  if (member?.sd && member.sd.position === 0) parts.push("holds the frame");
+  else if (member?.sd) parts.push(`± ${fixed(member.sd.position, 3)} m, ± ${fixed(degrees(member.sd.theta), 2)}°`);
   return parts.map((part) => `, ${part}`).join("");
 }

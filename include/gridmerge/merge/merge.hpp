@@ -31,9 +31,10 @@ struct MergeOptions {
 /// left out; groups between which nothing is sure are components of their own.
 ///
 /// `known_poses[i]`, where there is one, is what is known of map i beforehand; it may be shorter than `maps`.
-/// Known poses of two maps that are not fixed speak for joining them so, as one more strong hypothesis; the
-/// poses of fixed maps are not changed, and the component that holds one has the world's frame. With no fixed
-/// map in it a component has the frame of its first member.
+/// Known poses of two maps that are not fixed speak for joining them so: the maps' own hypothesis there
+/// becomes a strong one, or what is known one more hypothesis. The poses of fixed maps are not changed, and
+/// the component that holds one has the world's frame. With no fixed map in it a component has the frame of
+/// its first member.
 ///
 /// The result does not depend on the number of threads, nor on the order of the maps, but that the frame of a
 /// component is its first member's and `joins` are in the order (0, 1), (0, 2), ... Throws
