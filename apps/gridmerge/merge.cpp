@@ -149,10 +149,8 @@ int run_merge(const MergeCommandOptions& options) {
   matcher.write_trace();
   if (options.common.verbose) print(describe_joins(options, result));
   print(describe(options.maps, result));
-  if (!options.common.quiet) {
-    const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
-    print("look at it: " + escape_controls(page.string()) + "\n");
-  }
+  const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
+  print("look at it: " + escape_controls(page.string()) + "\n");
   return result.components.size() == 1 && result.left_out.empty() ? kDone : kRefused;
 }
 
