@@ -51,13 +51,16 @@ def plot_component(result: MergeResult, component: int, ax: Axes | None) -> Axes
         red, green, blue = (value / 255.0 for value in colour)
         handles.append(Patch(color=(red, green, blue), label=member.name))
     _show(axes, corners)
-    axes.legend(handles=handles, loc="upper right", fontsize="small")
+    # Beside the maps, which fill the axes.
+    axes.legend(
+        handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, fontsize="small"
+    )
     axes.set_title(f"{len(handles)} of {len(result.maps)} maps")
     return axes
 
 
 def _axes(ax: Axes | None) -> Axes:
-    return plt.figure().add_subplot() if ax is None else ax
+    return plt.figure(figsize=(9.0, 6.0), layout="constrained").add_subplot() if ax is None else ax
 
 
 def _draw(axes: Axes, grid: OccupancyGrid, place: Transform, wall: Sequence[int], tint: float) -> None:
