@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { type ChildProcess, spawn } from "node:child_process";
-import { readFileSync, rmSync } from "node:fs";
+import { rmSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import type { Page } from "playwright-core";
 import { type SE2, normalizeAngle } from "../src/se2";
 import { type Tab, drag, lastCopied, middle, open } from "./browser";
-import { elsewhere, examples, gridmerge, mergeInto, program, source } from "./reports";
+import { elsewhere, examples, gridmerge, mergeInto, program, source, transforms } from "./reports";
 
 /** Robots 1 and 3 saw little in common, so that they are refused by themselves. */
 const pair = [examples[0], examples[2]];
-const truth: SE2 = JSON.parse(readFileSync(join(mergeInto("three", examples), "transforms.json"), "utf8"))
-  .components[0].members[2].transform;
+const truth = transforms(mergeInto("three", examples)).components[0].members[2].transform;
 
 async function pose(page: Page): Promise<SE2> {
   const value = async (id: string) => Number(await page.inputValue(`#hand-${id}`));
@@ -41,7 +40,7 @@ function near(a: SE2, b: SE2): boolean {
 
 test("a map that was left out is placed by hand, and the saved poses join it", async () => {
   const folder = mergeInto("pair", pair);
-  assert.equal(JSON.parse(readFileSync(join(folder, "transforms.json"), "utf8")).components.length, 0);
+  assert.equal(transforms(folder).components.length, 0);
   const tab = await open(folder);
   const { page } = tab;
   await takeThird(tab);
@@ -64,7 +63,7 @@ test("a map that was left out is placed by hand, and the saved poses join it", a
   const again = join(source, "build/web/reports/pair_placed");
   const { status, output } = gridmerge("merge", ...pair, "--init", file, "-o", again);
   assert.equal(status, 0, output);
-  const placed = JSON.parse(readFileSync(join(again, "transforms.json"), "utf8")).components[0].members[1].transform;
+  const placed = transforms(again).components[0].members[1].transform;
   assert.ok(near(placed, truth), `${JSON.stringify(placed)}, not ${JSON.stringify(truth)}`);
   rmSync(file);
 });

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
 import { test } from "node:test";
 import { load, open } from "./browser";
-import { eighteen, elsewhere, examples, large, mergeInto, six } from "./reports";
+import { eighteen, elsewhere, examples, large, mergeInto, reportData, six, transforms } from "./reports";
 
 const cases: [string, () => string[]][] = [
   ["two", () => examples.slice(0, 2)],
@@ -16,15 +15,14 @@ const cases: [string, () => string[]][] = [
 for (const [name, maps] of cases) {
   test(`a report of ${name} opens, with nothing amiss and nothing fetched`, async () => {
     const folder = mergeInto(name, maps());
-    const merged = JSON.parse(readFileSync(join(folder, "transforms.json"), "utf8"));
-    const members = merged.components[0].members as { source: string }[];
+    const { members } = transforms(folder).components[0];
     assert.ok(members.length >= 2);
     const tab = await open(folder);
     assert.deepEqual(await tab.page.locator(".layer[data-map] bdi").evaluateAll((names) => names.map((n) => (n as HTMLElement).title)),
       members.map(({ source }) => source));
     assert.equal(await tab.page.locator("#panel-transforms tr.pose").count(), members.length);
     assert.equal(await tab.page.locator("#panel-joins .edge").count() > 0, true);
-    assert.match((await tab.page.textContent("#summary"))!, new RegExp(`^${merged.maps?.length ?? "\\d+"} maps: \\d+ joined into`));
+    assert.match((await tab.page.textContent("#summary"))!, new RegExp(`^${reportData(folder).maps.length} maps: \\d+ joined into`));
     await tab.screenshot(name);
     await tab.close();
   });

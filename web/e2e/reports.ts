@@ -3,6 +3,7 @@ import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
 import type { Report } from "../src/report";
+import type { SE2 } from "../src/se2";
 
 export const program = process.env.GRIDMERGE!;
 export const source = process.env.GRIDMERGE_SOURCE!;
@@ -31,6 +32,11 @@ export function mergeInto(name: string, maps: string[], ...options: string[]): s
   const folder = join(work, "reports", name);
   must([0, 3], "merge", ...maps, "-o", folder, "--quiet", ...options);
   return folder;
+}
+
+/** The transforms.json of a folder. */
+export function transforms(folder: string): { components: { members: { source: string; transform: SE2 }[] }[] } {
+  return JSON.parse(readFileSync(join(folder, "transforms.json"), "utf8"));
 }
 
 /** What the page of a folder was given. */

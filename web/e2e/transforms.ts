@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
 import { test } from "node:test";
 import { lastCopied, open } from "./browser";
-import { examples, mergeInto } from "./reports";
+import { examples, mergeInto, transforms } from "./reports";
 
 test("transforms are copied to the bit", async () => {
   const folder = mergeInto("three", examples);
   const tab = await open(folder);
   const { page } = tab;
   await page.click("#tab-transforms");
-  const merged = JSON.parse(readFileSync(join(folder, "transforms.json"), "utf8"));
-  const expected = merged.components[0].members.map(
-    ({ source, transform }: { source: string; transform: object }) => ({ map: source, ...transform }));
+  const expected = transforms(folder).components[0].members.map(({ source, transform }) => ({ map: source, ...transform }));
   const all = page.locator("#panel-transforms > .buttons button");
   await all.nth(1).click();
   const copied = JSON.parse(await lastCopied(page));

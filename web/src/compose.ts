@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { type Rgb, disagreement, ink, mix, tint, white } from "./color";
 import { Cell, type Grid } from "./grid";
-import { type SE2, apply, compose, identity, inverse } from "./se2";
+import { type SE2, compose, identity, inverse } from "./se2";
 import { type Box, boxAround } from "./viewport";
 
 /** A map that lies in a scene. */
@@ -24,7 +24,7 @@ export interface Picture {
 
 /** The part of the scene that the picture covers. */
 export function extentOf(picture: Picture): Box {
-  const corners = picture.layers.flatMap((layer) => layer.grid.corners().map((p) => apply(layer.T_scene_map, p)));
+  const corners = picture.layers.flatMap((layer) => layer.grid.corners(layer.T_scene_map));
   return boxAround(picture.merged ? corners.concat(picture.merged.grid.corners()) : corners);
 }
 
@@ -79,13 +79,13 @@ function sample(grid: Grid, T_scene_map: SE2, square: Square, visit: (pixel: num
   const level = grid.levelFor(side);
   const { width, height, cells, resolution } = level;
   const T_grid_scene = inverse(compose(T_scene_map, grid.origin));
-  // Column and row of the map change by these from pixel to pixel.
-  const across = (Math.cos(T_grid_scene.theta) * side) / resolution;
-  const along = (Math.sin(T_grid_scene.theta) * side) / resolution;
-  const top = square.bottom + (pixels - 0.5) * side;
-  const left = square.left + 0.5 * side;
   const cos = Math.cos(T_grid_scene.theta);
   const sin = Math.sin(T_grid_scene.theta);
+  // Column and row of the map change by these from pixel to pixel.
+  const across = (cos * side) / resolution;
+  const along = (sin * side) / resolution;
+  const top = square.bottom + (pixels - 0.5) * side;
+  const left = square.left + 0.5 * side;
   const startColumn = (cos * left - sin * top + T_grid_scene.x) / resolution;
   const startRow = (sin * left + cos * top + T_grid_scene.y) / resolution;
   for (let j = 0; j < pixels; j++) {

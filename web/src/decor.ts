@@ -24,6 +24,16 @@ function label(context: CanvasRenderingContext2D, colors: DecorColors, text: str
   context.fillText(text, x, y);
 }
 
+/** The path as a line that stands out from whatever it is drawn on. */
+function strokeOnHalo(context: CanvasRenderingContext2D, colors: DecorColors, width: number, haloWidth: number): void {
+  context.lineWidth = haloWidth;
+  context.strokeStyle = colors.halo;
+  context.stroke();
+  context.lineWidth = width;
+  context.strokeStyle = colors.text;
+  context.stroke();
+}
+
 /** Lines at round metres, with their coordinates along the upper and left edges. Sizes are in CSS pixels. */
 export function drawGrid(context: CanvasRenderingContext2D, view: Viewport, colors: DecorColors): void {
   const step = roundStep(leastSpacing / view.scale);
@@ -61,7 +71,7 @@ export function drawGrid(context: CanvasRenderingContext2D, view: Viewport, colo
   context.restore();
 }
 
-/** The frame's origin: x red-free and y by length, so that colour says nothing that shape does not. */
+/** The frame's origin, its axes told by letters, not by colours. */
 export function drawAxes(context: CanvasRenderingContext2D, view: Viewport, colors: DecorColors): void {
   const origin = toScreen(view, { x: 0, y: 0 });
   context.save();
@@ -72,12 +82,7 @@ export function drawAxes(context: CanvasRenderingContext2D, view: Viewport, colo
     context.beginPath();
     context.moveTo(origin.x, origin.y);
     context.lineTo(origin.x + dx, origin.y + dy);
-    context.strokeStyle = colors.halo;
-    context.lineWidth = 5;
-    context.stroke();
-    context.strokeStyle = colors.text;
-    context.lineWidth = 2;
-    context.stroke();
+    strokeOnHalo(context, colors, 2, 5);
     label(context, colors, text, origin.x + dx * 1.3, origin.y + dy * 1.3);
   }
   context.restore();
@@ -90,16 +95,12 @@ export function drawScaleBar(context: CanvasRenderingContext2D, view: Viewport, 
   const right = view.width - 14;
   const bottom = view.height - 14;
   context.save();
-  for (const [style, width] of [[colors.halo, 6], [colors.text, 2]] as const) {
-    context.strokeStyle = style;
-    context.lineWidth = width;
-    context.beginPath();
-    context.moveTo(right - length, bottom - 7);
-    context.lineTo(right - length, bottom);
-    context.lineTo(right, bottom);
-    context.lineTo(right, bottom - 7);
-    context.stroke();
-  }
+  context.beginPath();
+  context.moveTo(right - length, bottom - 7);
+  context.lineTo(right - length, bottom);
+  context.lineTo(right, bottom);
+  context.lineTo(right, bottom - 7);
+  strokeOnHalo(context, colors, 2, 6);
   context.font = "12px system-ui, sans-serif";
   context.textAlign = "center";
   context.textBaseline = "bottom";
@@ -112,15 +113,11 @@ export function drawCrosshair(context: CanvasRenderingContext2D, view: Viewport,
   const x = Math.round(view.width / 2) + 0.5;
   const y = Math.round(view.height / 2) + 0.5;
   context.save();
-  for (const [style, width] of [[colors.halo, 4], [colors.text, 1.5]] as const) {
-    context.strokeStyle = style;
-    context.lineWidth = width;
-    context.beginPath();
-    context.moveTo(x - 9, y);
-    context.lineTo(x + 9, y);
-    context.moveTo(x, y - 9);
-    context.lineTo(x, y + 9);
-    context.stroke();
-  }
+  context.beginPath();
+  context.moveTo(x - 9, y);
+  context.lineTo(x + 9, y);
+  context.moveTo(x, y - 9);
+  context.lineTo(x, y + 9);
+  strokeOnHalo(context, colors, 1.5, 4);
   context.restore();
 }

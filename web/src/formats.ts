@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import { flat } from "./text";
-import { fixed } from "./numbers";
+import { degrees, fixed } from "./numbers";
 import type { SE2 } from "./se2";
+import { flat } from "./text";
 
 /** A map's pose, with the name that the map was merged under. */
 export interface NamedPose {
@@ -9,7 +9,7 @@ export interface NamedPose {
   transform: SE2;
 }
 
-/** Texts that hold no more than they say: names are quoted, or stripped to what a frame's name may hold. */
+// Texts that hold no more than they say: names are quoted, or stripped to what a frame's name may hold.
 
 export function asJson(frame: string, poses: NamedPose[]): string {
   const transforms = poses.map(({ name, transform }) => ({ map: name, ...plain(transform) }));
@@ -95,5 +95,5 @@ function plain({ x, y, theta }: SE2): SE2 {
 
 /** A pose as people read it. */
 export function describe({ x, y, theta }: SE2): string {
-  return `x ${fixed(x, 3)} m, y ${fixed(y, 3)} m, θ ${fixed((theta * 180) / Math.PI, 2)}°`;
+  return `x ${fixed(x, 3)} m, y ${fixed(y, 3)} m, θ ${fixed(degrees(theta), 2)}°`;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { PackedGrid } from "./report";
-import { type Point, type SE2, apply, inverse } from "./se2";
+import { type Point, type SE2, apply, compose, identity, inverse } from "./se2";
 
 /** What a map says of a cell. */
 export const Cell = { unknown: 0, free: 1, occupied: 2 } as const;
@@ -55,11 +55,12 @@ export class Grid {
     return level.cells[row * level.width + column];
   }
 
-  /** Its corners in the map's frame, counter-clockwise from the lower left. */
-  corners(): Point[] {
+  /** Its corners in the frame that `T_frame_map` takes the map's to, counter-clockwise from the lower left. */
+  corners(T_frame_map: SE2 = identity): Point[] {
+    const T = compose(T_frame_map, this.origin);
     const w = this.finest.width * this.finest.resolution;
     const h = this.finest.height * this.finest.resolution;
-    return [{ x: 0, y: 0 }, { x: w, y: 0 }, { x: w, y: h }, { x: 0, y: h }].map((p) => apply(this.origin, p));
+    return [{ x: 0, y: 0 }, { x: w, y: 0 }, { x: w, y: h }, { x: 0, y: h }].map((p) => apply(T, p));
   }
 
   /** Its middle in the map's frame. */

@@ -58,10 +58,7 @@ function stageButtons(stage: Stage, help: HTMLDialogElement): HTMLElement {
     button("Zoom in", "+", () => stage.zoom(1.5)),
     button("Zoom out", "−", () => stage.zoom(1 / 1.5)),
     button("Show all", "⤢", () => stage.fit()),
-    button("Metre grid", "#", () => {
-      stage.gridShown = !stage.gridShown;
-      stage.redraw();
-    }),
+    button("Metre grid", "#", () => stage.toggleGrid()),
     button("Keys", "?", () => help.showModal()));
 }
 

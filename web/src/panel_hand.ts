@@ -4,6 +4,7 @@ import { announce, copyButton, download } from "./clipboard";
 import { h, replace } from "./dom";
 import { refine } from "./engine";
 import { asInitialPoses, mergeCommand } from "./formats";
+import type { Grid } from "./grid";
 import { degrees, fixed, percent, probability, radians } from "./numbers";
 import type { Placed } from "./scene";
 import { Scorer } from "./score";
@@ -15,6 +16,8 @@ const fileName = "poses.tsv";
 /** How well the poses of maps that were not moved are taken to be known, if the merge does not say; and never better than the last. */
 const keptSd = { position: 0.1, theta: 0.01 };
 const leastSd = { position: 0.02, theta: 0.002 };
+/** Of those that were, in metres and degrees, unless the user knows better. */
+const handSd = { position: 0.3, degrees: 2 };
 
 interface PoseInput {
   element: HTMLInputElement;
@@ -32,8 +35,14 @@ export class HandPanel {
   private readonly scoreLine = h("p", { class: "score", id: "hand-score" });
   private readonly answer = h("p", { class: "answer", role: "status" });
   private readonly saving = h("div", { class: "saving" });
-  private readonly sure = h("input", { type: "number", id: "hand-sd", min: 0.01, step: 0.1, value: 0.3, "aria-label": "Standard deviation of the positions, in metres" });
-  private readonly sureAngle = h("input", { type: "number", id: "hand-sd-theta", min: 0.1, step: 0.5, value: 2, "aria-label": "Standard deviation of the directions, in degrees" });
+  private readonly sure = h("input", {
+    type: "number", id: "hand-sd", min: 0.01, step: 0.1, value: handSd.position,
+    "aria-label": "Standard deviation of the positions, in metres",
+  });
+  private readonly sureAngle = h("input", {
+    type: "number", id: "hand-sd-theta", min: 0.1, step: 0.5, value: handSd.degrees,
+    "aria-label": "Standard deviation of the directions, in degrees",
+  });
   private inputs: PoseInput[] = [];
   private toolsOf: number | null = null;
   private scorers = new Map<number, Scorer>();
@@ -65,9 +74,9 @@ export class HandPanel {
   /** Asks the engine to climb from where the map in hand lies. */
   async refine(): Promise<void> {
     const { state } = this;
-    const map = state.handled;
-    const pose = map === null ? null : state.poseOf(map);
-    if (map === null || !pose || this.isRefining) return;
+    const inHand = state.inHand();
+    if (!inHand || this.isRefining) return;
+    const { map, pose } = inHand;
     if (!state.report.live) {
       this.answer.textContent = "Only a running gridmerge can refine: open the folder with gridmerge view.";
       return;
@@ -172,34 +181,33 @@ export class HandPanel {
 
   private score(): void {
     this.scoring = 0;
-    const map = this.state.handled;
-    const grid = map === null ? null : this.state.grids[map];
-    const pose = map === null ? null : this.state.poseOf(map);
-    if (map === null || !grid || !pose) return;
+    const inHand = this.state.inHand();
+    if (!inHand) return;
+    const { map, grid, pose } = inHand;
     const others = this.others(map).flatMap((placed) => {
       const other = this.state.grids[placed.map];
       return other ? [{ grid: other, pose: placed.T_scene_map }] : [];
     });
-    const score = this.scorerOf(map).score(pose, others);
+    const score = this.scorerOf(map, grid).score(pose, others);
     this.scoreLine.textContent = score
       ? `Walls met ${percent(score.wallsMet)} · cells equal ${percent(score.agreement)} · overlap ${percent(score.overlap)}`
       : "Nothing in common with the other maps here.";
   }
 
-  private scorerOf(map: number): Scorer {
+  private scorerOf(map: number, grid: Grid): Scorer {
     let scorer = this.scorers.get(map);
-    if (!scorer) this.scorers.set(map, (scorer = new Scorer(this.state.grids[map]!)));
+    if (!scorer) this.scorers.set(map, (scorer = new Scorer(grid)));
     return scorer;
   }
 
   private updateSaving(): void {
     const moved = [...this.state.byHand().keys()];
+    if (this.saving.dataset.maps === moved.join(" ")) return;
+    this.saving.dataset.maps = moved.join(" ");
     if (moved.length === 0) {
       replace(this.saving);
       return;
     }
-    if (this.saving.dataset.maps === moved.join(" ") && this.saving.childElementCount > 0) return;
-    this.saving.dataset.maps = moved.join(" ");
     const names = this.state.report.maps.map((map) => map.name);
     const command = mergeCommand(names, fileName);
     replace(this.saving,
@@ -223,8 +231,8 @@ export class HandPanel {
   }
 
   private save(): void {
-    const sd = Math.max(0.001, this.sure.valueAsNumber || 0.3);
-    const sdTheta = radians(Math.max(0.01, this.sureAngle.valueAsNumber || 2));
+    const sd = Math.max(0.001, this.sure.valueAsNumber || handSd.position);
+    const sdTheta = radians(Math.max(0.01, this.sureAngle.valueAsNumber || handSd.degrees));
     const byHand = this.state.byHand();
     const text = asInitialPoses(this.state.placed().map(({ map, T_scene_map }) => ({
       name: this.state.report.maps[map].name,

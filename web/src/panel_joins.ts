@@ -75,7 +75,12 @@ export class JoinsPanel {
 
   private goBack(join: number): void {
     this.state.show(this.state.whole);
-    this.table.querySelector<HTMLElement>(`button[data-join="${join}"]`)?.focus();
+    this.focusRow(join, true);
+  }
+
+  /** The table has been made anew, and the focus is lost with the old one. */
+  private focusRow(join: number, scroll: boolean): void {
+    this.table.querySelector<HTMLElement>(`button[data-join="${join}"]`)?.focus({ preventScroll: !scroll });
   }
 
   private makeTable(): HTMLElement {
@@ -102,7 +107,7 @@ export class JoinsPanel {
       type: "button", class: "link", title: joinTitle(this.state, join), "aria-pressed": String(isChosen), "data-join": index,
       "aria-label": `Show ${joinTitle(this.state, join)}`, click: () => {
         this.choose(index);
-        this.table.querySelector<HTMLElement>(`button[data-join="${index}"]`)?.focus({ preventScroll: true });
+        this.focusRow(index, false);
       },
     }, badge(this.state, join.fixed), " – ", badge(this.state, join.moving));
     return h("tr", { class: isChosen ? "chosen" : "" },

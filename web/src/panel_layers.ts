@@ -4,6 +4,7 @@ import { type Rgb, disagreement, ink, white } from "./color";
 import { h, name, replace, swatch } from "./dom";
 import { Cell } from "./grid";
 import { fixed } from "./numbers";
+import type { Component } from "./report";
 import { apply, inverse } from "./se2";
 import type { Look, State } from "./state";
 import { count, flat } from "./text";
@@ -19,6 +20,8 @@ export class LayersPanel {
   private readonly showLeftOut: (map: number) => void;
   private readonly placeByHand: (map: number) => void;
   private readings = new Map<number, HTMLElement>();
+  private readonly boxes = new Map<HTMLInputElement, Look>();
+  private shownMaps = "";
 
   constructor(state: State, actions: { show(map: number): void; placeByHand(map: number): void }) {
     this.state = state;
@@ -53,8 +56,6 @@ export class LayersPanel {
     this.state.changed("looks");
   }
 
-  private shownMaps = "";
-
   private rebuild(): void {
     const { state } = this;
     const maps = state.placed().map(({ map }) => map);
@@ -62,14 +63,12 @@ export class LayersPanel {
     if (key === this.shownMaps) return;
     this.shownMaps = key;
     const { component } = state.scene;
-    const { agreeing, conflicting } = component === null ? { agreeing: 0, conflicting: 0 } : state.report.components[component];
-    const counts = `${count(agreeing, "cell")} that several maps know agree, ${conflicting} do not`;
     replace(this.ownRows,
       component === null ? null : this.ownRow("merged", "Merged map", state.merged, null, "m"),
       maps.length < 2 ? null : this.ownRow("agreement", "Agreement", state.agreement, h("span", { class: "legend" },
         legendItem(ink, "walls in two maps or more"), legendItem(white, "floor in two maps or more"),
         legendItem(disagreement, "they contradict each other"),
-        component === null ? null : h("div", { class: "soft" }, `${counts}.`)), "a"));
+        component === null ? null : agreementCounts(state.report.components[component])), "a"));
     this.readings = new Map();
     replace(this.mapRows, ...maps.map((map) => this.mapRow(map)));
     this.read();
@@ -94,11 +93,10 @@ export class LayersPanel {
         state.changed("colors");
       },
     });
-    const row = h("div", { class: "layer", "data-map": map },
+    return h("div", { class: "layer", "data-map": map },
       h("label", { class: "layer-name" }, this.checkbox(`layer-${map}`, look), mapLabel(state, map),
         map < 9 ? h("kbd", {}, String(map + 1)) : null),
       color, this.slider(mapName, look), reading);
-    return row;
   }
 
   private checkbox(id: string, look: Look): HTMLInputElement {
@@ -107,8 +105,6 @@ export class LayersPanel {
     this.boxes.set(box, look);
     return box;
   }
-
-  private readonly boxes = new Map<HTMLInputElement, Look>();
 
   private slider(label: string, look: Look): HTMLInputElement {
     const slider = h("input", {
@@ -164,6 +160,10 @@ export class LayersPanel {
       h("p", { class: "soft" }, "Could not be joined to another map with confidence."),
       h("ul", {}, ...items));
   }
+}
+
+function agreementCounts({ agreeing, conflicting }: Component): HTMLElement {
+  return h("div", { class: "soft" }, `${count(agreeing, "cell")} that several maps know agree, ${conflicting} do not.`);
 }
 
 function legendItem(color: Rgb, meaning: string): HTMLElement {

@@ -5,7 +5,7 @@ import { type DecorColors, drawAxes, drawCrosshair, drawGrid, drawScaleBar } fro
 import { h } from "./dom";
 import type { Grid } from "./grid";
 import { placeOf } from "./scene";
-import { type Point, apply } from "./se2";
+import type { Point, SE2 } from "./se2";
 import { Stamp, handleOf, outline } from "./stamp";
 import type { State } from "./state";
 import { Tiles } from "./tiles";
@@ -17,7 +17,7 @@ const paintBudget = 9; // milliseconds a frame
 export class Stage {
   readonly canvas: HTMLCanvasElement;
   view: Viewport = { width: 1, height: 1, center: { x: 0, y: 0 }, scale: 20 };
-  gridShown = true;
+  private gridShown = true;
   /** Keyboard users point with the middle of the canvas. */
   crosshair = false;
   private readonly state: State;
@@ -52,13 +52,8 @@ export class Stage {
 
   /** Shows all of the scene. */
   fit(): void {
-    this.touched = false;
-    const corners = this.state.placed().flatMap(({ map, T_scene_map }) => {
-      const grid = this.state.grids[map];
-      return grid ? grid.corners().map((p) => apply(T_scene_map, p)) : [];
-    });
-    const merged = this.mergedGrid();
-    const points = corners.length > 0 ? corners : merged ? merged.corners() : [];
+    const corners = this.state.placed().flatMap(({ map, T_scene_map }) => this.state.grids[map]?.corners(T_scene_map) ?? []);
+    const points = corners.length > 0 ? corners : this.mergedGrid()?.corners() ?? [];
     this.look(fit(boxAround(points), this.view.width, this.view.height));
     this.touched = false;
   }
@@ -69,6 +64,11 @@ export class Stage {
 
   zoom(factor: number, at: Point = { x: this.view.width / 2, y: this.view.height / 2 }): void {
     this.look(zoomed(this.view, factor, at));
+  }
+
+  toggleGrid(): void {
+    this.gridShown = !this.gridShown;
+    this.redraw();
   }
 
   /** The cursor at a pixel of the canvas; null: nowhere. */
@@ -199,8 +199,12 @@ export class Stage {
     context.closePath();
     context.stroke();
     context.setLineDash([]);
-    if (!inHand) return;
-    const handle = handleOf(view, grid, pose);
+    if (inHand) this.drawHandle(grid, pose, color);
+  }
+
+  private drawHandle(grid: Grid, pose: SE2, color: string): void {
+    const { context } = this;
+    const handle = handleOf(this.view, grid, pose);
     context.beginPath();
     context.moveTo(handle.from.x, handle.from.y);
     context.lineTo(handle.at.x, handle.at.y);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { radians } from "./numbers";
-import { type Point, type SE2, apply, moved } from "./se2";
+import { type Point, apply, moved } from "./se2";
 import type { Stage } from "./stage";
 import { handleOf, inside, outline } from "./stamp";
 import type { State } from "./state";
@@ -54,14 +54,13 @@ export class StageInput {
     this.pointers.set(event.pointerId, pixelOf(event));
     this.setCrosshair(false);
     this.grip = this.pointers.size === 1 ? this.gripAt(pixelOf(event), event.shiftKey) : "view";
-    this.stage.canvas.classList.toggle("grabbing", true);
+    this.stage.canvas.classList.add("grabbing");
   }
 
   private gripAt(pixel: Point, turning: boolean): Grip {
-    const { handled } = this.state;
-    const grid = handled === null ? null : this.state.grids[handled];
-    const pose = handled === null ? null : this.state.poseOf(handled);
-    if (!grid || !pose) return "view";
+    const inHand = this.state.inHand();
+    if (!inHand) return "view";
+    const { grid, pose } = inHand;
     const { view } = this.stage;
     const handle = handleOf(view, grid, pose).at;
     if (Math.hypot(handle.x - pixel.x, handle.y - pixel.y) < 20) return "turn";
@@ -92,9 +91,9 @@ export class StageInput {
       this.moveHandled(b.x - a.x, b.y - a.y, 0);
       return;
     }
-    const pivot = this.pivot();
-    if (!pivot) return;
-    const middle = toScreen(view, apply(pivot.pose, pivot.middle));
+    const inHand = this.state.inHand();
+    if (!inHand) return;
+    const middle = toScreen(view, apply(inHand.pose, inHand.grid.middle()));
     const angle = (p: Point) => Math.atan2(middle.y - p.y, p.x - middle.x);
     this.moveHandled(0, 0, angle(to) - angle(from));
   }
@@ -112,7 +111,7 @@ export class StageInput {
     this.pointers.delete(event.pointerId);
     // The finger that stays after a pinch moves the view, whatever it is on.
     this.grip = "view";
-    if (this.pointers.size === 0) this.stage.canvas.classList.toggle("grabbing", false);
+    if (this.pointers.size === 0) this.stage.canvas.classList.remove("grabbing");
   }
 
   private wheel(event: WheelEvent): void {
@@ -122,17 +121,10 @@ export class StageInput {
     this.stage.zoom(Math.exp(-amount / 400), pixelOf(event));
   }
 
-  private pivot(): { pose: SE2; middle: Point } | null {
-    const { handled } = this.state;
-    const grid = handled === null ? null : this.state.grids[handled];
-    const pose = handled === null ? null : this.state.poseOf(handled);
-    return grid && pose ? { pose, middle: grid.middle() } : null;
-  }
-
   /** Metres and radians, about the map's middle. */
   private moveHandled(dx: number, dy: number, turn: number): void {
-    const pivot = this.pivot();
-    if (pivot) this.state.put(this.state.handled!, moved(pivot.pose, dx, dy, turn, pivot.middle));
+    const inHand = this.state.inHand();
+    if (inHand) this.state.put(inHand.map, moved(inHand.pose, dx, dy, turn, inHand.grid.middle()));
   }
 
   private setCrosshair(shown: boolean): void {
@@ -145,9 +137,7 @@ export class StageInput {
 
   private key(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const done = this.handKey(event) || this.viewKey(event) || this.layerKey(event);
-    if (!done) return;
-    event.preventDefault();
+    if (this.handKey(event) || this.viewKey(event) || this.layerKey(event)) event.preventDefault();
   }
 
   /** With a map in hand the arrows move it, by a cell, or with Shift by ten. */
@@ -197,10 +187,8 @@ export class StageInput {
     else if (event.key === "+" || event.key === "=") stage.zoom(zoomStep);
     else if (event.key === "-") stage.zoom(1 / zoomStep);
     else if (event.key === "0") stage.fit();
-    else if (event.key.toLowerCase() === "g") {
-      stage.gridShown = !stage.gridShown;
-      stage.redraw();
-    } else return false;
+    else if (event.key.toLowerCase() === "g") stage.toggleGrid();
+    else return false;
     return true;
   }
 

@@ -56,7 +56,7 @@ function packed([red, green, blue]: Rgb, alpha: number): number {
 
 /** The map's rectangle on the screen, counter-clockwise from its lower left corner. */
 export function outline(view: Viewport, grid: Grid, T_scene_map: SE2): Point[] {
-  return grid.corners().map((p) => toScreen(view, apply(T_scene_map, p)));
+  return grid.corners(T_scene_map).map((p) => toScreen(view, p));
 }
 
 /** Where a map in hand is turned: above the middle of its upper edge. */

@@ -21,6 +21,13 @@ export interface MapLook extends Look {
  */
 export type Topic = "scene" | "looks" | "colors" | "spotlight" | "cursor" | "hand" | "grids";
 
+/** The map in hand, whose cells are there. */
+export interface InHand {
+  map: number;
+  grid: Grid;
+  pose: SE2;
+}
+
 /** All that the page knows and shows. Panels and the stage change it, and listen to what others change. */
 export class State {
   readonly report: Report;
@@ -86,12 +93,19 @@ export class State {
     const own = this.scene.placed.map(({ map, T_scene_map }) => ({ map, T_scene_map: byHand.get(map) ?? T_scene_map }));
     const isOwn = (map: number) => this.scene.placed.some((placed) => placed.map === map);
     const added = [...byHand].filter(([map]) => !isOwn(map)).map(([map, T_scene_map]) => ({ map, T_scene_map }));
-    const inHand = this.offered && !isOwn(this.handled!) ? [{ map: this.handled!, T_scene_map: this.offered }] : [];
-    return [...own, ...added, ...inHand];
+    const offered = this.offered ? [{ map: this.handled!, T_scene_map: this.offered }] : [];
+    return [...own, ...added, ...offered];
   }
 
   poseOf(map: number): SE2 | null {
     return this.placed().find((placed) => placed.map === map)?.T_scene_map ?? null;
+  }
+
+  inHand(): InHand | null {
+    const map = this.handled;
+    const grid = map === null ? null : this.grids[map];
+    const pose = map === null ? null : this.poseOf(map);
+    return map !== null && grid && pose ? { map, grid, pose } : null;
   }
 
   point(map: number | null): void {
