@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -56,6 +57,83 @@ OccupancyGrid crop_to_known(const OccupancyGrid& grid) {
     }
   }
   return cropped;
+}
+
+OccupancyGrid quarter_turned(const OccupancyGrid& grid, int quarters) {
+  const int turns = ((quarters % 4) + 4) % 4;
+  if (turns == 0) return grid;
+  const double width = grid.width * grid.resolution, height = grid.height * grid.resolution;
+  // The corner that becomes the lower-left one, in the grid's frame.
+  const Point2 corner = turns == 1   ? Point2{0.0, height}
+                        : turns == 2 ? Point2{width, height}
+                                     : Point2{width, 0.0};
+  const Point2 at = grid.origin * corner;
+  const double theta = normalize_angle(grid.origin.theta - 0.5 * std::numbers::pi * turns);
+  OccupancyGrid turned = turns == 2
+                             ? make_grid(grid.width, grid.height, grid.resolution, {at.x, at.y, theta})
+                             : make_grid(grid.height, grid.width, grid.resolution, {at.x, at.y, theta});
+  if (!grid.probability.empty()) turned.probability.resize(turned.cells.size());
+  for (int row = 0; row < turned.height; ++row) {
+    throw_if_cancelled();
+    for (int column = 0; column < turned.width; ++column) {
+      const std::size_t from = turns == 1   ? grid.index(row, grid.height - 1 - column)
+                               : turns == 2 ? grid.index(grid.width - 1 - column, grid.height - 1 - row)
+                                            : grid.index(grid.width - 1 - row, column);
+      const std::size_t to = turned.index(column, row);
+      turned.cells[to] = grid.cells[from];
+      if (!grid.probability.empty()) turned.probability[to] = grid.probability[from];
+    }
+  }
+  return turned;
+}
+
+OccupancyGrid without_painted(const OccupancyGrid& grid, double reach) {
+  constexpr int kLeastReach = 3;
+  const int cells = std::clamp(static_cast<int>(std::min(reach / grid.resolution, 250.0)), kLeastReach, 250);
+  // Cells to the nearest free one of the column, as far as it matters.
+  const std::size_t width = static_cast<std::size_t>(grid.width);
+  const auto far = static_cast<std::uint8_t>(cells + 1);
+  std::vector<std::uint8_t> to_free(grid.cells.size(), far);
+  const auto pass = [&](std::size_t row, const std::uint8_t* before) {
+    const Cell* ours = grid.cells.data() + row * width;
+    std::uint8_t* out = to_free.data() + row * width;
+    for (std::size_t x = 0; x < width; ++x) {  // vectorised
+      const std::uint8_t reached = static_cast<std::uint8_t>(std::min<int>(before[x] + 1, far));
+      out[x] = ours[x] == Cell::free ? std::uint8_t{0} : std::min(out[x], reached);
+    }
+  };
+  const std::vector<std::uint8_t> none(width, far);
+  for (int row = 0; row < grid.height; ++row) {
+    throw_if_cancelled();
+    pass(row, row == 0 ? none.data() : to_free.data() + (row - 1) * width);
+  }
+  for (int row = grid.height - 1; row >= 0; --row)
+    pass(row, row + 1 == grid.height ? none.data() : to_free.data() + (row + 1) * width);
+
+  std::vector<std::size_t> painted;
+  for (int row = 0; row < grid.height; ++row) {
+    throw_if_cancelled();
+    const std::uint8_t* line = to_free.data() + row * width;
+    int nearest_until = -1;  // up to here some cell of the window ahead is known to be near a free one
+    for (int column = 0; column < grid.width; ++column) {
+      if (grid.cells[row * width + column] != Cell::occupied || line[column] < far) continue;
+      const int first = std::max(0, column - cells), last = std::min(grid.width - 1, column + cells);
+      if (nearest_until >= first) continue;
+      bool is_near = false;
+      for (int x = last; x >= first && !is_near; --x) {
+        is_near = line[x] < far;
+        if (is_near) nearest_until = x;
+      }
+      if (!is_near) painted.push_back(row * width + column);
+    }
+  }
+  if (painted.empty()) return grid;
+  OccupancyGrid seen = grid;
+  for (const std::size_t cell : painted) {
+    seen.cells[cell] = Cell::unknown;
+    if (!seen.probability.empty()) seen.probability[cell] = std::numeric_limits<float>::quiet_NaN();
+  }
+  return seen;
 }
 
 OccupancyGrid downsample(const OccupancyGrid& grid, int factor) {

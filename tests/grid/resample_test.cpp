@@ -177,5 +177,58 @@ TEST(TransformGrid, FindsNothingUnderAFarCentre) {
   EXPECT_EQ(transform_grid(grid, {}, 1e12).cells, std::vector<Cell>{Cell::unknown});
 }
 
+RC_GTEST_PROP(QuarterTurned, KeepsEveryCellWhereItIsInTheMapFrame, ()) {
+  OccupancyGrid grid = *test::any_grid();
+  const int quarters = *rc::gen::inRange(-5, 6);
+  const OccupancyGrid turned = quarter_turned(grid, quarters);
+  RC_ASSERT(turned.cells.size() == grid.cells.size());
+  const SE2 T_grid_map = inverse(grid.origin);
+  for (int row = 0; row < turned.height; ++row) {
+    for (int column = 0; column < turned.width; ++column) {
+      const Point2 at = T_grid_map * turned.cell_center(column, row);
+      const int x = static_cast<int>(std::floor(at.x / grid.resolution));
+      const int y = static_cast<int>(std::floor(at.y / grid.resolution));
+      RC_ASSERT(grid.contains(x, y));
+      RC_ASSERT(grid.at(x, y) == turned.at(column, row));
+    }
+  }
+}
+
+TEST(QuarterTurned, FourQuartersAreNone) {
+  OccupancyGrid grid = make_grid(3, 2, 0.5, {1.0, -2.0, 0.3});
+  grid.at(2, 0) = Cell::occupied;
+  grid.at(0, 1) = Cell::free;
+  EXPECT_EQ(quarter_turned(grid, 4).cells, grid.cells);
+  const OccupancyGrid back = quarter_turned(quarter_turned(grid, 1), 3);
+  EXPECT_EQ(back.cells, grid.cells);
+  EXPECT_EQ(back.width, 3);
+  EXPECT_NEAR(back.origin.x, 1.0, 1e-12);
+  EXPECT_NEAR(back.origin.theta, 0.3, 1e-12);
+}
+
+RC_GTEST_PROP(WithoutPainted, ForgetsWhatNoFreeCellIsNear, (unsigned seed)) {
+  OccupancyGrid grid = make_grid(40, 30, 0.1, {}, Cell::occupied);
+  grid.probability.assign(grid.cells.size(), 1.0F);
+  for (int i = 0; i < 3; ++i) {  // a few free cells and unknown ones
+    grid.cells[(seed * 7919U + i * 104729U) % grid.cells.size()] = Cell::free;
+    grid.cells[(seed * 15485863U + i * 1299709U) % grid.cells.size()] = Cell::unknown;
+  }
+  const double reach = *rc::gen::inRange(1, 9) / 10.0;
+  const int cells = std::max(3, static_cast<int>(reach / grid.resolution));
+  const OccupancyGrid seen = without_painted(grid, reach);
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      bool is_near = false;
+      for (int y = std::max(0, row - cells); y <= std::min(grid.height - 1, row + cells); ++y)
+        for (int x = std::max(0, column - cells); x <= std::min(grid.width - 1, column + cells); ++x)
+          is_near = is_near || grid.at(x, y) == Cell::free;
+      const Cell expected =
+          grid.at(column, row) == Cell::occupied && !is_near ? Cell::unknown : grid.at(column, row);
+      RC_ASSERT(seen.at(column, row) == expected);
+      if (expected != grid.at(column, row)) RC_ASSERT(std::isnan(seen.probability[grid.index(column, row)]));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gridmerge

@@ -9,6 +9,15 @@ namespace gridmerge {
 /// coordinates in the map frame. A grid with no known cell becomes a single unknown cell. O(cells).
 OccupancyGrid crop_to_known(const OccupancyGrid& grid);
 
+/// The same map with its rows and columns turned by `quarters` quarters of a turn, counter-clockwise; the
+/// origin turns back, so points keep their coordinates in the map frame. Nothing is resampled. O(cells).
+OccupancyGrid quarter_turned(const OccupancyGrid& grid, int quarters);
+
+/// The grid without occupied cells that are farther than `reach` metres (and three cells) from every free
+/// one, along a row or a column: they become unknown. Such cells were never seen by a robot: somebody painted
+/// them. O(cells).
+OccupancyGrid without_painted(const OccupancyGrid& grid, double reach);
+
 /// The grid with cells `factor` times as large (factor >= 1): occupied where any of the factor x factor cells
 /// is, else free where any is, else unknown. Same origin. Probabilities are dropped. Throws
 /// std::invalid_argument when the factor is below 1. O(cells).
