@@ -1,143 +1,204 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Fits the verdict's model: a logistic regression from the features of a match to the probability that its best hypothesis
-is the true pose. Prints the model as a C++ header (src/match/verdict_model.hpp), or how well it does on other cases.
+"""Fits the verdict's model, and shows how well it does in domains that it has not seen.
 
-usage: calibration/fit.py FEATURES.tsv...                 the header
-       calibration/fit.py FEATURES.tsv... --check CHECK.tsv   counts, calibration error and reliability on CHECK
+usage: calibration/fit.py                 the model, as src/match/verdict_model.hpp has it
+       calibration/fit.py --folds         every domain left out in turn, as docs/verdict.md has it
+       calibration/fit.py --pack FOLDER   writes calibration/cases.tsv.gz from FOLDER/features (calibration/make_cases.py)
 
-FEATURES are tables of `gridmerge evaluate --features`. Needs nothing but Python; the same tables give the same digits.
+The model is a conditional logit: each hypothesis of a pair has odds exp(bias + weights . terms), "none of these" has 1, and
+the probability of a hypothesis is its share of the sum. Names and values of the terms come from the engine: the columns
+"term: ..." of `gridmerge evaluate --features`. Fitted by penalised maximum likelihood (projected Newton steps); a weight
+never falls below its least value, so that what speaks for a pose never counts against it. Every domain weighs the same, and
+in each of them true pairs as much as unrelated ones. Needs numpy; the same cases give the same digits.
 """
 
 import argparse
+import collections
 import csv
-import math
+import gzip
 import pathlib
+import sys
 
-RIDGE = 1.0  # on weights of features that are scaled to unit variance
+import numpy as np
 
-# What the model sees of the features: (name of the term, transform of a row, the same in C++). Logarithms, because shares
-# and counts act by their ratios; bounds, because beyond them a feature says how clean or large maps are, not whether they
-# belong together.
-TERMS = [
-    ("lead", lambda f: min(f["lead"], 100.0) / 10.0, "std::min(f.lead, 100.0) / 10.0"),
-    ("wall lines", lambda f: math.log(clamp(f["wall_lines"], 1.0, 8.0)), "std::log(std::clamp(f.wall_lines, 1.0, 8.0))"),
-    ("walls met locally", lambda f: -math.log(max(1.0 - f["walls_met_locally"], 0.05)),
-     "-std::log(std::max(1.0 - f.walls_met_locally, 0.05))"),
-    ("walls met rigidly", lambda f: -math.log(max(1.0 - f["walls_met"], 0.05)), "-std::log(std::max(1.0 - f.walls_met, 0.05))"),
-]
-FEATURES = ["lead", "wall_lines", "walls_met_locally", "walls_met"]
+HERE = pathlib.Path(__file__).resolve().parent
+CASES = HERE / "cases.tsv.gz"
+TERM = "term: "
+RIDGE = 1.0  # on weights of terms that are scaled to unit variance
+LEAST_WEIGHT = {"tells apart": 1.0}  # corners fit corners, though few cases show it
+CASES_A_SIDE = 60.0  # what the true pairs of a domain weigh together, and the unrelated ones
+FEWEST_CASES = 30  # a side with fewer cases weighs less
+KEPT = 4  # hypotheses of a case that are packed, the most probable ones; right ones are kept always
+THRESHOLDS = (0.8, 0.9, 0.95, 0.98)
+REAL = {"aces": "laser", "belgioioso": "laser", "csail": "laser", "edmonton": "laser", "fhw": "laser", "freiburg-101": "laser",
+        "infinite-corridor": "laser", "intel": "laser", "seattle": "laser", "E5": "hand-held", "HIH": "hand-held"}
 
-
-def clamp(value: float, low: float, high: float) -> float:
-    return min(max(value, low), high)
+Case = collections.namedtuple("Case", "domain other negative tier terms right")
 
 
-def read_cases(paths: list[pathlib.Path]) -> list[tuple[list[float], bool, dict[str, str]]]:
+def read_cases(path: pathlib.Path) -> tuple[list[str], list[Case]]:
     cases = []
-    for path in paths:
+    with gzip.open(path, "rt", newline="") as file:
+        rows = csv.reader(file, delimiter="\t")
+        names = [name.removeprefix(TERM) for name in next(rows)[5:]]
+        key, part = None, []
+        for row in [*rows, None]:
+            if row is None or row[0] != key:
+                if part:
+                    _, domain, other, tier, _ = part[0][:5]
+                    cases.append(Case(domain, other, part[0][4] == "negative", tier,
+                                      np.array([[float(v) for v in one[5:]] for one in part]),
+                                      np.array([one[4] == "right" for one in part])))
+                part = []
+            if row is not None:
+                key = row[0]
+                part.append(row)
+    return names, cases
+
+
+def pack(folder: pathlib.Path) -> None:
+    """One table of all domains' features, with what the fit needs of them."""
+    names, packed, number = None, [], 0
+    for path in sorted((folder / "features").glob("*.tsv")):
+        domain = path.stem
         with path.open(newline="") as file:
+            by_pair = collections.OrderedDict()
             for row in csv.DictReader(file, delimiter="\t"):
-                features = {name: float(row[name]) for name in FEATURES}
-                cases.append(([transform(features) for _, transform, _ in TERMS], row["truth"] == "right", row))
-    return cases
+                by_pair.setdefault((row["fixed"], row["moving"]), []).append(row)
+        for hypotheses in by_pair.values():
+            names = names or [name for name in hypotheses[0] if name.startswith(TERM)]
+            number += 1
+            for i, row in enumerate(hypotheses):
+                if i < KEPT or row["truth"] == "right":
+                    packed.append([str(number), domain, row.get("other") or domain, row["tier"] or "-", row["truth"],
+                                   *(f"{float(row[name]):.4g}" for name in names)])
+    with gzip.GzipFile(CASES, "wb", mtime=0) as file:
+        lines = ["\t".join(["case", "domain", "other", "tier", "truth", *names]), *("\t".join(row) for row in packed)]
+        file.write(("\n".join(lines) + "\n").encode())
+    print(f"{number} cases, {len(packed)} hypotheses: {CASES}")
 
 
-def solve(matrix: list[list[float]], right: list[float]) -> list[float]:
-    """By Gauss' elimination; the matrix is positive definite and small."""
-    size = len(right)
-    rows = [row[:] + [value] for row, value in zip(matrix, right)]
-    for i in range(size):
-        pivot = max(range(i, size), key=lambda r: abs(rows[r][i]))
-        rows[i], rows[pivot] = rows[pivot], rows[i]
-        for r in range(i + 1, size):
-            factor = rows[r][i] / rows[i][i]
-            for c in range(i, size + 1):
-                rows[r][c] -= factor * rows[i][c]
-    result = [0.0] * size
-    for i in reversed(range(size)):
-        result[i] = (rows[i][size] - sum(rows[i][c] * result[c] for c in range(i + 1, size))) / rows[i][i]
-    return result
+def fit(names: list[str], cases: list[Case]) -> tuple[float, np.ndarray]:
+    terms = np.concatenate([case.terms for case in cases])
+    owner = np.repeat(np.arange(len(cases)), [len(case.terms) for case in cases])
+    right = np.concatenate([case.right for case in cases])
+    sides = collections.Counter((case.domain, case.negative) for case in cases)
+    weight = np.array([CASES_A_SIDE / max(sides[case.domain, case.negative], FEWEST_CASES) for case in cases])
+    scale = terms.std(axis=0) + 1e-12
+    x = np.column_stack([np.ones(len(terms)), terms / scale])
+    least = np.array([-np.inf, *(LEAST_WEIGHT.get(name, 0.0) * s for name, s in zip(names, scale))])
+    ridge = np.array([0.0, *([RIDGE] * len(names))])
+    has_right = np.bincount(owner, right, len(cases)) > 0
 
+    def loss(w):
+        """What is minimised, its gradient, and the hypotheses' probabilities, at all and among the right ones."""
+        odds = np.exp(np.clip(x @ w, -200.0, 60.0))
+        total = 1.0 + np.bincount(owner, odds, len(cases))
+        share = odds / total[owner]
+        right_sum = np.bincount(owner, odds * right, len(cases))
+        value = -(weight * np.log(np.where(has_right, right_sum, 1.0) / total)).sum() + 0.5 * (ridge * w * w).sum()
+        of_right = np.where(has_right[owner], odds * right / np.where(right_sum > 0, right_sum, 1.0)[owner], 0.0)
+        return value, x.T @ (weight[owner] * (share - of_right)) + ridge * w, share
 
-def sigmoid(logit: float) -> float:
-    return 1.0 / (1.0 + math.exp(-max(-700.0, min(700.0, logit))))
-
-
-def fit(cases) -> tuple[float, list[float]]:
-    """Bias and weights: penalised maximum likelihood by Newton's method on standardised terms."""
-    count, size = len(cases), len(TERMS)
-    mean = [sum(case[0][i] for case in cases) / count for i in range(size)]
-    deviation = [math.sqrt(sum((case[0][i] - mean[i]) ** 2 for case in cases) / count) or 1.0 for i in range(size)]
-    inputs = [[1.0] + [(case[0][i] - mean[i]) / deviation[i] for i in range(size)] for case in cases]
-    weights = [0.0] * (size + 1)
-    for _ in range(50):
-        gradient = [-RIDGE * w for w in weights]
-        gradient[0] = 0.0
-        hessian = [[RIDGE if r == c and r > 0 else 0.0 for c in range(size + 1)] for r in range(size + 1)]
-        for x, (_, right, _) in zip(inputs, cases):
-            p = sigmoid(sum(w * v for w, v in zip(weights, x)))
-            for r in range(size + 1):
-                gradient[r] += ((1.0 if right else 0.0) - p) * x[r]
-                for c in range(size + 1):
-                    hessian[r][c] += p * (1.0 - p) * x[r] * x[c]
-        step = solve(hessian, gradient)
-        weights = [w + s for w, s in zip(weights, step)]
-        if max(abs(s) for s in step) < 1e-10:
+    w = np.maximum(np.array([-5.0, *([0.3] * len(names))]), least)
+    value, gradient, share = loss(w)
+    for _ in range(200):
+        # Of the convex part of the second derivative: an ascent direction everywhere.
+        wx = x * (weight[owner] * share)[:, None]
+        means = np.zeros((len(cases), x.shape[1]))
+        np.add.at(means, owner, x * share[:, None])
+        hessian = x.T @ wx - (means * weight[:, None]).T @ means + np.diag(ridge + 1e-9)
+        free = (w > least) | (gradient < 0.0)
+        step = np.zeros_like(w)
+        step[free] = -np.linalg.solve(hessian[np.ix_(free, free)], gradient[free])
+        length = 1.0
+        while True:
+            tried = np.maximum(w + length * step, least)
+            tried_value, tried_gradient, tried_share = loss(tried)
+            if tried_value <= value or length < 1e-8:
+                break
+            length /= 2.0
+        moved = np.abs(tried - w).max()
+        w, value, gradient, share = tried, tried_value, tried_gradient, tried_share
+        if moved < 1e-9:
             break
-    scaled = [w / d for w, d in zip(weights[1:], deviation)]
-    return weights[0] - sum(w * m for w, m in zip(scaled, mean)), scaled
+    return float(w[0]), w[1:] / scale
 
 
-def probability(model: tuple[float, list[float]], terms: list[float], lead: float, wall_lines: float) -> float:
-    """As probability_of() in verdict.cpp, which says why."""
-    fits = sigmoid(model[0] + sum(w * t for w, t in zip(model[1], terms)))
-    return fits * sigmoid(lead) * sigmoid(3.0 * (wall_lines - 3.5))
+def judge(model: tuple[float, np.ndarray], cases: list[Case]) -> list[tuple[float, str]]:
+    """The probability of each case's best hypothesis, and whether it is right, wrong or of an unrelated pair."""
+    judged = []
+    for case in cases:
+        odds = np.exp(np.clip(model[0] + case.terms @ model[1], -200.0, 60.0))
+        best = int(odds.argmax())
+        truth = "negative" if case.negative else "right" if case.right[best] else "wrong"
+        judged.append((float(odds[best] / (1.0 + odds.sum())), truth))
+    return judged
 
 
-def header(model: tuple[float, list[float]]) -> str:
-    bias, weights = model
-    lines = ["// SPDX-License-Identifier: Apache-2.0",
-             "// Made by calibration/fit.py from calibration/fit.tsv; not to be changed by hand.",
-             "#pragma once", "", "#include <algorithm>", "#include <cmath>", "",
-             '#include "gridmerge/match/verdict.hpp"', "", "namespace gridmerge {", "",
-             "/// The logit of the probability that a best hypothesis with these features is the true pose.",
-             "inline double verdict_logit(const VerdictFeatures& f) {", f"  double logit = {bias:.4f};"]
-    lines += [f"  logit += {weight:.4f} * {code};" for weight, (_, _, code) in zip(weights, TERMS)]
-    return "\n".join(lines + ["  return logit;", "}", "", "}  // namespace gridmerge"]) + "\n"
+def calibration_error(judged: list[tuple[float, str]]) -> float:
+    """Expected calibration error in ten bins."""
+    bins = collections.defaultdict(list)
+    for p, truth in judged:
+        bins[min(9, int(10 * p))].append(p - (truth == "right"))
+    return sum(abs(sum(part)) for part in bins.values()) / max(1, len(judged))
 
 
-def check(model: tuple[float, list[float]], cases) -> str:
-    judged = [(probability(model, terms, float(row["lead"]), float(row["wall_lines"])), right, row["truth"]) for terms, right, row in cases]
-    text = f"{'from':>8} {'right':>7} {'wrong':>7} {'negative':>9}   accepted\n"
-    for threshold in (0.5, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 0.98, 0.99, 0.995, 0.999):
-        accepted = [truth for p, _, truth in judged if p >= threshold]
-        text += f"{threshold:>8} {accepted.count('right'):>7} {accepted.count('wrong'):>7} {accepted.count('negative'):>9}\n"
-    totals = [truth for _, _, truth in judged]
-    text += f"{'of':>8} {totals.count('right'):>7} {totals.count('wrong'):>7} {totals.count('negative'):>9}\n\n"
-    text += f"{'probability':>14} {'cases':>6} {'mean':>7} {'right':>7}\n"
-    error = 0.0
-    for low in range(10):
-        inside = [(p, right) for p, right, _ in judged if low / 10 <= p < (low + 1) / 10 or (low == 9 and p == 1.0)]
-        if not inside:
-            continue
-        mean = sum(p for p, _ in inside) / len(inside)
-        share = sum(right for _, right in inside) / len(inside)
-        error += abs(mean - share) * len(inside) / len(judged)
-        text += f"{low / 10:>7.1f} - {(low + 1) / 10:.1f} {len(inside):>6} {mean:>7.3f} {share:>7.3f}\n"
-    return text + f"expected calibration error {error:.4f} over {len(judged)} cases\n"
+def count(judged, truth, threshold=-1.0) -> int:
+    return sum(t == truth and p >= threshold for p, t in judged)
+
+
+def row(name: str, judged) -> str:
+    counts = [f"{count(judged, 'wrong', t)} / {count(judged, 'negative', t)} / {count(judged, 'right', t)}" for t in THRESHOLDS]
+    pairs = count(judged, "right") + count(judged, "wrong")
+    return (f"| {name} | {pairs} | {count(judged, 'right')} | {count(judged, 'negative')} | " + " | ".join(counts) +
+            f" | {calibration_error(judged):.3f} |")
+
+
+def folds(names: list[str], cases: list[Case]) -> None:
+    print("| left out | pairs | best right | unrelated | " +
+          " | ".join(f"from {t}: wrong / unrelated / right" for t in THRESHOLDS) + " | calibration error |")
+    print("|" + " --- |" * (5 + len(THRESHOLDS)))
+    everything, by_group = [], collections.defaultdict(list)
+    groups = {domain: REAL.get(domain, domain) for domain in sorted({case.domain for case in cases})}
+    for domain in sorted(groups, key=lambda d: (groups[d] == d, groups[d], d)):
+        seen = [case for case in cases if domain not in (case.domain, case.other)]
+        judged = judge(fit(names, seen), [case for case in cases if case.domain == domain])
+        everything += judged
+        by_group[groups[domain]] += judged
+        print(row(domain, judged))
+    for group in ("laser", "hand-held"):
+        print(row(f"*all {group} folds*", by_group[group]))
+    print(row("*all folds*", everything))
+    for kind in ("laser", "hand-held"):
+        seen = [case for case in cases if kind not in (REAL.get(case.domain), REAL.get(case.other))]
+        print(row(f"*all {kind} maps at once*", judge(fit(names, seen), [c for c in cases if REAL.get(c.domain) == kind])))
+    seen = [case for case in cases if case.domain not in REAL]
+    print(row("*all real maps at once*", judge(fit(names, seen), [case for case in cases if case.domain in REAL])))
+
+
+def header(names: list[str], model: tuple[float, np.ndarray]) -> str:
+    lines = ["// SPDX-License-Identifier: Apache-2.0", "// Made by calibration/fit.py; not to be changed by hand.", "#pragma once", "",
+             "#include <array>", "", "namespace gridmerge {", "", "/// A term of verdict_terms(), and what it weighs.",
+             "struct VerdictWeight {", "  const char* term;", "  double weight;", "};", "",
+             f"inline constexpr double kVerdictBias = {model[0]:.3f};", "",
+             "/// In the order of verdict_terms().", "inline constexpr std::array kVerdictWeights{"]
+    lines += [f'    VerdictWeight{{"{name}", {weight:.3f}}},' for name, weight in zip(names, model[1])]
+    return "\n".join([*lines, "};", "", "}  // namespace gridmerge"]) + "\n"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("features", type=pathlib.Path, nargs="+")
-    parser.add_argument("--check", type=pathlib.Path, nargs="+")
+    parser.add_argument("--folds", action="store_true")
+    parser.add_argument("--pack", type=pathlib.Path, metavar="FOLDER")
     arguments = parser.parse_args()
-    model = fit(read_cases(arguments.features))
-    if arguments.check:
-        print(check(model, read_cases(arguments.check)), end="")
-    else:
-        print(header(model), end="")
+    if arguments.pack:
+        return pack(arguments.pack)
+    names, cases = read_cases(CASES)
+    if arguments.folds:
+        return folds(names, cases)
+    sys.stdout.write(header(names, fit(names, cases)))
 
 
 if __name__ == "__main__":

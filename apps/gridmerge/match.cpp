@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -47,6 +48,11 @@ std::string describe_verdict(const MatchResult& result, const SearchOptions& sea
     case Reason::nothing_to_compare:
       return "refused: there is too little in the maps to compare";
     case Reason::ambiguous:
+      if (slides(result.hypotheses.front().figures))
+        return refused(
+            fmt::format("the maps are free to slide along {:.0f} degrees",
+                        180.0 / std::numbers::pi * result.hypotheses.front().figures.free_direction)
+                .c_str());
       return refused("two ways to lay the maps explain them nearly equally well");
     case Reason::contradiction:
       return refused("the maps disagree where both know the same places");

@@ -31,6 +31,7 @@ struct MergeCommandOptions {
   std::string output;
   double resolution = 0.0;
   double output_resolution = 0.0;
+  double max_false_joins = MergeOptions{}.max_false_joins;
   SearchOptions search;
   KnownPoseOptions known;
 };
@@ -74,6 +75,7 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
     MergeOptions engine;
     engine.match = match_options(options.common, options.search);
     engine.resolution = options.output_resolution;
+    engine.max_false_joins = options.max_false_joins;
     engine.progress = progress;
     return merge(maps, engine, known_poses);
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one
@@ -104,6 +106,8 @@ std::string describe(const std::vector<std::string>& names, const MergeResult& r
                      describe_pose(member.T_component_map));
     }
   }
+  if (result.expected_false_joins && !result.components.empty())
+    fmt::format_to(out, "of these joins, {:.3f} are expected to be false\n", *result.expected_false_joins);
   for (std::size_t i = 0; i < result.left_out.size(); ++i) {
     fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[result.left_out[i]]),
                    explain_left_out(result.left_out_reasons[i]));
@@ -174,6 +178,14 @@ void add_merge(CLI::App& app, Action& action) {
   add_known_pose_options(*command, options->known);
   add_search_options(*command, options->search);
   add_strategy_option(*command, options->search);
+  CLI::Option* budget =
+      command
+          ->add_option("--max-false-joins", options->max_false_joins,
+                       "How many joins of the whole merge may be expected to be false; those that are least\n"
+                       "sure are not made. It holds beside --accept, which is asked of each join")
+          ->type_name("NUMBER")
+          ->check(CLI::Range(0.0, 1e6))
+          ->capture_default_str();
   add_trace_option(*command, options->search);
   add_resolution_option(*command, options->resolution);
   add_common_options(*command, options->common);
@@ -184,7 +196,9 @@ void add_merge(CLI::App& app, Action& action) {
       "others is used (rescued), a strong one that contradicts them is not (rejected).\n\n"
       "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged");
-  command->callback([options, &action] {
+  command->callback([options, budget, &action] {
+    if (budget->count() > 0 && options->search.up_the_tree())
+      throw CLI::ValidationError("--max-false-joins", "needs --strategy joint");
     const bool knows_poses = !options->known.init.empty() || !options->known.fix.empty();
     if (knows_poses && options->search.up_the_tree())
       throw CLI::ValidationError(options->known.init.empty() ? "--fix" : "--init", "needs --strategy joint");

@@ -117,7 +117,7 @@ def evaluate(
     *,
     strategy: Strategy = "joint",
     threads: int = 0,
-    accept: float = 0.8,
+    accept: float = _core.DEFAULT_ACCEPT,
     progress: Progress | None = None,
 ) -> Evaluation:
     """Matches and merges maps whose truth is known, and holds the answers against it.

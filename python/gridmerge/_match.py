@@ -68,7 +68,7 @@ def match(
     moving: MapLike,
     *,
     threads: int = 0,
-    accept: float = 0.8,
+    accept: float = _core.DEFAULT_ACCEPT,
     max_hypotheses: int = 10,
     progress: Progress | None = None,
 ) -> MatchResult:

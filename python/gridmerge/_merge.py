@@ -98,6 +98,8 @@ class MergeResult:
     """The inputs."""
     names: tuple[str, ...]
     """Of the inputs."""
+    expected_false_joins: float | None
+    """How many of all joins are expected to be false. None for the strategy "tree", which does not know."""
     _core: _core.Merged = field(repr=False, compare=False)
     _more_inputs: tuple[bytes, ...] = field(repr=False, compare=False)
 
@@ -135,7 +137,8 @@ def merge(
     init: InitialPoses | None = None,
     fix: MapKey | Iterable[MapKey] | None = None,
     threads: int = 0,
-    accept: float = 0.8,
+    accept: float = _core.DEFAULT_ACCEPT,
+    max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
     output_resolution: float | None = None,
     progress: Progress | None = None,
 ) -> MergeResult:
@@ -151,6 +154,8 @@ def merge(
             is in this map's frame, or in that of `init`.
         threads: 0 = one a core. The result does not depend on it.
         accept: maps are joined from this probability on.
+        max_false_joins: so many joins of the whole merge may be expected to be false; those that are least sure are not
+            made. It holds beside `accept`. "tree" does not use it.
         output_resolution: of the merged maps [m]; None = the finest of the maps'.
         progress: called now and then, in the calling thread, with the share of the pairs that are matched.
 
@@ -170,6 +175,7 @@ def merge(
         to_known_poses(NamedMaps(called, grids), init, fix),
         _arguments.threads(threads),
         _arguments.share("accept", accept),
+        _arguments.at_least_0("max_false_joins", max_false_joins),
         to_output_resolution(output_resolution),
         up_the_tree,
         _arguments.progress(progress),
@@ -214,6 +220,7 @@ def to_merge_result(
         ),
         maps=tuple(grids),
         names=tuple(names),
+        expected_false_joins=merged.expected_false_joins,
         _core=merged,
         _more_inputs=more_inputs,
     )

@@ -24,11 +24,17 @@ class Merger:
     """
 
     def __init__(
-        self, *, threads: int = 0, accept: float = 0.8, output_resolution: float | None = None
+        self,
+        *,
+        threads: int = 0,
+        accept: float = _core.DEFAULT_ACCEPT,
+        max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
+        output_resolution: float | None = None,
     ) -> None:
         self._core = _core.Merger(
             _arguments.threads(threads),
             _arguments.share("accept", accept),
+            _arguments.at_least_0("max_false_joins", max_false_joins),
             to_output_resolution(output_resolution),
         )
         self._maps: dict[int, tuple[OccupancyGrid, str]] = {}

@@ -2,6 +2,7 @@
 #include "gridmerge/match/match.hpp"
 
 #include "bindings.hpp"
+#include "gridmerge/merge/merge.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
@@ -23,6 +24,8 @@ MatchResult match_maps(const Map& fixed, const Map& moving, int threads, double 
 }  // namespace
 
 void bind_match(nb::module_& module) {
+  module.attr("DEFAULT_ACCEPT") = MatchOptions{}.accept_probability;
+  module.attr("DEFAULT_MAX_FALSE_JOINS") = MergeOptions{}.max_false_joins;
   nb::class_<Hypothesis>(module, "Hypothesis")
       .def_prop_ro("transform", [](const Hypothesis& it) { return to_pose(it.T_fixed_moving); })
       .def_ro("score", &Hypothesis::score)

@@ -36,13 +36,15 @@ MergeResult merge_grids(const std::vector<OccupancyGrid>& grids,
 }
 
 Merged merge_maps(std::vector<Map> maps, const std::vector<std::optional<Known>>& known, int threads,
-                  double accept, double output_resolution, bool up_the_tree, const nb::object& progress) {
+                  double accept, double max_false_joins, double output_resolution, bool up_the_tree,
+                  const nb::object& progress) {
   std::vector<std::optional<KnownPose>> known_poses;
   known_poses.reserve(known.size());
   for (const std::optional<Known>& one : known) known_poses.push_back(to_known_pose(one));
   MergeOptions options;
   options.match.threads = threads;
   options.match.accept_probability = accept;
+  options.max_false_joins = max_false_joins;
   options.resolution = output_resolution;
   MergeResult result = compute_in_worker(progress, [&](const Report& report) {
     options.progress = [&report](std::size_t done, std::size_t total) {
@@ -110,6 +112,8 @@ void bind_results(nb::module_& module) {
           [](const Merged& merged, std::size_t i) { return merged.result->components.at(i).in_world_frame; },
           nb::arg("component"))
       .def_prop_ro("joins", [](const Merged& merged) { return merged.result->joins; })
+      .def_prop_ro("expected_false_joins",
+                   [](const Merged& merged) { return merged.result->expected_false_joins; })
       .def_prop_ro("left_out",
                    [](const Merged& merged) {
                      std::vector<std::tuple<std::size_t, std::string, std::string>> left_out;
@@ -130,7 +134,8 @@ void bind_merge(nb::module_& module) {
   module.def(
       "validate_known_pose", [](const Known& known) { validate(*to_known_pose(known)); }, nb::arg("known"));
   module.def("merge", &merge_maps, nb::arg("maps"), nb::arg("known"), nb::arg("threads"), nb::arg("accept"),
-             nb::arg("output_resolution"), nb::arg("up_the_tree"), nb::arg("progress").none());
+             nb::arg("max_false_joins"), nb::arg("output_resolution"), nb::arg("up_the_tree"),
+             nb::arg("progress").none());
   module.def(
       "map_colour",
       [](std::size_t map) {

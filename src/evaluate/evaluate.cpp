@@ -38,6 +38,9 @@ class Evaluator {
     outcome.tolerance = pair.tolerance;
     if (!result.hypotheses.empty()) {
       outcome.error = rms_displacement(moving->moments, result.T_fixed_moving, pair.T_fixed_moving);
+      for (const Hypothesis& hypothesis : result.hypotheses)
+        outcome.errors.push_back(
+            rms_displacement(moving->moments, hypothesis.T_fixed_moving, pair.T_fixed_moving));
     }
     return outcome;
   }
@@ -86,7 +89,7 @@ class Evaluator {
     outcome.probability = result.probability;
     outcome.seconds = result.seconds;
     outcome.reason = result.reason;
-    outcome.features = result.features;
+    outcome.hypotheses = result.hypotheses;
     return outcome;
   }
 

@@ -114,20 +114,26 @@ std::string case_table(const Evaluation& evaluation) {
 }
 
 std::string features_table(const Evaluation& evaluation) {
-  std::string text =
-      "fixed\tmoving\ttruth\ttier\tprobability\treason\tlead\tacceptance_index\twall_lines\tscore\t"
-      "nats_per_wall\toverlap\tcommon_area\tspread\tsigma\toutliers\twalls_met\twalls_met_locally\n";
+  std::string text = "fixed\tmoving\ttier\thypothesis\ttruth\terror\tx\ty\ttheta";
+  for (const PoseFigure& figure : pose_figures()) text += fmt::format("\t{}", figure.name);
+  for (const VerdictTerm& term : verdict_terms()) text += fmt::format("\tterm: {}", term.name);
+  text += '\n';
   for (const MatchOutcome& match : evaluation.matches) {
-    if (match.reason == Reason::nothing_to_compare) continue;
-    const char* truth = match.negative() ? "negative" : match.correct() ? "right" : "wrong";
-    const VerdictFeatures& f = match.features;
-    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}", match.fixed, match.moving, truth,
-                   match.tier, match.probability, name_of(match.reason));
-    for (const double value :
-         {f.lead, f.acceptance_index, f.wall_lines, f.score, f.nats_per_wall, f.overlap, f.common_area,
-          f.spread, f.sigma, f.outliers, f.walls_met, f.walls_met_locally})
-      fmt::format_to(std::back_inserter(text), "\t{}", value);
-    text += '\n';
+    for (std::size_t i = 0; i < match.hypotheses.size(); ++i) {
+      const Hypothesis& hypothesis = match.hypotheses[i];
+      const char* truth = match.negative()                      ? "negative"
+                          : match.errors[i] <= *match.tolerance ? "right"
+                                                                : "wrong";
+      const SE2& T = hypothesis.T_fixed_moving;
+      fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}", match.fixed,
+                     match.moving, match.tier, i + 1, truth, match.negative() ? -1.0 : match.errors[i], T.x,
+                     T.y, T.theta);
+      for (const PoseFigure& figure : pose_figures())
+        fmt::format_to(std::back_inserter(text), "\t{}", hypothesis.figures.*figure.value);
+      for (const VerdictTerm& term : verdict_terms())
+        fmt::format_to(std::back_inserter(text), "\t{}", term(hypothesis.figures));
+      text += '\n';
+    }
   }
   return text;
 }

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/match/walls_met.hpp"
 #include "gridmerge/similarity/wall_lines.hpp"
 
@@ -31,6 +32,10 @@ double longer_side(const OccupancyGrid& grid) {
   return std::max(grid.width, grid.height) * grid.resolution;
 }
 
+double known_area(const PreparedMap& map) {
+  return static_cast<double>(map.counts().known()) * std::pow(map.known().resolution, 2);
+}
+
 /// The longest side of the two maps [cells].
 double longest_side(const ComparedMaps& maps) {
   return std::max(longer_side(maps.fixed), longer_side(maps.moving)) / maps.cell;
@@ -42,6 +47,7 @@ ComparedMaps::ComparedMaps(const PreparedMap& fixed_map, const PreparedMap& movi
     : fixed(fixed_map.known()),
       moving(moving_map.known()),
       cell(working_cell(fixed_map, moving_map)),
+      smaller_area(std::min(known_area(fixed_map), known_area(moving_map))),
       fixed_walls(fixed_map.walls(cell)),
       moving_walls(moving_map.walls(cell)) {}
 
@@ -53,6 +59,10 @@ SE2 to_map_frames(const SE2& T_cells, const WallMap& fixed, const WallMap& movin
 SE2 to_cells(const SE2& T_fixed_moving, const WallMap& fixed, const WallMap& moving) {
   const SE2 T_metres = inverse(fixed.T_map_grid) * T_fixed_moving * moving.T_map_grid;
   return {T_metres.x / fixed.cell, T_metres.y / fixed.cell, T_metres.theta};
+}
+
+double undirected(double angle) {
+  return 0.5 * normalize_angle(2.0 * angle);
 }
 
 ExhaustiveSearchOptions choose_search(const ComparedMaps& maps) {
@@ -70,19 +80,163 @@ double distinct_displacement(const ComparedMaps& maps) {
   return std::max(kMinDistinct, kDistinctShare * longest_side(maps));
 }
 
-RankedPose rank(const ScoredPose& pose, const ComparedMaps& maps) {
-  const double known = static_cast<double>(maps.moving.cells.size());
-  const int stride = std::max(1, static_cast<int>(std::sqrt(known / kRankedCells)));
-  const double cells_per_cell = std::pow(maps.moving.resolution / maps.cell, 2);
-  const SE2 T_fixed_moving = to_map_frames(pose.T_fixed_moving, maps.fixed_walls, maps.moving_walls);
-  const AgreementCounts common = count_agreement(maps.fixed, maps.moving, T_fixed_moving, stride);
-  const double score =
-      pose.evidence.score + area_evidence(cells_per_cell * static_cast<double>(common.agreement),
-                                          cells_per_cell * static_cast<double>(common.disagreement));
-  return {{T_fixed_moving, score, 0.0}, pose.evidence};
+namespace {
+
+constexpr double kFirstSettlingStep = 0.5;    // [cells]
+constexpr double kLastSettlingStep = 0.0625;  // [cells]
+constexpr std::size_t kSettlingWalls = 4000;
+constexpr double kSnapWithin = 2.0;  // [cells]
+
+constexpr double kApartFrom = 0.5;        // [m]
+constexpr double kSlide = 1.0;            // [m]
+constexpr int kSlideDirections = 8;       // over half a turn
+constexpr std::size_t kSlideWalls = 600;  // that are looked at
+
+struct Hold {
+  double least = 0.0, most = 0.0;  // nats a metre
+  double direction = 0.0;          // of the least [rad, fixed grid frame]
+};
+
+Hold measure_hold(const WallEvidence& evidence, const SE2& T_cells, double cell) {
+  Hold hold;
+  const double here = evidence(T_cells).score;
+  for (int i = 0; i < kSlideDirections; ++i) {
+    const double angle = std::numbers::pi * i / kSlideDirections;
+    const double dx = std::cos(angle) * kSlide / cell, dy = std::sin(angle) * kSlide / cell;
+    const double there = std::max(evidence({T_cells.x + dx, T_cells.y + dy, T_cells.theta}).score,
+                                  evidence({T_cells.x - dx, T_cells.y - dy, T_cells.theta}).score);
+    const double lost = (here - there) / kSlide;
+    if (i == 0 || lost < hold.least) {
+      hold.least = lost;
+      hold.direction = angle;
+    }
+    hold.most = i == 0 ? lost : std::max(hold.most, lost);
+  }
+  return hold;
 }
 
-std::vector<RankedPose> find_hypotheses(const ComparedMaps& maps, std::size_t max_hypotheses,
+}  // namespace
+
+PoseJudge::PoseJudge(const ComparedMaps& maps)
+    : maps_(maps),
+      metric_(make_pose_metric(maps.moving_walls)),
+      walls_(maps.fixed_walls, maps.moving_walls, std::numeric_limits<std::size_t>::max()),
+      settling_walls_(walls_.with_points(kSettlingWalls)),
+      sliding_walls_(walls_.with_points(kSlideWalls)),
+      stride_(std::max(
+          1, static_cast<int>(std::sqrt(static_cast<double>(maps.moving.cells.size()) / kRankedCells)))) {}
+
+PoseFigures PoseJudge::figures(const SE2& T_cells, int stride) const {
+  const WallMap &fixed = maps_.fixed_walls, &moving = maps_.moving_walls;
+  const double cell = maps_.cell;
+  const Evidence walls = walls_(T_cells);
+  const AgreementCounts common =
+      count_agreement(maps_.fixed, maps_.moving, to_map_frames(T_cells, fixed, moving), stride);
+  const double cells_per_cell = std::pow(maps_.moving.resolution / cell, 2);
+  const WallSupport support = measure_wall_support(fixed, moving, T_cells);
+  const WallsMet met = measure_walls_met(fixed, moving, T_cells);
+  const WallShares shares = walls_.shares(T_cells, static_cast<int>(std::ceil(kApartFrom / cell)));
+  const Hold hold = measure_hold(sliding_walls_, T_cells, cell);
+
+  PoseFigures figures;
+  figures.score = walls.score + area_evidence(cells_per_cell * static_cast<double>(common.agreement),
+                                              cells_per_cell * static_cast<double>(common.disagreement));
+  figures.wall_score = walls.score;
+  figures.seen_walls = shares.seen * cell;
+  figures.walls_met = met.rigidly;
+  figures.walls_met_locally = met.locally;
+  figures.walls_apart = shares.apart;
+  figures.walls_contrary = shares.contrary;
+  figures.wall_lines = support.lines;
+  figures.seen_things = met.seen_things * cell;
+  figures.things_met = met.things_met;
+  figures.spread = support.spread * cell;
+  figures.held = hold.least;
+  figures.held_most = hold.most;
+  figures.free_direction = undirected(hold.direction + fixed.T_map_grid.theta);
+  figures.acceptance_index = common.acceptance_index();
+  figures.common_area =
+      static_cast<double>(common.both_known()) * maps_.moving.resolution * maps_.moving.resolution;
+  figures.overlap = std::min(1.0, figures.common_area / maps_.smaller_area);
+  figures.sigma = walls.model.sigma * cell;
+  figures.outliers = walls.model.outliers;
+  return figures;
+}
+
+Hypothesis PoseJudge::judge(const SE2& T_cells) const {
+  const PoseFigures found = figures(T_cells, stride_);
+  return {to_map_frames(T_cells, maps_.fixed_walls, maps_.moving_walls), found.score, 0.0, found};
+}
+
+std::optional<SE2> PoseJudge::best_cell_on_cell(const SE2& T_cells) const {
+  const OccupancyGrid &fixed = maps_.fixed, &moving = maps_.moving;
+  if (fixed.resolution != moving.resolution) return std::nullopt;
+  const SE2 T_grids =
+      inverse(fixed.origin) * to_map_frames(T_cells, maps_.fixed_walls, maps_.moving_walls) * moving.origin;
+  const double quarters = std::round(T_grids.theta / (0.5 * std::numbers::pi));
+  const auto between_maps = [&](double column, double row) {
+    const SE2 T{column * fixed.resolution, row * fixed.resolution,
+                normalize_angle(quarters * 0.5 * std::numbers::pi)};
+    // Said exactly, since the product of a pose and its inverse need not be.
+    return T == SE2{} && fixed.origin == moving.origin ? SE2{} : fixed.origin * T * inverse(moving.origin);
+  };
+  double column = std::round(T_grids.x / fixed.resolution), row = std::round(T_grids.y / fixed.resolution);
+  SE2 best = between_maps(column, row);
+  if (!(metric_.displacement(T_cells, to_cells(best, maps_.fixed_walls, maps_.moving_walls)) < kSnapWithin))
+    return std::nullopt;
+  double most = agreement(best);
+  for (bool improved = true; improved;) {
+    improved = false;
+    const double from_column = column, from_row = row;
+    for (int i = 0; i < 9; ++i) {
+      const double next_column = from_column + i % 3 - 1, next_row = from_row + i / 3 - 1;
+      const SE2 next = between_maps(next_column, next_row);
+      const double agreeing = agreement(next);
+      if (agreeing <= most) continue;
+      most = agreeing;
+      best = next;
+      column = next_column;
+      row = next_row;
+      improved = true;
+    }
+  }
+  return best;
+}
+
+Hypothesis PoseJudge::settle(const Hypothesis& hypothesis) const {
+  const SE2 T_cells = to_cells(hypothesis.T_fixed_moving, maps_.fixed_walls, maps_.moving_walls);
+  const SE2 climbed =
+      climb(settling_walls_, metric_, T_cells, kFirstSettlingStep, kLastSettlingStep).T_fixed_moving;
+  if (const std::optional<SE2> on_cells = best_cell_on_cell(T_cells)) {
+    const SE2 T_climbed = to_map_frames(climbed, maps_.fixed_walls, maps_.moving_walls);
+    if (agreement(*on_cells) >= agreement(T_climbed)) {
+      Hypothesis settled = judge(to_cells(*on_cells, maps_.fixed_walls, maps_.moving_walls));
+      settled.T_fixed_moving = *on_cells;
+      return settled;
+    }
+  }
+  return judge(climbed);
+}
+
+double PoseJudge::agreement(const SE2& T_fixed_moving) const {
+  return count_agreement(maps_.fixed, maps_.moving, T_fixed_moving, stride_).acceptance_index();
+}
+
+std::vector<PoseFigures> figures_of(const std::vector<Hypothesis>& hypotheses) {
+  std::vector<PoseFigures> figures;
+  figures.reserve(hypotheses.size());
+  for (const Hypothesis& hypothesis : hypotheses) figures.push_back(hypothesis.figures);
+  return figures;
+}
+
+void weigh(std::vector<Hypothesis>& hypotheses) {
+  const std::vector<double> probabilities = probabilities_of(figures_of(hypotheses));
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) hypotheses[i].probability = probabilities[i];
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+}
+
+std::vector<Hypothesis> find_hypotheses(const ComparedMaps& maps, std::size_t max_hypotheses,
                                         const std::function<void(double)>& progress) {
   const auto report = [&](double share) {
     if (progress) progress(share);
@@ -95,40 +249,18 @@ std::vector<RankedPose> find_hypotheses(const ComparedMaps& maps, std::size_t ma
   refinement.coarse_cell = search.coarse_factor;
   refinement.distinct = distinct_displacement(maps);
   refinement.max_poses = std::max(kRankedPoses, max_hypotheses);
-  const std::vector<ScoredPose> poses = refine(maps.fixed_walls, maps.moving_walls, candidates, refinement,
-                                               [&](double share) { report(0.5 + 0.45 * share); });
-  std::vector<RankedPose> ranked;
-  for (const ScoredPose& pose : poses) {
-    throw_if_cancelled();
-    const RankedPose one = rank(pose, maps);
-    if (one.hypothesis.score > 0.0) ranked.push_back(one);
+  const PoseJudge judge(maps);
+  const std::vector<ScoredPose> poses = refine(judge.walls(), maps.moving_walls, candidates, refinement,
+                                               [&](double share) { report(0.5 + 0.3 * share); });
+  std::vector<Hypothesis> judged(poses.size());
+  parallel_for(poses.size(), [&](std::size_t i) { judged[i] = judge.judge(poses[i].T_fixed_moving); });
+  std::erase_if(judged, [](const Hypothesis& hypothesis) { return !(hypothesis.score > 0.0); });
+  weigh(judged);
+  if (!judged.empty()) {
+    judged.front() = judge.settle(judged.front());
+    weigh(judged);
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const RankedPose& a, const RankedPose& b) {
-    return a.hypothesis.score > b.hypothesis.score;
-  });
-  return ranked;
-}
-
-VerdictFeatures measure_features(const RankedPose& pose, double lead, const AgreementCounts& common,
-                                 const ComparedMaps& maps) {
-  const SE2 T_cells = to_cells(pose.hypothesis.T_fixed_moving, maps.fixed_walls, maps.moving_walls);
-  const WallSupport support = measure_wall_support(maps.fixed_walls, maps.moving_walls, T_cells);
-  VerdictFeatures features;
-  features.lead = lead;
-  features.wall_lines = support.lines;
-  features.score = pose.hypothesis.score;
-  features.nats_per_wall = pose.walls.seen_walls > 0.0 ? pose.walls.score / pose.walls.seen_walls : 0.0;
-  features.spread = support.spread * maps.cell;
-  features.sigma = pose.walls.model.sigma * maps.cell;
-  features.outliers = pose.walls.model.outliers;
-  const WallsMet met = measure_walls_met(maps.fixed_walls, maps.moving_walls, T_cells);
-  features.walls_met = met.rigidly;
-  features.walls_met_locally = met.locally;
-  features.acceptance_index = common.acceptance_index();
-  features.overlap = measure_overlap(maps.fixed, maps.moving, common);
-  features.common_area =
-      static_cast<double>(common.both_known()) * maps.moving.resolution * maps.moving.resolution;
-  return features;
+  return judged;
 }
 
 }  // namespace gridmerge

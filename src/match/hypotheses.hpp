@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "gridmerge/match/match.hpp"
@@ -24,7 +25,8 @@ struct ComparedMaps {
 
   const OccupancyGrid& fixed;
   const OccupancyGrid& moving;
-  double cell;  ///< side [m]
+  double cell;          ///< side [m]
+  double smaller_area;  ///< of the two maps' known areas [m^2]
   const WallMap& fixed_walls;
   const WallMap& moving_walls;
 };
@@ -33,27 +35,60 @@ struct ComparedMaps {
 SE2 to_map_frames(const SE2& T_cells, const WallMap& fixed, const WallMap& moving);
 SE2 to_cells(const SE2& T_fixed_moving, const WallMap& fixed, const WallMap& moving);
 
+/// The angle of a line [rad] in (-pi/2, pi/2].
+double undirected(double angle);
+
 /// How densely every pose of these maps is searched.
 ExhaustiveSearchOptions choose_search(const ComparedMaps& maps);
 
 /// Poses displaced by less than this are one hypothesis [cells].
 double distinct_displacement(const ComparedMaps& maps);
 
-struct RankedPose {
-  Hypothesis hypothesis;  ///< its probability is not yet known
-  Evidence walls;
+/// What the walls of two maps in their working cells say of poses, and what all figures say.
+class PoseJudge {
+ public:
+  explicit PoseJudge(const ComparedMaps& maps);
+
+  /// All that speaks for a pose between the grid frames [cells] and against it. `stride` as
+  /// count_agreement().
+  PoseFigures figures(const SE2& T_cells, int stride) const;
+
+  /// The hypothesis of a pose, its probability not yet known.
+  Hypothesis judge(const SE2& T_cells) const;
+
+  /// The hypothesis at the maximum of the evidence near a judged one: of all walls, in steps down to a
+  /// sixteenth of a cell. Where a pose near it that lays cell on cell is no worse, that one: a map lies on
+  /// itself exactly.
+  Hypothesis settle(const Hypothesis& hypothesis) const;
+
+  const WallEvidence& walls() const { return walls_; }
+
+ private:
+  /// Of the poses between the map frames that lay cell on cell, near one between the grid frames [cells], the
+  /// one at which most cells agree; none if the maps' cells differ in size, or if there is none near.
+  std::optional<SE2> best_cell_on_cell(const SE2& T_cells) const;
+
+  /// The acceptance index of the cells that are counted, between the map frames.
+  double agreement(const SE2& T_fixed_moving) const;
+
+  const ComparedMaps& maps_;
+  PoseMetric metric_;
+  WallEvidence walls_;
+  WallEvidence settling_walls_;
+  WallEvidence sliding_walls_;  // fewer, for how well a pose is held
+  int stride_;                  // of the cells that are counted
 };
 
-/// The evidence of the walls and of the area that both maps know.
-RankedPose rank(const ScoredPose& pose, const ComparedMaps& maps);
-
-/// Searches all poses, refines and ranks them: distinct ones, best first, without those that on the whole
-/// speak against themselves. `progress` as in MatchOptions. Runs in the calling TBB arena.
-std::vector<RankedPose> find_hypotheses(const ComparedMaps& maps, std::size_t max_hypotheses,
+/// Searches all poses, refines them and weighs each: distinct ones, most probable first, with probabilities;
+/// without those that on the whole speak against themselves. `progress` as in MatchOptions. Runs in the
+/// calling TBB arena.
+std::vector<Hypothesis> find_hypotheses(const ComparedMaps& maps, std::size_t max_hypotheses,
                                         const std::function<void(double)>& progress);
 
-/// What speaks for a hypothesis. `lead` as find_lead(); `common` as count_agreement() of all cells.
-VerdictFeatures measure_features(const RankedPose& pose, double lead, const AgreementCounts& common,
-                                 const ComparedMaps& maps);
+/// Gives each its probability, and sorts by it, best first.
+void weigh(std::vector<Hypothesis>& hypotheses);
+
+/// The figures of each.
+std::vector<PoseFigures> figures_of(const std::vector<Hypothesis>& hypotheses);
 
 }  // namespace gridmerge

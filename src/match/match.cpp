@@ -26,55 +26,33 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The model says how probable it is that the best hypothesis is true, given its lead over the next. Measured
-/// against the hypothesis after the first m, the same says that the truth is among these m; what the m-th
-/// adds to that is its own. None is called likelier than the best.
-void assign_probabilities(std::vector<Hypothesis>& hypotheses, const VerdictFeatures& features) {
-  hypotheses[0].probability = probability_of(features);
-  double among_those_before = hypotheses[0].probability;
-  for (std::size_t i = 1; i < hypotheses.size(); ++i) {
-    const bool last = i + 1 == hypotheses.size();
-    // What comes after the last of the poses that are ranked is not known; after fewer there is nothing.
-    const bool unknown = last && hypotheses.size() >= kRankedPoses;
-    const double next = last ? 0.0 : hypotheses[i + 1].score;
-    const double among_these =
-        unknown ? among_those_before : probability_among(features, hypotheses[0].score, next);
-    hypotheses[i].probability = std::min(hypotheses[0].probability, among_these - among_those_before);
-    among_those_before = among_these;
-  }
-}
-
 MatchResult match_in_arena(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options) {
   // So the answer does not depend on which map the caller called fixed.
   const bool swapped = is_smaller(fixed, moving);
   const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);
 
   MatchResult result;
-  const std::vector<RankedPose> ranked = find_hypotheses(maps, options.max_hypotheses, options.progress);
-  if (ranked.empty()) return result;
-  std::vector<double> scores;
-  for (const RankedPose& pose : ranked) {
-    result.hypotheses.push_back(pose.hypothesis);
-    scores.push_back(pose.hypothesis.score);
-  }
+  result.hypotheses = find_hypotheses(maps, options.max_hypotheses, options.progress);
+  result.reason = explain_refusal(figures_of(result.hypotheses), options.accept_probability);
+  if (result.hypotheses.empty()) return result;
   const AgreementCounts counts =
       count_agreement(maps.fixed, maps.moving, result.hypotheses.front().T_fixed_moving);
-  result.features = measure_features(ranked.front(), find_lead(scores), counts, maps);
-  result.acceptance_index = result.features.acceptance_index;
+  result.acceptance_index = counts.acceptance_index();
   result.agreement = counts.agreement;
   result.disagreement = counts.disagreement;
-  result.overlap = result.features.overlap;
-  assign_probabilities(result.hypotheses, result.features);
+  result.overlap = measure_overlap(maps.fixed, maps.moving, counts);
 
   if (swapped) {
-    for (Hypothesis& hypothesis : result.hypotheses)
+    for (Hypothesis& hypothesis : result.hypotheses) {
       hypothesis.T_fixed_moving = inverse(hypothesis.T_fixed_moving);
+      hypothesis.figures.free_direction =
+          undirected(hypothesis.figures.free_direction + hypothesis.T_fixed_moving.theta);
+    }
   }
   const Hypothesis& best = result.hypotheses.front();
   result.T_fixed_moving = best.T_fixed_moving;
   result.probability = best.probability;
   result.verdict = best.probability >= options.accept_probability ? Verdict::accepted : Verdict::refused;
-  result.reason = explain_refusal(result.features, options.accept_probability);
   if (result.hypotheses.size() > options.max_hypotheses) result.hypotheses.resize(options.max_hypotheses);
   return result;
 }

@@ -1,15 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/match/prepared_map.hpp"
 
+#include <array>
 #include <tuple>
+#include <utility>
 
 #include "gridmerge/grid/resample.hpp"
 
 namespace gridmerge {
 
+namespace {
+
+/// Walls are no thicker than this from where they can be seen.
+constexpr double kWallDepth = 0.15;  // [m]
+
+/// How many occupied cells lie in the quarters of a grid, counter-clockwise from the lower left; those on a
+/// middle row or column are in none.
+std::array<std::size_t, 4> occupied_by_quarter(const OccupancyGrid& grid) {
+  std::array<std::size_t, 4> counts{};
+  for (int row = 0; row < grid.height; ++row) {
+    if (2 * row + 1 == grid.height) continue;
+    const bool above = 2 * row >= grid.height;
+    const Cell* line = grid.cells.data() + grid.index(0, row);
+    const auto count = [&](int from, int to) {
+      std::size_t occupied = 0;
+      for (int column = from; column < to; ++column) occupied += line[column] == Cell::occupied ? 1 : 0;
+      return occupied;
+    };
+    counts[above ? 3 : 0] += count(0, grid.width / 2);
+    counts[above ? 2 : 1] += count((grid.width + 1) / 2, grid.width);
+  }
+  return counts;
+}
+
+/// The map in the one of its four orientations that comes first in an order of their own, so that the answer
+/// does not depend on the one in which it was drawn.
+OccupancyGrid in_canonical_orientation(OccupancyGrid grid) {
+  const std::array<std::size_t, 4> counts = occupied_by_quarter(grid);
+  const auto key = [&](int quarters) {
+    // A turn by a quarter takes the first quarter to the second.
+    std::array<std::size_t, 5> order{static_cast<std::size_t>(quarters % 2 == 0 ? grid.width : grid.height)};
+    for (int i = 0; i < 4; ++i) order[1 + i] = counts[(i - quarters + 4) % 4];
+    return order;
+  };
+  int best = 0;
+  for (int quarters = 1; quarters < 4; ++quarters) {
+    if (key(quarters) < key(best) || (key(quarters) == key(best) && quarter_turned(grid, quarters).cells <
+                                                                        quarter_turned(grid, best).cells))
+      best = quarters;
+  }
+  return best == 0 ? std::move(grid) : quarter_turned(grid, best);
+}
+
+}  // namespace
+
 PreparedMap::PreparedMap(const OccupancyGrid& grid) {
   validate(grid);
-  known_ = crop_to_known(grid);
+  known_ = in_canonical_orientation(crop_to_known(without_painted(crop_to_known(grid), kWallDepth)));
   counts_ = count_cells(known_);
 }
 

@@ -46,31 +46,6 @@ std::vector<ScoredPose> keep_distinct(std::vector<ScoredPose> poses, const PoseM
   return kept;
 }
 
-/// Steepest ascent over steps of +-x, +-y and +-rotation; the step is halved whenever none of them helps.
-ScoredPose climb(const WallEvidence& evidence, const PoseMetric& metric, const SE2& start, double first_step,
-                 double last_step, double min_sigma) {
-  constexpr int kMaxMoves = 20;  // a step; far more than a climb between neighbouring candidates takes
-  constexpr std::array<std::array<double, 3>, 6> kMoves{
-      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
-  ScoredPose best{start, evidence(start, min_sigma)};
-  for (double step = first_step; step >= last_step; step /= 2.0) {
-    for (int i = 0; i < kMaxMoves; ++i) {
-      const SE2 from = best.T_fixed_moving;
-      bool improved = false;
-      for (const auto& move : kMoves) {
-        const SE2 pose = metric.moved(from, step * move[0], step * move[1], step * move[2] / metric.radius);
-        const Evidence found = evidence(pose, min_sigma);
-        if (found.score > best.evidence.score) {
-          best = {pose, found};
-          improved = true;
-        }
-      }
-      if (!improved) break;
-    }
-  }
-  return best;
-}
-
 }  // namespace
 
 double PoseMetric::displacement(const SE2& a, const SE2& b) const {
@@ -108,7 +83,32 @@ PoseMetric make_pose_metric(const WallMap& moving) {
   return metric;
 }
 
-std::vector<ScoredPose> refine(const WallMap& fixed, const WallMap& moving,
+/// Steepest ascent over steps of +-x, +-y and +-rotation; the step is halved whenever none of them helps.
+ScoredPose climb(const WallEvidence& evidence, const PoseMetric& metric, const SE2& start, double first_step,
+                 double last_step, double min_sigma) {
+  constexpr int kMaxMoves = 20;  // a step; far more than a climb between neighbouring candidates takes
+  constexpr std::array<std::array<double, 3>, 6> kMoves{
+      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+  ScoredPose best{start, evidence(start, min_sigma)};
+  for (double step = first_step; step >= last_step; step /= 2.0) {
+    for (int i = 0; i < kMaxMoves; ++i) {
+      const SE2 from = best.T_fixed_moving;
+      bool improved = false;
+      for (const auto& move : kMoves) {
+        const SE2 pose = metric.moved(from, step * move[0], step * move[1], step * move[2] / metric.radius);
+        const Evidence found = evidence(pose, min_sigma);
+        if (found.score > best.evidence.score) {
+          best = {pose, found};
+          improved = true;
+        }
+      }
+      if (!improved) break;
+    }
+  }
+  return best;
+}
+
+std::vector<ScoredPose> refine(const WallEvidence& all_points, const WallMap& moving,
                                const std::vector<PoseCandidate>& candidates, const RefineOptions& options,
                                const std::function<void(double)>& progress) {
   constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
@@ -125,7 +125,6 @@ std::vector<ScoredPose> refine(const WallMap& fixed, const WallMap& moving,
   poses.reserve(candidates.size());
   for (const PoseCandidate& candidate : candidates) poses.push_back({candidate.T_fixed_moving, {}});
 
-  const WallEvidence all_points(fixed, moving, kAll);
   for (std::size_t r = 0; r < rounds.size(); ++r) {
     const Round& round = rounds[r];
     const WallEvidence evidence = all_points.with_points(round.points);

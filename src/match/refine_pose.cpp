@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -44,36 +43,34 @@ std::vector<PoseCandidate> poses_around(const SE2& start, const ComparedMaps& ma
   return poses;
 }
 
-RankedPose rank_at(const SE2& T_cells, const ComparedMaps& maps) {
-  const WallEvidence evidence(maps.fixed_walls, maps.moving_walls, std::numeric_limits<std::size_t>::max());
-  return rank({T_cells, evidence(T_cells)}, maps);
-}
-
-RankedPose best_around(const RankedPose& start, const SE2& T_start_cells, const ComparedMaps& maps) {
+Hypothesis best_around(const Hypothesis& start, const SE2& T_start_cells, const ComparedMaps& maps,
+                       const PoseJudge& judge) {
   RefineOptions options;
   options.coarse_cell = choose_search(maps).coarse_factor;
   options.distinct = kDistinctMaxima;
   options.max_poses = kMaxima;
-  RankedPose best = start;
-  for (const ScoredPose& pose : refine(maps.fixed_walls, maps.moving_walls,
+  Hypothesis best = start;
+  for (const ScoredPose& pose : refine(judge.walls(), maps.moving_walls,
                                        poses_around(T_start_cells, maps, options.coarse_cell), options)) {
-    const RankedPose ranked = rank(pose, maps);
-    if (ranked.hypothesis.score > best.hypothesis.score) best = ranked;
+    const Hypothesis judged = judge.judge(pose.T_fixed_moving);
+    if (judged.score > best.score) best = judged;
   }
   return best;
 }
 
-/// The score of the best hypothesis that is another one; 0 where there is none.
-double best_rival(const RankedPose& pose, const ComparedMaps& maps) {
+/// The probability that the pose would have among the hypotheses of a full search, those aside that are the
+/// same pose.
+double probability_among_all(const Hypothesis& pose, const ComparedMaps& maps) {
   const PoseMetric metric = make_pose_metric(maps.moving_walls);
-  const auto in_cells = [&](const RankedPose& one) {
-    return to_cells(one.hypothesis.T_fixed_moving, maps.fixed_walls, maps.moving_walls);
+  const auto in_cells = [&](const Hypothesis& one) {
+    return to_cells(one.T_fixed_moving, maps.fixed_walls, maps.moving_walls);
   };
-  const SE2 T = in_cells(pose);
-  for (const RankedPose& other : find_hypotheses(maps, kRankedPoses, {})) {  // best first
-    if (metric.displacement(T, in_cells(other)) >= distinct_displacement(maps)) return other.hypothesis.score;
+  std::vector<PoseFigures> figures{pose.figures};
+  for (const Hypothesis& other : find_hypotheses(maps, kRankedPoses, {})) {
+    if (metric.displacement(in_cells(pose), in_cells(other)) >= distinct_displacement(maps))
+      figures.push_back(other.figures);
   }
-  return 0.0;
+  return probabilities_of(figures).front();
 }
 
 double displacement(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_a, const SE2& T_b) {
@@ -94,15 +91,16 @@ RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, con
   const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);
   const SE2 T_start_maps = swapped ? inverse(T_start) : T_start;
   const SE2 T_start_cells = to_cells(T_start_maps, maps.fixed_walls, maps.moving_walls);
-  const RankedPose start = rank_at(T_start_cells, maps);
-  const RankedPose best = best_around(start, T_start_cells, maps);
+  const PoseJudge judge(maps);
+  const Hypothesis start = judge.judge(T_start_cells);
+  const Hypothesis best = best_around(start, T_start_cells, maps, judge);
 
   RefinedPose refined{.T_fixed_moving = T_start};
-  refined.start_score = start.hypothesis.score;
-  refined.score = best.hypothesis.score;
+  refined.start_score = start.score;
+  refined.score = best.score;
   SE2 T = T_start_maps;
   if (refined.score > refined.start_score) {
-    T = best.hypothesis.T_fixed_moving;
+    T = best.T_fixed_moving;
     refined.T_fixed_moving = swapped ? inverse(T) : T;
     refined.moved = displacement(fixed, moving, T_start, refined.T_fixed_moving);
   }
@@ -111,10 +109,7 @@ RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, con
   refined.agreement = common.agreement;
   refined.disagreement = common.disagreement;
   refined.overlap = measure_overlap(maps.fixed, maps.moving, common);
-  if (refined.score > 0.0) {
-    const double lead = find_lead({refined.score, best_rival(best, maps)});
-    refined.probability = probability_of(measure_features(best, lead, common, maps));
-  }
+  if (refined.score > 0.0) refined.probability = probability_among_all(best, maps);
   return refined;
 }
 

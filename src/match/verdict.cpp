@@ -2,51 +2,119 @@
 #include "gridmerge/match/verdict.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "verdict_model.hpp"
 
 namespace gridmerge {
 
-double find_lead(const std::vector<double>& scores) {
-  if (scores.empty() || scores[0] <= 0.0) return 0.0;
-  const double second = scores.size() > 1 ? std::max(0.0, scores[1]) : 0.0;
-  return (scores[0] - second) / std::sqrt(scores[0]);
+namespace {
+
+/// -log of what is missing to 1; `floor` is what is missing from a perfect share.
+double missing(double share, double floor) {
+  return -std::log(std::max(0.0, 1.0 - share) + floor);
 }
 
-double probability_of(const VerdictFeatures& features) {
-  const auto logistic = [](double logit) { return 1.0 / (1.0 + std::exp(-logit)); };
-  // What the fitted model cannot know, because simulated cases hold too little of it: of two hypotheses that
-  // fit, the better one is the true one with a probability that starts at a half, and a lead counts in units
-  // of what chance moves a score by; and maps that agree on the two walls of a corner, or the four of a plain
-  // room, fit every corner and every room, however clean and long the walls.
-  const double best_of_two = logistic(features.lead);
-  const double tells_places_apart = logistic(3.0 * (features.wall_lines - 3.5));
-  return logistic(verdict_logit(features)) * best_of_two * tells_places_apart;
+double logarithm(double value, double least) {
+  return std::log(std::max(value, least));
 }
 
-double probability_among(const VerdictFeatures& features, double best, double next) {
-  VerdictFeatures among = features;
-  among.lead = find_lead({best, next});
-  return probability_of(among);
+/// Things are few: their share counts as that of so many metres more, of which every third meets by chance.
+double things_share(const PoseFigures& f) {
+  constexpr double kMetres = 4.0, kByChance = 1.0 / 3.0;
+  return (f.things_met * f.seen_things + kByChance * kMetres) / (f.seen_things + kMetres);
 }
 
-Reason explain_refusal(const VerdictFeatures& features, double accept_probability) {
-  if (probability_of(features) >= accept_probability) return Reason::none;
-  // What a pair beyond doubt has.
-  const auto would_do = [&](void (*mend)(VerdictFeatures&)) {
-    VerdictFeatures better = features;
-    mend(better);
-    return probability_of(better) >= accept_probability;
+/// How well the pose is held in its weakest direction, against its strongest. A corridor slides.
+double how_held(const PoseFigures& f) {
+  constexpr double kLeast = 0.03;
+  return logarithm(std::max(f.held, 0.0) / std::max(f.held_most, 1.0), kLeast);
+}
+constexpr double kSlides = -2.0;  // of it: less than an eighth
+
+double logistic(double log_odds) {
+  return 1.0 / (1.0 + std::exp(-log_odds));
+}
+
+}  // namespace
+
+double VerdictTerm::operator()(const PoseFigures& figures) const {
+  return std::clamp(raw(figures), least, most);
+}
+
+std::span<const VerdictTerm> verdict_terms() {
+  using F = PoseFigures;
+  constexpr TermKind kAmount = TermKind::amount, kQuality = TermKind::quality;
+  static constexpr std::array kTerms{
+      VerdictTerm{"walls", "ln seen_walls", kAmount, 1.0, 7.0,
+                  [](const F& f) { return logarithm(f.seen_walls, 1.0); }},
+      VerdictTerm{"lines", "ln wall_lines", kAmount, 0.0, 3.0,
+                  [](const F& f) { return logarithm(f.wall_lines, 1.0); }},
+      VerdictTerm{"tells apart", "-ln(1 + exp(-3 (wall_lines - 3.5)))", kAmount, -12.0, 0.0,
+                  [](const F& f) { return -std::log1p(std::exp(-3.0 * (f.wall_lines - 3.5))); }},
+      VerdictTerm{"held", "ln(held / held_most)", kAmount, -3.5, 0.0, how_held},
+      VerdictTerm{"met locally", "-ln(1.05 - walls_met_locally)", kQuality, 0.0, 2.5,
+                  [](const F& f) { return missing(f.walls_met_locally, 0.05); }},
+      VerdictTerm{"bend explains", "ln((1.05 - walls_met) / (1.05 - walls_met_locally))", kQuality, 0.0, 2.0,
+                  [](const F& f) { return missing(f.walls_met_locally, 0.05) - missing(f.walls_met, 0.05); }},
+      VerdictTerm{"cells agree", "-ln(1.01 - acceptance_index)", kQuality, 1.0, 4.6,
+                  [](const F& f) { return missing(f.acceptance_index, 0.01); }},
+      VerdictTerm{"things met", "-ln(1.05 - share), the share of things met drawn towards 1/3 by 4 m",
+                  kQuality, 0.05, 2.5, [](const F& f) { return missing(things_share(f), 0.05); }}};
+  return kTerms;
+}
+
+double log_odds_of(const PoseFigures& figures) {
+  const auto terms = verdict_terms();
+  double sum = kVerdictBias;
+  for (std::size_t i = 0; i < terms.size(); ++i) sum += kVerdictWeights[i].weight * terms[i](figures);
+  return sum;
+}
+
+std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses) {
+  std::vector<double> weights;
+  double most = 0.0;
+  for (const PoseFigures& figures : hypotheses) {
+    weights.push_back(log_odds_of(figures));
+    most = std::max(most, weights.back());
+  }
+  double sum = std::exp(-most);
+  for (double& weight : weights) {
+    weight = std::exp(weight - most);
+    sum += weight;
+  }
+  for (double& weight : weights) weight /= sum;
+  return weights;
+}
+
+bool slides(const PoseFigures& figures) {
+  return how_held(figures) < kSlides;
+}
+
+Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_probability) {
+  if (hypotheses.empty()) return Reason::nothing_to_compare;
+  const std::vector<double> probabilities = probabilities_of(hypotheses);
+  if (probabilities[0] >= accept_probability) return Reason::none;
+  // What the best one would be worth by itself, if all terms of a kind were as good as can be.
+  const auto mended = [&](auto is_mended) {
+    const auto terms = verdict_terms();
+    double log_odds = log_odds_of(hypotheses[0]);
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      if (is_mended(terms[i].kind))
+        log_odds += kVerdictWeights[i].weight * (terms[i].most - terms[i](hypotheses[0]));
+    }
+    return logistic(log_odds);
   };
-  if (would_do([](VerdictFeatures& f) { f.lead = std::max(f.lead, 30.0); })) return Reason::ambiguous;
-  if (would_do([](VerdictFeatures& f) {
-        f.walls_met = std::max(f.walls_met, 0.95);
-        f.walls_met_locally = std::max(f.walls_met_locally, 0.95);
-      }))
+  if (mended([](TermKind) { return false; }) >= accept_probability) return Reason::ambiguous;
+  const bool agrees = mended([](TermKind kind) { return kind == TermKind::amount; }) >= accept_probability;
+  // Nearly as good: the better one of the two would be refused however much the maps had in common.
+  const double rival = hypotheses.size() > 1 ? probabilities[1] / (probabilities[0] + probabilities[1]) : 0.0;
+  if (agrees && 1.0 - rival < accept_probability) return Reason::ambiguous;
+  if (agrees && slides(hypotheses[0])) return Reason::ambiguous;
+  if (agrees) return Reason::too_little_overlap;
+  if (mended([](TermKind kind) { return kind == TermKind::quality; }) >= accept_probability)
     return Reason::contradiction;
-  if (would_do([](VerdictFeatures& f) { f.wall_lines = std::max(f.wall_lines, 10.0); }))
-    return Reason::too_little_overlap;
   return Reason::several;
 }
 

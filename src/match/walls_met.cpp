@@ -25,7 +25,7 @@ constexpr double kFirstStep = 0.4;        // [m]
 constexpr double kLastStep = 0.5;         // [cells]
 constexpr double kLeastWall = 2.0;        // that a patch must have where both have seen, to move [m]
 constexpr int kMeetingDistance = 2;       // [cells]
-constexpr std::size_t kClimbingWalls = 150;
+constexpr std::size_t kClimbingWalls = 60;
 
 /// A wall that lies in what the other map has not seen is worth this much when a patch climbs: about what an
 /// unrelated wall is, so that a patch neither flees from what is seen nor is held in it.
@@ -35,25 +35,48 @@ struct Meetings {
   double seen = 0.0;   // walls where the other map has seen
   double met = 0.0;    // of these, the walls that meet another one
   double worth = 0.0;  // what a patch climbs on: 1 for a wall on another one, less with their distance
+  double seen_things = 0.0;  // the same of walls of things that stand alone
+  double things_met = 0.0;
 
   Meetings& operator+=(const Meetings& other) {
     seen += other.seen;
     met += other.met;
     worth += other.worth;
+    seen_things += other.seen_things;
+    things_met += other.things_met;
     return *this;
   }
 };
 
-bool are_opposite(std::uint8_t facing, int turn, std::uint8_t other) {
-  if (facing == kNoDirection || other == kNoDirection) return false;
-  const int difference = std::abs((facing + turn) % kDirections - other);
-  return std::min(difference, kDirections - difference) > kDirections / 4;
+/// Whether a wall turned by so many steps is contrary to another one, by both facings.
+using ContraryFacings = std::array<std::array<std::array<bool, kFacingCodes>, kFacingCodes>, kDirections>;
+const ContraryFacings& contrary_facings() {
+  static const ContraryFacings table = [] {
+    ContraryFacings contrary{};
+    for (int steps = 0; steps < kDirections; ++steps) {
+      for (int a = 0; a < kFacingCodes; ++a) {
+        for (int b = 0; b < kFacingCodes; ++b) {
+          const std::uint8_t turned_a = turned(static_cast<std::uint8_t>(a), steps);
+          contrary[steps][a][b] =
+              facing_class(turned_a, static_cast<std::uint8_t>(b)) >= kFirstContraryFacing;
+        }
+      }
+    }
+    return contrary;
+  }();
+  return table;
 }
+
+/// What a wall is worth by its distance from another one [cells].
+constexpr auto kWorth = [] {
+  std::array<double, kDistanceBins> worth{};
+  for (int bin = 0; bin < kDistanceBins; ++bin) worth[bin] = 1.0 / (1.0 + bin * bin / 6.0);
+  return worth;
+}();
 
 Meetings look_up(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls) {
   const double c = std::cos(T_map_walls.theta), s = std::sin(T_map_walls.theta);
-  const double turns = T_map_walls.theta / (2.0 * std::numbers::pi) + 1.0;
-  const int turn = static_cast<int>(std::lround(turns * kDirections)) % kDirections;
+  const auto& is_contrary = contrary_facings()[steps_of_turn(T_map_walls.theta)];
   Meetings meetings;
   for (const WallPoint& wall : walls) {
     const double x = c * wall.position.x - s * wall.position.y + T_map_walls.x;
@@ -67,9 +90,13 @@ Meetings look_up(const WallMap& map, const std::vector<WallPoint>& walls, const 
       continue;
     }
     meetings.seen += 1.0;
-    if (are_opposite(wall.facing, turn, place.facing)) continue;
-    meetings.met += place.distance <= kMeetingDistance ? 1.0 : 0.0;
-    meetings.worth += 1.0 / (1.0 + place.distance * place.distance / 6.0);
+    const double thing = wall.stands_alone ? 1.0 : 0.0;
+    meetings.seen_things += thing;
+    if (is_contrary[wall.facing][place.facing]) continue;
+    const double met = place.distance <= kMeetingDistance ? 1.0 : 0.0;
+    meetings.met += met;
+    meetings.things_met += met * thing;
+    meetings.worth += kWorth[place.distance];
   }
   return meetings;
 }
@@ -161,10 +188,14 @@ class PatchMatcher {
   double side_;
 };
 
-double share_met(const std::vector<Meetings>& patches) {
+Meetings sum_of(const std::vector<Meetings>& patches) {
   Meetings sum;
   for (const Meetings& patch : patches) sum += patch;
-  return sum.seen > 0.0 ? sum.met / sum.seen : 0.0;
+  return sum;
+}
+
+double share(double part, double whole) {
+  return whole > 0.0 ? part / whole : 0.0;
 }
 
 }  // namespace
@@ -178,7 +209,9 @@ WallsMet measure_walls_met(const WallMap& fixed, const WallMap& moving, const SE
     rigidly[i] = matcher.rigidly(patches[i]);
     locally[i] = matcher.locally(patches[i], rigidly[i]);
   });
-  return {share_met(rigidly), share_met(locally)};
+  const Meetings rigid = sum_of(rigidly), local = sum_of(locally);
+  return {share(rigid.met, rigid.seen), share(local.met, local.seen), local.seen_things,
+          share(local.things_met, local.seen_things)};
 }
 
 }  // namespace gridmerge

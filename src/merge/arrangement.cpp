@@ -279,4 +279,34 @@ Arrangement arrange(const ArrangementProblem& problem, double accept_probability
   return arrangement;
 }
 
+double expected_false_joins(const Arrangement& arrangement) {
+  double expected = 0.0;
+  for (const NodeGroup& group : arrangement.groups) {
+    double doubt = 0.0;
+    for (const PlacedNode& node : group) doubt += 1.0 - node.probability;  // 0 where it is fixed or alone
+    // Every map is doubted given the others: two maps doubt one join twice.
+    expected += doubt * static_cast<double>(group.size() - 1) / static_cast<double>(group.size());
+  }
+  return expected;
+}
+
+Arrangement arrange_within(const ArrangementProblem& problem, double accept_probability,
+                           double max_false_joins) {
+  if (!(max_false_joins >= 0.0) || !std::isfinite(max_false_joins))
+    throw std::invalid_argument("max_false_joins must be a number from 0 on");
+  Arrangement arrangement = arrange(problem, accept_probability);
+  // What a float cannot tell from certainty is not asked for: then nothing is joined.
+  while (expected_false_joins(arrangement) > max_false_joins) {
+    double least = 1.0;
+    for (const NodeGroup& group : arrangement.groups) {
+      for (const PlacedNode& node : group) least = std::min(least, node.probability);
+    }
+    const double next = std::nextafter(std::max(least, accept_probability), 2.0);
+    if (next > 1.0) break;
+    accept_probability = next;
+    arrangement = arrange(problem, accept_probability);
+  }
+  return arrangement;
+}
+
 }  // namespace gridmerge

@@ -23,7 +23,7 @@ std::vector<CandidateJoin> candidate_joins(const MatchResult& match) {
     if (hypothesis.probability < kLeastProbability) continue;
     const double doubt = std::max(1.0 - hypothesis.probability, kLeastDoubt);
     candidates.push_back({hypothesis.T_fixed_moving, std::log(hypothesis.probability / doubt),
-                          kDeviationsOfWalls * match.features.sigma});
+                          kDeviationsOfWalls * hypothesis.figures.sigma});
   }
   return candidates;
 }

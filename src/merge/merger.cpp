@@ -2,6 +2,7 @@
 #include "gridmerge/merge/merger.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -39,6 +40,8 @@ class Merger::State {
   explicit State(MergeOptions options) : options_(std::move(options)) {
     validate(options_.match);
     validate_merge({}, options_.resolution);
+    if (!(options_.max_false_joins >= 0.0) || !std::isfinite(options_.max_false_joins))
+      throw std::invalid_argument("max_false_joins must be a number from 0 on");
     options_.match.progress = nullptr;
     options_.match.max_hypotheses = std::max(options_.match.max_hypotheses, kKeptHypotheses);
   }
@@ -85,7 +88,9 @@ class Merger::State {
       match_new_pairs();
       const std::vector<MapId> maps = in_canonical_order();
       const ArrangementProblem problem = make_problem(maps);
-      const Arrangement arrangement = arrange(problem, options_.match.accept_probability);
+      const Arrangement arrangement =
+          arrange_within(problem, options_.match.accept_probability, options_.max_false_joins);
+      result.expected_false_joins = expected_false_joins(arrangement);
       result.joins = make_joins(maps, problem, arrangement);
       add_components(maps, problem, arrangement, result);
     });

@@ -75,7 +75,8 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
                   {"components", std::move(components)},
                   {"joins", std::move(joins)},
                   {"left_out", std::move(left_out)},
-                  {"left_out_reasons", std::move(reasons)}};
+                  {"left_out_reasons", std::move(reasons)},
+                  {"expected_false_joins", probability_json(result.expected_false_joins)}};
   return text_of(json, 2) + "\n";
 }
 

@@ -29,6 +29,8 @@ class JsonReader {
 
   /// A key that has to be there, of an object.
   JsonReader at(const char* key) const;
+  /// Whether an object has it; the value must be one.
+  bool has(const char* key) const { return value_.contains(key); }
   /// An element of an array.
   JsonReader at(std::size_t index) const;
   /// The number of elements of an array.

@@ -50,6 +50,9 @@ class RecordReader {
     read_components(json.at("components"));
     read_joins(json.at("joins"));
     read_left_out(json.at("left_out"), json.at("left_out_reasons"));
+    // Not in what earlier versions wrote, nor where the tree was asked for.
+    if (json.has("expected_false_joins") && !json.at("expected_false_joins").is_null())
+      record_.result.expected_false_joins = json.at("expected_false_joins").number_in(0.0, kInfinity);
     for (std::size_t i = 0; i < is_placed_.size(); ++i) {
       if (!is_placed_[i]) throw JsonError("'" + record_.names[i] + "' is in no component and not left out");
     }

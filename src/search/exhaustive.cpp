@@ -82,7 +82,7 @@ EvidenceImage make_evidence_image(const WallMap& fixed, const SearchFrame& frame
     for (int x = 0; x < fixed.width; ++x) {
       const int distance = fixed.places[static_cast<std::size_t>(y) * fixed.width + x].distance;
       if (distance == kUnseen) continue;
-      sums[line + x / options.coarse_factor] += table[encounter(distance, Facing::unclear)];
+      sums[line + x / options.coarse_factor] += table[encounter(distance, kUnclearFacing)];
     }
   }
 

@@ -6,13 +6,35 @@
 #include <numbers>
 #include <numeric>
 
+#include "../grid/multiversion.hpp"
+
 namespace gridmerge {
 
 namespace {
 
-/// Walls that are one place but seem to face opposite ways: thin walls seen from both rooms, clutter.
-constexpr double kOppositeShare = 0.1;
-constexpr std::array<double, kFacings> kFacingRatio{1.0, (1.0 - kOppositeShare) / 0.5, kOppositeShare / 0.5};
+/// "Same place" against "unrelated", by class of facing.
+constexpr std::array<double, kFacings> kFacingRatio{1.0, 4.8, 2.2, 0.9, 0.36, 0.08, 0.16};
+
+/// The largest angle of each class but the first, in parts of a turn.
+constexpr std::array<int, kFacings - 1> kFacingUpTo{1, 2, 3, 5, 12, kDirections / 2};
+
+constexpr int class_of(int between) {
+  int facing = 1;
+  while (between > kFacingUpTo[facing - 1]) ++facing;
+  return facing;
+}
+
+/// A wall with floor on both sides tells its axis only: it meets one that faces either way across it, and can
+/// be no better match than two facings that differ a little.
+constexpr int class_of_facings(std::uint8_t a, std::uint8_t b) {
+  if (a == kNoDirection || b == kNoDirection) return kUnclearFacing;
+  const bool axes = is_axis(a) || is_axis(b);
+  const int turn = axes ? kAxes : kDirections;
+  const int steps = (a % kDirections - b % kDirections + 2 * kDirections) % turn;
+  const int between = steps < turn - steps ? steps : turn - steps;
+  const int least = axes ? 2 : 1;
+  return class_of(between) < least ? least : class_of(between);
+}
 
 constexpr std::array kSigmas{0.7, 1.0, 1.5, 2.2, 3.3, 5.0, 7.5};  // [cells]
 constexpr std::array kOutliers{0.02, 0.05, 0.1, 0.2, 0.35, 0.5};
@@ -38,34 +60,46 @@ std::vector<ModelScores> tabulate(const std::array<double, kDistanceBins>& backg
   return nats;
 }
 
-// Facings as they are looked up: a point's, turned, less a place's, is a difference of directions if both
-// have one, and falls outside of that range of numbers if not.
-constexpr int kPlaceNoDirection = 200;
-constexpr int kPointNoDirection = 300;
-constexpr int kZeroDifference = kPlaceNoDirection;  // added, so that no index is negative
+constexpr int kOnWall = 2;  // cells: a wall within this distance is met
 
-/// By index point + turn + kZeroDifference - place: what is added to the distance bin to name the encounter.
-constexpr std::array<std::uint8_t, kPointNoDirection + kDirections + kZeroDifference> kEncounterOffset = [] {
-  std::array<std::uint8_t, kPointNoDirection + kDirections + kZeroDifference> offsets{};
-  static_assert(encounter(0, Facing::unclear) == 0);
-  for (int difference = 1 - kDirections; difference <= 2 * kDirections - 2; ++difference) {
-    const int turn = (difference + kDirections) % kDirections;
-    const bool same = std::min(turn, kDirections - turn) <= kDirections / 4;
-    offsets[kZeroDifference + difference] =
-        static_cast<std::uint8_t>(encounter(0, same ? Facing::same : Facing::opposite));
+/// What is added to the distance bin to name the encounter, by both facings.
+constexpr auto kEncounterOffset = [] {
+  std::array<std::array<std::uint8_t, kFacingCodes>, kFacingCodes> offsets{};
+  static_assert(encounter(0, kUnclearFacing) == 0 && kEncounters <= 255);
+  for (int a = 0; a < kFacingCodes; ++a) {
+    for (int b = 0; b < kFacingCodes; ++b) {
+      offsets[a][b] = static_cast<std::uint8_t>(
+          encounter(0, class_of_facings(static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b))));
+    }
   }
   return offsets;
 }();
 
-/// Adds to every model's score what the points met. Models are the inner loop: their scores are independent
-/// sums, which compilers vectorise without reordering any of them.
-void add_scores(std::span<const int> histogram, float weight, const std::vector<ModelScores>& nats,
-                ModelScores& scores) {
+constexpr std::size_t kBlock = 128;
+
+/// Where `count` turned points fall; what falls outside is moved to the rim, which is unseen. The same bits
+/// in every version: no operation is fused or reordered.
+GRIDMERGE_MULTIVERSION
+void place_points(const float* px, const float* py, std::size_t count, float c, float s, float tx, float ty,
+                  float last_x, float last_y, int width, int* at) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = std::min(std::max(c * px[i] - s * py[i] + tx, 0.0F), last_x);
+    const float y = std::min(std::max(s * px[i] + c * py[i] + ty, 0.0F), last_y);
+    at[i] = static_cast<int>(y) * width + static_cast<int>(x);
+  }
+}
+
+/// Adds `count` times what each model says of an encounter to the models' scores from the `first` model on.
+GRIDMERGE_MULTIVERSION
+void add_encounters(const int* histogram, float weight, const ModelScores* nats, std::size_t first,
+                    ModelScores& sums) {
+  ModelScores scores = sums;
   for (int met = 0; met < kEncounters; ++met) {
     if (histogram[met] == 0) continue;
     const float count = weight * static_cast<float>(histogram[met]);
-    for (std::size_t i = 0; i < kErrorModels; ++i) scores[i] += count * nats[met][i];
+    for (std::size_t i = first; i < kErrorModels; ++i) scores[i] += count * nats[met][i];
   }
+  sums = scores;
 }
 
 double seen(std::span<const int> histogram) {
@@ -79,18 +113,25 @@ std::span<const ErrorModel, kErrorModels> error_models() {
   return models;
 }
 
+int facing_class(std::uint8_t a, std::uint8_t b) {
+  return kEncounterOffset[a][b] / kDistanceBins;
+}
+
 std::array<float, kEncounters> evidence_table(const ErrorModel& model,
                                               const std::array<double, kDistanceBins>& background) {
-  std::array<float, kEncounters> table{};
+  std::array<double, kDistanceBins> ratio{};
   double below = 0.0;  // P(distance < upper edge of the previous bin), for the magnitude of a normal error
   for (int bin = 0; bin < kDistanceBins; ++bin) {
     const bool last = bin == kDistanceBins - 1;
     const double up_to = last ? 1.0 : std::erf((bin + 0.5) / (model.sigma * std::numbers::sqrt2));
-    const double ratio = (up_to - below) / background[bin];
+    ratio[bin] = (up_to - below) / background[bin];
     below = up_to;
-    for (const Facing facing : {Facing::unclear, Facing::same, Facing::opposite}) {
+  }
+  std::array<float, kEncounters> table{};
+  for (int bin = 0; bin < kDistanceBins; ++bin) {
+    for (int facing = 0; facing < kFacings; ++facing) {
       table[encounter(bin, facing)] = static_cast<float>(
-          std::log((1.0 - model.outliers) * ratio * kFacingRatio[static_cast<int>(facing)] + model.outliers));
+          std::log((1.0 - model.outliers) * ratio[bin] * kFacingRatio[facing] + model.outliers));
     }
   }
   return table;
@@ -121,8 +162,7 @@ WallEvidence::LookUp::LookUp(const WallMap& map)
   places.reserve(map.places.size());
   for (const Place& place : map.places) {
     const int distance = place.distance == kUnseen ? kEncounters : place.distance;
-    const bool faces = place.facing != kNoDirection && place.distance != kUnseen;
-    const int facing = faces ? place.facing : kPlaceNoDirection;
+    const int facing = place.distance == kUnseen ? kNoDirection : place.facing;
     places.push_back(static_cast<std::uint16_t>(distance | facing << 8));
   }
 }
@@ -132,7 +172,7 @@ WallEvidence::Points::Points(const std::vector<WallPoint>& walls, std::size_t ma
   for (const WallPoint& wall : drawn) {
     x.push_back(static_cast<float>(wall.position.x));
     y.push_back(static_cast<float>(wall.position.y));
-    facing.push_back(wall.facing == kNoDirection ? kPointNoDirection : wall.facing);
+    facing.push_back(wall.facing);
   }
   weight = drawn.empty() ? 0.0F : static_cast<float>(walls.size()) / static_cast<float>(drawn.size());
 }
@@ -157,27 +197,23 @@ WallEvidence::Histogram WallEvidence::count_encounters(const LookUp& map, const 
   constexpr double kFarAway = 1e6;  // beyond any map
   const float tx = static_cast<float>(std::clamp(T_map_points.x, -kFarAway, kFarAway));
   const float ty = static_cast<float>(std::clamp(T_map_points.y, -kFarAway, kFarAway));
-  const double turns = T_map_points.theta / (2.0 * std::numbers::pi) + 1.0;
-  const int turn = static_cast<int>(std::lround(turns * kDirections)) % kDirections + kZeroDifference;
+  std::array<const std::uint8_t*, kFacingCodes> offsets;  // by the point's facing, then the place's
+  for (int facing = 0; facing < kFacingCodes; ++facing) {
+    const std::uint8_t at = turned(static_cast<std::uint8_t>(facing), steps_of_turn(T_map_points.theta));
+    offsets[facing] = kEncounterOffset[at].data();
+  }
 
   // Several, because neighbouring walls often meet the same: adding to one counter twice in a row would wait.
   constexpr std::size_t kHistograms = 4;
   std::array<Histogram, kHistograms> histograms{};
-  constexpr std::size_t kBlock = 128;
   std::array<int, kBlock> at;
   for (std::size_t first = 0; first < points.x.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, points.x.size() - first);
-    const float* px = points.x.data() + first;
-    const float* py = points.y.data() + first;
-    for (std::size_t i = 0; i < count; ++i) {  // vectorised
-      // What falls outside is moved to the rim, which is unseen.
-      const float x = std::min(std::max(c * px[i] - s * py[i] + tx, 0.0F), map.last_x);
-      const float y = std::min(std::max(s * px[i] + c * py[i] + ty, 0.0F), map.last_y);
-      at[i] = static_cast<int>(y) * map.width + static_cast<int>(x);
-    }
+    place_points(points.x.data() + first, points.y.data() + first, count, c, s, tx, ty, map.last_x,
+                 map.last_y, map.width, at.data());
     for (std::size_t i = 0; i < count; ++i) {
       const int place = map.places[at[i]];
-      const int met = (place & 0xff) + kEncounterOffset[points.facing[first + i] + turn - (place >> 8)];
+      const int met = (place & 0xff) + offsets[points.facing[first + i]][place >> 8];
       ++histograms[i % kHistograms][met];
     }
   }
@@ -190,19 +226,39 @@ WallEvidence::Histogram WallEvidence::count_encounters(const LookUp& map, const 
 Evidence WallEvidence::operator()(const SE2& T_fixed_moving_cells, double min_sigma) const {
   const Histogram in_fixed = count_encounters(*fixed_, moving_walls_, T_fixed_moving_cells);
   const Histogram in_moving = count_encounters(*moving_, fixed_walls_, inverse(T_fixed_moving_cells));
-  ModelScores scores{};
-  add_scores(in_fixed, moving_walls_.weight, fixed_->nats, scores);
-  add_scores(in_moving, fixed_walls_.weight, moving_->nats, scores);
-
   const auto models = error_models();
   std::size_t first = 0;
   while (models[first].sigma < min_sigma && models[first].sigma < models.back().sigma) ++first;
+  ModelScores scores{};
+  add_encounters(in_fixed.data(), moving_walls_.weight, fixed_->nats.data(), first, scores);
+  add_encounters(in_moving.data(), fixed_walls_.weight, moving_->nats.data(), first, scores);
   const auto best_score = std::max_element(scores.begin() + first, scores.end());
   Evidence best;
   best.score = *best_score;
   best.model = models[best_score - scores.begin()];
   best.seen_walls = moving_walls_.weight * seen(in_fixed) + fixed_walls_.weight * seen(in_moving);
   return best;
+}
+
+WallShares WallEvidence::shares(const SE2& T_fixed_moving_cells, int apart_from) const {
+  WallShares shares;
+  const auto add = [&](const Histogram& met, double weight) {
+    for (int facing = 0; facing < kFacings; ++facing) {
+      for (int bin = 0; bin < kDistanceBins; ++bin) {
+        const double walls = weight * met[encounter(bin, facing)];
+        shares.seen += walls;
+        if (bin >= apart_from) shares.apart += walls;
+        if (bin <= kOnWall && facing >= kFirstContraryFacing) shares.contrary += walls;
+      }
+    }
+  };
+  add(count_encounters(*fixed_, moving_walls_, T_fixed_moving_cells), moving_walls_.weight);
+  add(count_encounters(*moving_, fixed_walls_, inverse(T_fixed_moving_cells)), fixed_walls_.weight);
+  if (shares.seen > 0.0) {
+    shares.apart /= shares.seen;
+    shares.contrary /= shares.seen;
+  }
+  return shares;
 }
 
 }  // namespace gridmerge

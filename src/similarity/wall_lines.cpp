@@ -39,8 +39,7 @@ int turn_between(int a, int b, int full_turn) {
 /// The moving map's walls that lie on walls of the fixed one which face the same side [cells, fixed grid
 /// frame].
 std::vector<MetPoint> find_met_walls(const WallMap& fixed, const WallMap& moving, const SE2& T) {
-  const double turns = T.theta / (2.0 * std::numbers::pi) + 1.0;
-  const int turned = static_cast<int>(std::lround(turns * kDirections)) % kDirections;
+  const int turn = steps_of_turn(T.theta);
   std::vector<MetPoint> met;
   for (const WallPoint& wall : moving.walls) {
     const Point2 p = T * wall.position;
@@ -49,9 +48,12 @@ std::vector<MetPoint> find_met_walls(const WallMap& fixed, const WallMap& moving
                                       static_cast<std::size_t>(p.x)];
     if (place.distance == kUnseen || place.distance > kMeetingDistance) continue;
     if (wall.facing == kNoDirection || place.facing == kNoDirection) continue;
-    const int facing = (wall.facing + turned) % kDirections;
-    if (turn_between(facing, place.facing, kDirections) > kFacingTolerance) continue;
-    met.push_back({static_cast<float>(p.x), static_cast<float>(p.y), facing * kAnglesPerDirection});
+    const std::uint8_t facing = turned(wall.facing, turn);
+    const int full_turn = is_axis(facing) || is_axis(place.facing) ? kAxes : kDirections;
+    if (turn_between(facing % kDirections, place.facing % kDirections, full_turn) > kFacingTolerance)
+      continue;
+    const int direction = is_axis(facing) ? facing - kDirections : facing;
+    met.push_back({static_cast<float>(p.x), static_cast<float>(p.y), direction * kAnglesPerDirection});
   }
   return met;
 }

@@ -18,8 +18,17 @@ constexpr int kChamferStep = 3;  // distance units of one cell
 constexpr int kChamferDiagonal = 4;
 
 constexpr int kFacingReach = 3;  // cells around a wall whose free cells decide which way it faces
-constexpr double kFacingBalance =
-    0.25;  // the free side must have this share of the window more than the other
+/// The free side must have this share of half the window more than the other.
+constexpr double kFacingBalance = 0.25;
+/// A balanced wall has an axis if its cells spread so much more along it than across it, and each side has
+/// this share of free cells: a pillar has no axis, nor has the inside of a thick wall.
+constexpr double kAxisElongation = 4.0;
+constexpr double kAxisFree = 0.3;
+
+/// A thing that stands alone: at least so many wall cells that touch each other and no other wall, no farther
+/// apart than this.
+constexpr std::size_t kLeastThing = 3;
+constexpr double kLargestThing = 2.5;  // [m]
 
 /// A chamfer distance with a label of the place it was measured to: the label is in the low byte, so that the
 /// smaller of two is the nearer one, and needs no branch.
@@ -82,9 +91,53 @@ class BoxSums {
   std::vector<int> sums_;
 };
 
+struct WallSum {
+  float x = 0.0F;
+  float y = 0.0F;
+  int count = 0;
+};
+
+/// The axis of the wall at (x, y), of which neither side has more free cells; kNoDirection if it has none.
+std::uint8_t find_axis(const std::vector<WallSum>& walls, const std::vector<std::uint8_t>& is_free, int width,
+                       int x, int y) {
+  constexpr int kReach = kFacingReach;
+  double count = 0.0, sx = 0.0, sy = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+  for (int dy = -kReach; dy <= kReach; ++dy) {
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      if (walls[static_cast<std::size_t>(y + dy) * width + (x + dx)].count == 0) continue;
+      count += 1.0;
+      sx += dx;
+      sy += dy;
+      xx += dx * dx;
+      yy += dy * dy;
+      xy += dx * dy;
+    }
+  }
+  xx -= sx * sx / count;
+  yy -= sy * sy / count;
+  xy -= sx * sy / count;
+  const double middle = 0.5 * (xx + yy), spread = std::hypot(0.5 * (xx - yy), xy);
+  // One cell across: a wall of one cell is as thick as a cell, not as thick as its centres' line.
+  if (middle + spread < kAxisElongation * (middle - spread + count / 12.0)) return kNoDirection;
+  const double across = 0.5 * std::atan2(2.0 * xy, xx - yy) + 0.5 * std::numbers::pi;
+  const double nx = std::cos(across), ny = std::sin(across);
+  int free[2] = {0, 0}, cells[2] = {0, 0};
+  for (int dy = -kReach; dy <= kReach; ++dy) {
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      const double off = nx * dx + ny * dy;
+      if (std::abs(off) < 1.0) continue;
+      ++cells[off > 0.0];
+      free[off > 0.0] += is_free[static_cast<std::size_t>(y + dy) * width + (x + dx)];
+    }
+  }
+  if (free[0] < kAxisFree * cells[0] || free[1] < kAxisFree * cells[1]) return kNoDirection;
+  const double parts = (across / (2.0 * std::numbers::pi) + 1.0) * kDirections;
+  return static_cast<std::uint8_t>(kDirections + static_cast<int>(std::lround(parts)) % kAxes);
+}
+
 /// The direction from the wall at (x, y) to where more free cells are, kNoDirection where the sides are
 /// balanced.
-std::uint8_t find_facing(const BoxSums& free_cells, int x, int y) {
+std::uint8_t find_side(const BoxSums& free_cells, int x, int y) {
   constexpr int kReach = kFacingReach;
   const int right = free_cells(x + 1, y - kReach, x + kReach + 1, y + kReach + 1);
   const int left = free_cells(x - kReach, y - kReach, x, y + kReach + 1);
@@ -98,13 +151,43 @@ std::uint8_t find_facing(const BoxSums& free_cells, int x, int y) {
   return static_cast<std::uint8_t>(static_cast<int>(std::lround((turns + 1.0) * kDirections)) % kDirections);
 }
 
-struct WallSum {
-  float x = 0.0F;
-  float y = 0.0F;
-  int count = 0;
-};
+/// Marks the walls of small things. `at` has the index of each cell's wall, or -1.
+void mark_things(WallMap& map, const std::vector<int>& at) {
+  const double largest = kLargestThing / map.cell;
+  std::vector<std::uint8_t> visited(map.walls.size(), 0);
+  std::vector<int> thing;
+  for (int first = 0; first < std::ssize(map.walls); ++first) {
+    if (visited[first] != 0) continue;
+    thing.assign(1, first);
+    visited[first] = 1;
+    double left = 1e9, right = -1e9, bottom = 1e9, top = -1e9;
+    for (std::size_t i = 0; i < thing.size(); ++i) {
+      const Point2& p = map.walls[thing[i]].position;
+      left = std::min(left, p.x);
+      right = std::max(right, p.x);
+      bottom = std::min(bottom, p.y);
+      top = std::max(top, p.y);
+      const int x = static_cast<int>(p.x), y = static_cast<int>(p.y);
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int other = at[static_cast<std::size_t>(y + dy) * map.width + (x + dx)];
+          if (other < 0 || visited[other] != 0) continue;
+          visited[other] = 1;
+          thing.push_back(other);
+        }
+      }
+    }
+    if (thing.size() < kLeastThing || std::hypot(right - left, top - bottom) > largest) continue;
+    for (const int wall : thing) map.walls[wall].stands_alone = true;
+  }
+}
 
 }  // namespace
+
+int steps_of_turn(double theta) {
+  const double turns = theta / (2.0 * std::numbers::pi) + 1.0;
+  return static_cast<int>(std::lround(turns * kDirections)) % kDirections;
+}
 
 WallMap make_wall_map(const OccupancyGrid& grid, double cell) {
   const double scale = grid.resolution / cell;
@@ -144,6 +227,7 @@ WallMap make_wall_map(const OccupancyGrid& grid, double cell) {
     if (walls[i].count > 0) is_free[i] = 0;  // a wall hides the free cells that share its cell
   }
 
+  std::vector<int> wall_at(size, -1);
   const BoxSums free_cells(is_free, map.width, map.height);
   for (int y = 0; y < map.height; ++y) {
     throw_if_cancelled();
@@ -151,12 +235,16 @@ WallMap make_wall_map(const OccupancyGrid& grid, double cell) {
       const std::size_t i = static_cast<std::size_t>(y) * map.width + x;
       const WallSum& wall = walls[i];
       if (wall.count == 0) continue;
-      const std::uint8_t facing = find_facing(free_cells, x, y);
+      std::uint8_t facing = find_side(free_cells, x, y);
+      if (facing == kNoDirection) facing = find_axis(walls, is_free, map.width, x, y);
       to_wall[i] = facing;
+      wall_at[i] = static_cast<int>(map.walls.size());
       map.walls.push_back(
           {{static_cast<double>(wall.x) / wall.count, static_cast<double>(wall.y) / wall.count}, facing});
     }
   }
+
+  mark_things(map, wall_at);
 
   chamfer_distance(to_wall, map.width, map.height);
   chamfer_distance(to_known, map.width, map.height);

@@ -1,11 +1,15 @@
 # Fits the model again and compares it with src/match/verdict_model.hpp, byte for byte.
-execute_process(COMMAND ${PYTHON} ${SOURCE}/calibration/fit.py ${SOURCE}/calibration/fit.tsv
-                OUTPUT_FILE ${OUTPUT} RESULT_VARIABLE failed)
+execute_process(COMMAND ${PYTHON} -c "import numpy" RESULT_VARIABLE no_numpy ERROR_QUIET)
+if(no_numpy)
+  message("Skipped: ${PYTHON} has no numpy, with which calibration/fit.py fits")
+  return()
+endif()
+execute_process(COMMAND ${PYTHON} ${SOURCE}/calibration/fit.py OUTPUT_FILE ${OUTPUT} RESULT_VARIABLE failed)
 if(failed)
   message(FATAL_ERROR "calibration/fit.py ended with exit code ${failed}")
 endif()
 execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${OUTPUT} ${SOURCE}/src/match/verdict_model.hpp
                 RESULT_VARIABLE differs)
 if(differs)
-  message(FATAL_ERROR "src/match/verdict_model.hpp is not what calibration/fit.py makes of calibration/fit.tsv: ${OUTPUT}")
+  message(FATAL_ERROR "src/match/verdict_model.hpp is not what calibration/fit.py makes of calibration/cases.tsv.gz: ${OUTPUT}")
 endif()

@@ -67,7 +67,7 @@ TEST_F(EvaluateCommand, WritesWhatVerdictsRestOn) {
   std::getline(lines, head);
   std::getline(lines, first);
   std::getline(lines, second);
-  EXPECT_EQ(head.rfind("fixed\tmoving\ttruth\ttier\tprobability\treason\tlead\t", 0), 0U) << head;
+  EXPECT_EQ(head.rfind("fixed\tmoving\ttier\thypothesis\ttruth\terror\tx\ty\ttheta\tscore\t", 0), 0U) << head;
   EXPECT_EQ(first.rfind("left.yaml\tright.yaml\tright\tA\t", 0), 0U) << first;
   EXPECT_EQ(second.rfind("left.yaml\tother.yaml\tnegative\t\t", 0), 0U) << second;
   EXPECT_EQ(std::count(first.begin(), first.end(), '\t'), std::count(head.begin(), head.end(), '\t'));

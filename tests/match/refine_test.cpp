@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "support/building.hpp"
 
@@ -43,7 +44,8 @@ TEST(Refine, ClimbsBackToTheTruthAndKeepsHypothesesApart) {
     for (const double turn : {-0.02, 0.02, 1.5}) candidates.push_back({metric.moved({}, dx, 1.0, turn), 1});
   }
   double last_share = 0.0;
-  const auto found = refine(map, map, candidates, options, [&](double share) {
+  const WallEvidence evidence(map, map, std::numeric_limits<std::size_t>::max());
+  const auto found = refine(evidence, map, candidates, options, [&](double share) {
     EXPECT_GE(share, last_share);
     last_share = share;
   });
@@ -60,7 +62,7 @@ TEST(Refine, ClimbsBackToTheTruthAndKeepsHypothesesApart) {
 
 TEST(Refine, NoCandidatesNoPoses) {
   const WallMap map = make_wall_map(test::draw_building(1), 0.1);
-  EXPECT_TRUE(refine(map, map, {}, {}).empty());
+  EXPECT_TRUE(refine(WallEvidence(map, map, 1000), map, {}, {}).empty());
 }
 
 }  // namespace

@@ -2,99 +2,162 @@
 #include "gridmerge/match/verdict.hpp"
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include <cmath>
+#include <set>
+#include <string>
 
 namespace gridmerge {
 namespace {
 
-TEST(Lead, IsTheMarginInUnitsOfItsNoise) {
-  EXPECT_DOUBLE_EQ(find_lead({400.0, 100.0}), 15.0);
-  EXPECT_DOUBLE_EQ(find_lead({400.0}), 20.0);
-  EXPECT_DOUBLE_EQ(find_lead({}), 0.0);
-  EXPECT_DOUBLE_EQ(find_lead({400.0, 400.0}), 0.0);
+/// Two clean maps of one place that share half a floor.
+PoseFigures clear_pose() {
+  PoseFigures figures;
+  figures.score = 6000.0;
+  figures.wall_score = 5800.0;
+  figures.seen_walls = 240.0;
+  figures.walls_met = 0.93;
+  figures.walls_met_locally = 0.95;
+  figures.walls_apart = 0.01;
+  figures.walls_contrary = 0.03;
+  figures.wall_lines = 12.0;
+  figures.seen_things = 40.0;
+  figures.things_met = 0.9;
+  figures.spread = 5.0;
+  figures.held = 4000.0;
+  figures.held_most = 5000.0;
+  figures.acceptance_index = 0.985;
+  figures.common_area = 300.0;
+  figures.overlap = 0.6;
+  figures.sigma = 0.07;
+  figures.outliers = 0.1;
+  return figures;
 }
 
-/// A pair beyond doubt.
-VerdictFeatures clear_pair() {
-  VerdictFeatures features;
-  features.lead = 40.0;
-  features.acceptance_index = 0.98;
-  features.wall_lines = 12.0;
-  features.score = 5000.0;
-  features.nats_per_wall = 1.5;
-  features.overlap = 0.6;
-  features.common_area = 150.0;
-  features.spread = 4.0;
-  features.sigma = 0.07;
-  features.outliers = 0.1;
-  features.walls_met = 0.88;
-  features.walls_met_locally = 0.93;
-  return features;
+double alone(const PoseFigures& figures) {
+  return probabilities_of(std::vector{figures}).front();
 }
 
-TEST(ProbabilityOf, APairBeyondDoubtIsBelieved) {
-  EXPECT_GT(probability_of(clear_pair()), 0.99);
+PoseFigures changed(double PoseFigures::*figure, double value) {
+  PoseFigures figures = clear_pose();
+  figures.*figure = value;
+  return figures;
 }
 
-TEST(ProbabilityOf, RisesWithWhatSpeaksForThePair) {
-  VerdictFeatures fair = clear_pair();
-  fair.lead = 10.0;
-  fair.walls_met_locally = 0.85;
-  fair.wall_lines = 6.0;
-  const auto changed = [&](double VerdictFeatures::*feature, double value) {
-    VerdictFeatures other = fair;
-    other.*feature = value;
-    return probability_of(other);
-  };
-  const double usual = probability_of(fair);
-  EXPECT_GT(changed(&VerdictFeatures::lead, 20.0), usual);
-  EXPECT_GT(changed(&VerdictFeatures::wall_lines, 8.0), usual);
-  EXPECT_GT(changed(&VerdictFeatures::walls_met_locally, 0.92), usual);
+TEST(PoseFigures, EachHasANameAUnitAMeaningAndAPlaceOfItsOwn) {
+  std::set<std::string> names;
+  PoseFigures figures;
+  double next = 1.0;
+  for (const PoseFigure& figure : pose_figures()) {
+    EXPECT_TRUE(names.insert(figure.name).second) << figure.name;
+    EXPECT_STRNE(figure.unit, "");
+    EXPECT_STRNE(figure.meaning, "");
+    EXPECT_EQ(figures.*figure.value, 0.0) << figure.name;  // no other one has it
+    figures.*figure.value = next++;
+  }
+  // As many as there are members, all of them numbers.
+  EXPECT_EQ(pose_figures().size() * sizeof(double), sizeof(PoseFigures));
 }
 
-TEST(ProbabilityOf, ATieIsAtMostEven) {
-  VerdictFeatures tie = clear_pair();
-  tie.lead = 0.0;
-  EXPECT_LE(probability_of(tie), 0.5);
+TEST(VerdictTerms, StayWithinTheirBoundsWhateverTheFigures) {
+  for (const double value : {0.0, 1.0, -1.0, 1e12, -1e12}) {
+    PoseFigures figures;
+    for (const PoseFigure& figure : pose_figures()) figures.*figure.value = value;
+    for (const VerdictTerm& term : verdict_terms()) {
+      EXPECT_GE(term(figures), term.least) << term.name << ' ' << value;
+      EXPECT_LE(term(figures), term.most) << term.name << ' ' << value;
+    }
+  }
 }
 
-TEST(ProbabilityOf, ACornerIsNotEnoughHoweverLongAndClean) {
-  VerdictFeatures corner = clear_pair();
-  corner.walls_met = 1.0;
-  corner.walls_met_locally = 1.0;
-  corner.wall_lines = 2.0;
-  EXPECT_LT(probability_of(corner), 0.05);
+TEST(ProbabilitiesOf, AClearPoseIsBelievedAndNothingIsNot) {
+  EXPECT_GT(alone(clear_pose()), 0.98);
+  EXPECT_LT(alone({}), 1e-4);
+  EXPECT_TRUE(probabilities_of({}).empty());
 }
 
-TEST(ProbabilityAmong, RisesWithTheLeadOverTheNextHypothesis) {
-  const VerdictFeatures features = clear_pair();
-  EXPECT_GT(probability_among(features, 900.0, 100.0), probability_among(features, 900.0, 800.0));
-  VerdictFeatures same = features;
-  same.lead = find_lead({900.0, 400.0});
-  EXPECT_DOUBLE_EQ(probability_among(features, 900.0, 400.0), probability_of(same));
+TEST(ProbabilitiesOf, RiseWithWhatSpeaksForThePose) {
+  const double usual = log_odds_of(clear_pose());
+  EXPECT_LT(log_odds_of(changed(&PoseFigures::wall_lines, 4.0)), usual);
+  EXPECT_LT(log_odds_of(changed(&PoseFigures::walls_met_locally, 0.7)), usual);
+  EXPECT_LT(log_odds_of(changed(&PoseFigures::acceptance_index, 0.93)), usual);
+  EXPECT_LT(log_odds_of(changed(&PoseFigures::things_met, 0.3)), usual);
+  EXPECT_LT(log_odds_of(changed(&PoseFigures::held, 100.0)), usual);
 }
 
-TEST(ProbabilityOf, NothingIsNothing) {
-  EXPECT_LT(probability_of({}), 1e-6);
+TEST(ProbabilitiesOf, ACornerTellsNoPlacesApart) {
+  EXPECT_LT(alone(changed(&PoseFigures::wall_lines, 2.0)), 0.5);
 }
 
-TEST(ExplainRefusal, NamesWhatAloneHoldsThePairBack) {
+TEST(ProbabilitiesOf, ThingsCountByHowManyThereAre) {
+  PoseFigures few = clear_pose(), many = clear_pose();
+  few.seen_things = 0.5;
+  few.things_met = many.things_met = 0.0;
+  EXPECT_GT(log_odds_of(few), log_odds_of(many));
+  few.things_met = many.things_met = 1.0;
+  EXPECT_LT(log_odds_of(few), log_odds_of(many));
+}
+
+TEST(ProbabilitiesOf, EqualRivalsShareWhatThereIs) {
+  const std::vector<double> two = probabilities_of(std::vector{clear_pose(), clear_pose()});
+  EXPECT_DOUBLE_EQ(two[0], two[1]);
+  EXPECT_LT(two[0], 0.5);
+  EXPECT_GT(two[0], 0.49);
+}
+
+TEST(ProbabilitiesOf, PoorRivalsTakeNothingAway) {
+  std::vector<PoseFigures> poses(12);
+  poses.front() = clear_pose();
+  EXPECT_NEAR(probabilities_of(poses).front(), alone(clear_pose()), 1e-3);
+}
+
+RC_GTEST_PROP(ProbabilitiesOf, AreTheSoftmaxOfTheOddsAndNoneOfThese, ()) {
+  std::vector<PoseFigures> poses(*rc::gen::inRange<std::size_t>(1, 6));
+  double sum = 1.0;
+  for (PoseFigures& pose : poses) {
+    pose = clear_pose();
+    pose.wall_lines = *rc::gen::inRange(0, 40) / 2.0;
+    pose.walls_met_locally = *rc::gen::inRange(0, 100) / 100.0;
+    pose.acceptance_index = *rc::gen::inRange(800, 1000) / 1000.0;
+    sum += std::exp(log_odds_of(pose));
+  }
+  const std::vector<double> probabilities = probabilities_of(poses);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    RC_ASSERT(std::abs(probabilities[i] - std::exp(log_odds_of(poses[i])) / sum) < 1e-9);
+}
+
+TEST(ExplainRefusal, NamesWhatHoldsThePairBack) {
   constexpr double kAccept = 0.95;
-  const auto reason = [](auto change) {
-    VerdictFeatures features = clear_pair();
-    change(features);
-    return explain_refusal(features, kAccept);
-  };
-  EXPECT_EQ(reason([](auto&) {}), Reason::none);
-  EXPECT_EQ(reason([](auto& f) { f.lead = 0.5; }), Reason::ambiguous);
-  EXPECT_EQ(reason([](auto& f) { f.walls_met = 0.4, f.walls_met_locally = 0.5; }), Reason::contradiction);
-  EXPECT_EQ(reason([](auto& f) { f.wall_lines = 1.5, f.spread = 0.5; }), Reason::too_little_overlap);
-  EXPECT_EQ(
-      reason([](auto& f) { f.lead = 0.5, f.walls_met = 0.4, f.walls_met_locally = 0.5, f.wall_lines = 1.5; }),
-      Reason::several);
+  const auto reason = [](const std::vector<PoseFigures>& poses) { return explain_refusal(poses, kAccept); };
+  EXPECT_EQ(reason({}), Reason::nothing_to_compare);
+  EXPECT_EQ(reason({clear_pose()}), Reason::none);
+  EXPECT_EQ(reason({clear_pose(), clear_pose()}), Reason::ambiguous);
+
+  PoseFigures contradicting = clear_pose();
+  contradicting.walls_met = contradicting.walls_met_locally = 0.45;
+  contradicting.acceptance_index = 0.88;
+  contradicting.things_met = 0.1;
+  EXPECT_EQ(reason({contradicting}), Reason::contradiction);
+
+  PoseFigures corner = changed(&PoseFigures::wall_lines, 2.0);
+  corner.seen_walls = 8.0;
+  EXPECT_EQ(reason({corner}), Reason::too_little_overlap);
+  // Two ways to lay a room on itself: not too little, whatever their number of lines.
+  EXPECT_EQ(reason({corner, corner}), Reason::ambiguous);
+
+  PoseFigures hopeless = contradicting;
+  hopeless.wall_lines = 1.5;
+  hopeless.seen_walls = 8.0;
+  EXPECT_EQ(reason({hopeless}), Reason::several);
   EXPECT_STREQ(name_of(Reason::ambiguous), "ambiguous");
   EXPECT_STREQ(name_of(Reason::too_little_overlap), "too_little_overlap");
+}
+
+TEST(ExplainRefusal, MapsThatSlideAreAmbiguous) {
+  PoseFigures corridor = changed(&PoseFigures::wall_lines, 3.0);
+  corridor.held = 0.0;
+  EXPECT_EQ(explain_refusal(std::vector{corridor}, 0.95), Reason::ambiguous);
 }
 
 }  // namespace

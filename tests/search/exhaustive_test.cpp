@@ -43,7 +43,7 @@ class LiteralScore {
         if (x < 0 || y < 0 || x >= fixed_.width || y >= fixed_.height) continue;
         inside = true;
         const int distance = fixed_.places[static_cast<std::size_t>(y) * fixed_.width + x].distance;
-        if (distance != kUnseen) sum += table_[encounter(distance, Facing::unclear)];
+        if (distance != kUnseen) sum += table_[encounter(distance, kUnclearFacing)];
       }
     }
     if (!inside) return 0;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -14,6 +15,19 @@ namespace gridmerge {
 namespace {
 
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+
+/// The class of two facings by the angle between them, worked out anew: between two directions, or between
+/// the lines on which they lie where one is an axis.
+int class_by_angle(std::uint8_t point, std::uint8_t place, double theta) {
+  if (point == kNoDirection || place == kNoDirection) return kUnclearFacing;
+  const auto parts = [](std::uint8_t facing) { return is_axis(facing) ? facing - kDirections : facing; };
+  double between = parts(point) + std::lround(theta / (2.0 * std::numbers::pi) * kDirections) - parts(place);
+  const bool lines = is_axis(point) || is_axis(place);
+  between = std::abs(std::remainder(between, lines ? kAxes : kDirections));
+  int facing = 1;
+  for (const double up_to : {1.0, 2.0, 3.0, 5.0, 12.0}) facing += between > up_to ? 1 : 0;
+  return lines ? std::max(facing, 2) : facing;
+}
 
 /// The sum of the table over every wall point of `points`, looked up in `map` one by one.
 double sum_of_table(const WallMap& map, const WallMap& points, const SE2& T, const ErrorModel& model) {
@@ -26,12 +40,7 @@ double sum_of_table(const WallMap& map, const WallMap& points, const SE2& T, con
     if (x < 0 || y < 0 || x >= map.width || y >= map.height) continue;
     const Place place = map.places[static_cast<std::size_t>(y) * map.width + x];
     if (place.distance == kUnseen) continue;
-    Facing facing = Facing::unclear;
-    if (wall.facing != kNoDirection && place.facing != kNoDirection) {
-      const int turn = static_cast<int>(std::lround(T.theta / (2.0 * std::numbers::pi) * kDirections));
-      const double between = 2.0 * std::numbers::pi * (wall.facing + turn - place.facing) / kDirections;
-      facing = std::cos(between) > -1e-9 ? Facing::same : Facing::opposite;
-    }
+    const int facing = class_by_angle(wall.facing, place.facing, T.theta);
     sum += table[encounter(place.distance, facing)];
   }
   return sum;
@@ -41,32 +50,44 @@ TEST(EvidenceTable, IsTheLogOfTheMixtureOverTheBackground) {
   std::array<double, kDistanceBins> background{};
   background.fill(1.0 / kDistanceBins);
   const auto table = evidence_table({1.0, 0.2}, background);
-  const double on_the_wall = std::erf(0.5 / std::numbers::sqrt2);
-  EXPECT_NEAR(table[encounter(0, Facing::unclear)], std::log(0.8 * on_the_wall * kDistanceBins + 0.2), 1e-6);
-  EXPECT_NEAR(table[encounter(0, Facing::same)], std::log(0.8 * on_the_wall * kDistanceBins * 1.8 + 0.2),
-              1e-6);
-  EXPECT_NEAR(table[encounter(0, Facing::opposite)], std::log(0.8 * on_the_wall * kDistanceBins * 0.2 + 0.2),
-              1e-6);
-  EXPECT_NEAR(table[encounter(kDistanceBins - 1, Facing::unclear)], std::log(0.2), 1e-6);
+  const double on_the_wall = 0.8 * std::erf(0.5 / std::numbers::sqrt2) * kDistanceBins;
+  const std::array ratios{1.0, 4.8, 2.2, 0.9, 0.36, 0.08, 0.16};  // of the classes of facing
+  for (int facing = 0; facing < kFacings; ++facing)
+    EXPECT_NEAR(table[encounter(0, facing)], std::log(on_the_wall * ratios[facing] + 0.2), 1e-6) << facing;
+  EXPECT_NEAR(table[encounter(kDistanceBins - 1, kUnclearFacing)], std::log(0.2), 1e-6);
 }
 
 TEST(EvidenceTable, ExpectsNothingOfUnrelatedMaps) {
-  // Under the background the likelihood ratio has the mean 1: chance is never evidence. Unrelated walls face
-  // the same way every second time.
+  // Under the background the likelihood ratio has the mean 1: chance is never evidence.
   const WallMap map = make_wall_map(test::random_grid(5, 60, 50), 0.1);
   for (const ErrorModel& model : error_models()) {
     const auto table = evidence_table(model, map.background);
     double unclear = 0.0;
-    double facing = 0.0;
-    for (int bin = 0; bin < kDistanceBins; ++bin) {
-      unclear += map.background[bin] * std::exp(table[encounter(bin, Facing::unclear)]);
-      facing +=
-          0.5 * map.background[bin] *
-          (std::exp(table[encounter(bin, Facing::same)]) + std::exp(table[encounter(bin, Facing::opposite)]));
-    }
+    for (int bin = 0; bin < kDistanceBins; ++bin)
+      unclear += map.background[bin] * std::exp(table[encounter(bin, kUnclearFacing)]);
     EXPECT_NEAR(unclear, 1.0, 1e-5);
-    EXPECT_NEAR(facing, 1.0, 1e-5);
   }
+}
+
+TEST(FacingClass, FollowsTheAngleBetweenTheFreeSides) {
+  const auto facing = [](int parts) { return static_cast<std::uint8_t>(parts); };
+  const std::array<int, 17> classes{1, 1, 2, 3, 4, 4, 5, 5, 5, 5, 5, 5, 5, 6, 6, 6, 6};
+  for (int difference = 0; difference <= kDirections / 2; ++difference) {
+    EXPECT_EQ(facing_class(facing(difference), facing(0)), classes[difference]) << difference;
+    EXPECT_EQ(facing_class(facing(0), facing(difference)), classes[difference]) << difference;
+    EXPECT_EQ(facing_class(facing((30 + difference) % kDirections), facing(30)), classes[difference]);
+  }
+  EXPECT_EQ(facing_class(kNoDirection, facing(3)), kUnclearFacing);
+  EXPECT_EQ(facing_class(facing(3), kNoDirection), kUnclearFacing);
+}
+
+TEST(FacingClass, AWallWithFloorOnBothSidesMeetsThoseAlongIt) {
+  const auto axis = [](int parts) { return static_cast<std::uint8_t>(kDirections + parts); };
+  EXPECT_EQ(facing_class(axis(5), axis(5)), 2);
+  EXPECT_EQ(facing_class(axis(5), std::uint8_t{5}), 2);
+  EXPECT_EQ(facing_class(axis(5), std::uint8_t{5 + kAxes}), 2);  // from the other side
+  EXPECT_GE(facing_class(axis(5), axis(13)), kFirstContraryFacing);
+  EXPECT_GE(facing_class(std::uint8_t{13}, axis(5)), kFirstContraryFacing);
 }
 
 TEST(WallEvidence, AWallSeenFromTheOtherSideIsNotTheSameWall) {
@@ -151,6 +172,34 @@ TEST(WallEvidence, AFewPointsStandForAll) {
   const WallMap map = make_wall_map(test::random_grid(7, 200, 200), 0.1);
   const double all = WallEvidence(map, map, kAll)({}).score;
   EXPECT_NEAR(WallEvidence(map, map, 200)({}).score, all, 0.2 * all);
+}
+
+RC_GTEST_PROP(WallEvidence, SharesAreThoseOfTheWallsOneByOne, (unsigned seed)) {
+  const WallMap fixed = make_wall_map(test::random_grid(seed, 40, 30), 0.1);
+  const WallMap moving = make_wall_map(test::random_grid(seed + 1, 25, 35), 0.1);
+  const SE2 T{*rc::gen::inRange(-20, 20) + 0.31, *rc::gen::inRange(-20, 20) + 0.17,
+              *rc::gen::inRange(-314, 314) / 100.0};
+  constexpr int kApartFrom = 5;
+  double seen = 0.0, apart = 0.0, contrary = 0.0;
+  const auto look_up = [&](const WallMap& map, const WallMap& points, const SE2& T_map_points) {
+    for (const WallPoint& wall : points.walls) {
+      const Point2 p = T_map_points * wall.position;
+      const int x = static_cast<int>(std::floor(p.x)), y = static_cast<int>(std::floor(p.y));
+      if (x < 0 || y < 0 || x >= map.width || y >= map.height) continue;
+      const Place place = map.places[static_cast<std::size_t>(y) * map.width + x];
+      if (place.distance == kUnseen) continue;
+      seen += 1.0;
+      apart += place.distance >= kApartFrom ? 1.0 : 0.0;
+      contrary += place.distance <= 2 && class_by_angle(wall.facing, place.facing, T_map_points.theta) >= 5;
+    }
+  };
+  look_up(fixed, moving, T);
+  look_up(moving, fixed, inverse(T));
+  const WallShares shares = WallEvidence(fixed, moving, kAll).shares(T, kApartFrom);
+  const double rounding = 0.01 * seen + 2.0;  // of places on the border of cells
+  RC_ASSERT(std::abs(shares.seen - seen) <= rounding);
+  RC_ASSERT(std::abs(shares.apart * shares.seen - apart) <= rounding);
+  RC_ASSERT(std::abs(shares.contrary * shares.seen - contrary) <= rounding);
 }
 
 TEST(DrawEvenly, TakesEveryPointOrSpreadsTheCount) {

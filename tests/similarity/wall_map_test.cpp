@@ -117,11 +117,51 @@ TEST(WallMap, WallsFaceTheirFreeSide) {
   }
 }
 
-TEST(WallMap, AWallThatIsFreeOnBothSidesFacesNowhere) {
+TEST(WallMap, AThinWallWithFloorOnBothSidesHasAnAxis) {
   OccupancyGrid grid = make_grid(31, 31, 0.1, {}, Cell::free);
   for (int row = 0; row < 31; ++row) grid.at(15, row) = Cell::occupied;
+  const WallMap upright = make_wall_map(grid, 0.1);
+  ASSERT_TRUE(is_axis(upright.walls[15].facing));
+  EXPECT_EQ(upright.walls[15].facing, kDirections);  // across it, along x
+  for (int row = 0; row < 31; ++row) grid.at(15, row) = Cell::free;
+  for (int i = 0; i < 31; ++i) grid.at(i, i) = Cell::occupied;
+  const WallMap diagonal = make_wall_map(grid, 0.1);
+  ASSERT_TRUE(is_axis(diagonal.walls[15].facing));
+  EXPECT_EQ(diagonal.walls[15].facing, kDirections + 3 * kAxes / 4);
+}
+
+TEST(WallMap, APillarAndTheInsideOfAThickWallHaveNoAxis) {
+  OccupancyGrid grid = make_grid(41, 41, 0.1, {}, Cell::free);
+  grid.at(10, 10) = Cell::occupied;
+  for (int row = 0; row < 41; ++row)
+    for (int column = 24; column < 35; ++column) grid.at(column, row) = Cell::occupied;
   const WallMap map = make_wall_map(grid, 0.1);
-  EXPECT_EQ(map.walls[15].facing, kNoDirection);
+  for (const WallPoint& wall : map.walls) EXPECT_FALSE(is_axis(wall.facing)) << wall.position.x;
+}
+
+TEST(WallMap, SmallThingsStandAloneAndWallsDoNot) {
+  OccupancyGrid grid = make_grid(80, 80, 0.1, {}, Cell::free);
+  for (int i = 0; i < 80; ++i) grid.at(i, 2) = Cell::occupied;    // a wall of 8 m
+  for (int i = 30; i < 36; ++i) grid.at(i, 30) = Cell::occupied;  // a table
+  for (int i = 3; i < 9; ++i) grid.at(60, i) = Cell::occupied;    // a cupboard against the wall
+  grid.at(50, 60) = Cell::occupied;                               // a speck
+  const WallMap map = make_wall_map(grid, 0.1);
+  int alone = 0;
+  for (const WallPoint& wall : map.walls) {
+    if (!wall.stands_alone) continue;
+    ++alone;
+    const Point2 at = map.T_map_grid * Point2{wall.position.x * map.cell, wall.position.y * map.cell};
+    EXPECT_NEAR(at.y, 3.05, 1e-5);
+  }
+  EXPECT_EQ(alone, 6);
+}
+
+TEST(Turned, TurnsDirectionsByATurnAndAxesByHalfATurn) {
+  EXPECT_EQ(turned(30, 5), 3);
+  EXPECT_EQ(turned(kDirections + 14, 5), kDirections + 3);
+  EXPECT_EQ(turned(kNoDirection, 5), kNoDirection);
+  EXPECT_EQ(steps_of_turn(-std::numbers::pi / 2.0), 24);
+  EXPECT_EQ(steps_of_turn(2.0 * std::numbers::pi - 1e-9), 0);
 }
 
 }  // namespace

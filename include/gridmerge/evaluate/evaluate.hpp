@@ -47,7 +47,8 @@ struct MatchOutcome {
   std::optional<double> tolerance;  ///< [m]; none for a negative
   double seconds = 0.0;             ///< from grids in memory to the verdict
   Reason reason = Reason::none;     ///< why it was refused
-  VerdictFeatures features;         ///< what the probability rests on
+  std::vector<Hypothesis> hypotheses;
+  std::vector<double> errors;  ///< of each hypothesis [m]
 
   bool negative() const { return !tolerance; }
   bool accepted() const { return verdict == Verdict::accepted; }

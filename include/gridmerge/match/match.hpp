@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/match/pose_figures.hpp"
 #include "gridmerge/match/prepared_map.hpp"
 #include "gridmerge/match/verdict.hpp"
 
@@ -17,6 +18,7 @@ struct Hypothesis {
   /// Larger is better: the log-likelihood ratio "same place" against "unrelated" [nats].
   double score = 0.0;
   double probability = 0.0;  ///< that this pose is the true one
+  PoseFigures figures = {};  ///< what speaks for it
 };
 
 struct MatchOptions {
@@ -32,13 +34,13 @@ struct MatchResult {
   Reason reason = Reason::nothing_to_compare;  ///< why it was refused
   SE2 T_fixed_moving;                          ///< the best hypothesis, given for a refused pair too
   double probability = 0.0;                    ///< that the best hypothesis is the true pose
-  double acceptance_index = 0.0;       ///< agreement / (agreement + disagreement); 0 when nothing overlaps
-  std::int64_t agreement = 0;          ///< cells known in both maps and equal
-  std::int64_t disagreement = 0;       ///< cells known in both maps and different
-  double overlap = 0.0;                ///< share of the smaller map's known cells that are known in both
-  VerdictFeatures features;            ///< what the probability rests on; all 0 without a hypothesis
-  double seconds = 0.0;                ///< wall time from grids in memory to the verdict
-  std::vector<Hypothesis> hypotheses;  ///< distinct, best first; empty only when a map has nothing to go by
+  double acceptance_index = 0.0;  ///< agreement / (agreement + disagreement); 0 when nothing overlaps
+  std::int64_t agreement = 0;     ///< cells known in both maps and equal
+  std::int64_t disagreement = 0;  ///< cells known in both maps and different
+  double overlap = 0.0;           ///< share of the smaller map's known cells that are known in both
+  double seconds = 0.0;           ///< wall time from grids in memory to the verdict
+  /// Distinct, most probable first; empty only when a map has nothing to go by.
+  std::vector<Hypothesis> hypotheses;
 };
 
 /// Finds how `moving` lies on `fixed`, searching every pose, and says whether to believe it.

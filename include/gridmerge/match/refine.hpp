@@ -38,11 +38,15 @@ struct RefineOptions {
 };
 
 /// Climbs from the candidates to the local maxima of the evidence, in rounds: few points and many candidates
-/// first, all points and few candidates last, with steps from half a coarse cell down to a quarter of a cell.
-/// Returns distinct poses, best first. `progress` is called with shares of the work in [0, 1]. Deterministic;
-/// runs in the calling TBB arena.
-std::vector<ScoredPose> refine(const WallMap& fixed, const WallMap& moving,
+/// first, many points and few candidates last, with steps from half a coarse cell down to a quarter of a
+/// cell. `all_points` judges poses by all walls. Returns distinct poses, best first. `progress` is called
+/// with shares of the work in [0, 1]. Deterministic; runs in the calling TBB arena.
+std::vector<ScoredPose> refine(const WallEvidence& all_points, const WallMap& moving,
                                const std::vector<PoseCandidate>& candidates, const RefineOptions& options,
                                const std::function<void(double)>& progress = {});
+
+/// The local maximum of the evidence near `start`, by steps from `first_step` to `last_step` [cells].
+ScoredPose climb(const WallEvidence& evidence, const PoseMetric& metric, const SE2& start, double first_step,
+                 double last_step, double min_sigma = 0.0);
 
 }  // namespace gridmerge

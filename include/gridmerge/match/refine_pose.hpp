@@ -27,9 +27,9 @@ struct RefinedPose {
 /// than a metre: 50 to 100 cells, the more the larger the maps.
 ///
 /// The probability is what match() would give to the pose were it one of its hypotheses: the same model of
-/// the same features, with the lead that the pose has over the best distinct hypothesis of a full search.
-/// Where another pose explains the maps better, the lead is negative and the probability below a half; where
-/// the pose explains nothing it is 0. That somebody proposed the pose counts for nothing in it.
+/// the same figures, against all distinct hypotheses of a full search. Where another pose explains the maps
+/// better the probability is below a half; where the pose explains nothing it is 0. That somebody proposed
+/// the pose counts for nothing in it.
 ///
 /// Throws std::invalid_argument for a start that is not finite. Neither pose nor figures depend on which map
 /// is called fixed, but for rounding, nor on the number of threads. Runs in the calling TBB arena; about

@@ -90,4 +90,14 @@ double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b, cons
 /// std::invalid_argument for indices, numbers of maps or a probability that make no sense.
 Arrangement arrange(const ArrangementProblem& problem, double accept_probability);
 
+/// How many joins of an arrangement are expected to be false: of each group of n maps, n - 1 times the mean
+/// doubt in a member that is not fixed. O(maps).
+double expected_false_joins(const Arrangement& arrangement);
+
+/// arrange() with as many joins as a budget of false ones allows: as long as more are expected, the maps are
+/// arranged anew from a higher probability on, that of the least sure member. O(joins) times arrange().
+/// Throws std::invalid_argument as arrange(), and for a budget that is negative or not finite.
+Arrangement arrange_within(const ArrangementProblem& problem, double accept_probability,
+                           double max_false_joins);
+
 }  // namespace gridmerge

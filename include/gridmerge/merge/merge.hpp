@@ -17,6 +17,9 @@ struct MergeOptions {
   /// How each pair is matched, and from which probability on maps are joined; its progress callback is
   /// not used.
   MatchOptions match;
+  /// So many joins of the whole merge may be expected to be false, beside what `match.accept_probability`
+  /// asks of each: the least sure ones are not made (see arrange_within()).
+  double max_false_joins = 0.05;
   double resolution = 0.0;  ///< of the merged maps [m]; 0 = the finest among a map's inputs
   /// Called with the numbers of pairs that are matched and to be matched, never from two threads at once.
   std::function<void(std::size_t, std::size_t)> progress;
@@ -25,10 +28,10 @@ struct MergeOptions {
 /// Merges `maps` by what all pairs of them say together.
 ///
 /// Every pair is matched, and all hypotheses are kept. The arrangement of all maps that they speak for most
-/// is chosen (see arrange()): a weak pair that agrees with the others is used, a strong one that contradicts
-/// them is not. Then all poses are adjusted together, to what the pairs and the maps' walls say (robust least
-/// squares), and the maps of each component are fused in one pass. Maps that nothing joins surely enough are
-/// left out; groups between which nothing is sure are components of their own.
+/// is chosen (see arrange_within()): a weak pair that agrees with the others is used, a strong one that
+/// contradicts them is not. Then all poses are adjusted together, to what the pairs and the maps' walls say
+/// (robust least squares), and the maps of each component are fused in one pass. Maps that nothing joins
+/// surely enough are left out; groups between which nothing is sure are components of their own.
 ///
 /// `known_poses[i]`, where there is one, is what is known of map i beforehand; it may be shorter than `maps`.
 /// Known poses of two maps that are not fixed speak for joining them so: the maps' own hypothesis there
@@ -36,8 +39,8 @@ struct MergeOptions {
 /// the component that holds one has the world's frame. With no fixed map in it a component has the frame of
 /// its first member.
 ///
-/// The result does not depend on the number of threads, nor on the order of the maps, but that the frame of a
-/// component is its first member's and `joins` are in the order (0, 1), (0, 2), ... Throws
+/// The result does not depend on the number of threads, nor on the order of the maps, except that the frame
+/// of a component is its first member's and `joins` are in the order (0, 1), (0, 2), ... Throws
 /// std::invalid_argument for an invalid grid, option or known pose, naming the map by its index, and when a
 /// merged map would exceed 2^28 cells. k * (k - 1) / 2 matches for k maps.
 MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},

@@ -64,6 +64,8 @@ struct MergeResult {
   std::vector<Join> joins;               ///< every comparison made, whatever its outcome
   std::vector<std::size_t> left_out;     ///< maps that joined nothing, ascending
   std::vector<Reason> left_out_reasons;  ///< why, one for each that was left out
+  /// How many joins are expected to be false, of all that were made. The tree does not know.
+  std::optional<double> expected_false_joins = {};
 };
 
 }  // namespace gridmerge

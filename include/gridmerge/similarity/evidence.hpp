@@ -27,21 +27,28 @@ std::span<const ErrorModel, kErrorModels> error_models();
 /// A score [nats] for each of error_models().
 using ModelScores = std::array<float, kErrorModels>;
 
-/// How the free sides of two walls that meet lie to each other.
-enum class Facing : std::uint8_t { unclear = 0, same = 1, opposite = 2 };
-inline constexpr int kFacings = 3;
+/// How the free sides of two walls that meet lie to each other, in classes of the angle between them: 0 where
+/// one of them is not known, then from the same direction (1) to the opposite one (kFacings - 1).
+inline constexpr int kFacings = 7;
+inline constexpr int kUnclearFacing = 0;
 
-/// What a wall point can meet: a distance bin and a facing, or nothing that was seen.
+/// From this class on two walls stand across each other, or were seen from either side.
+inline constexpr int kFirstContraryFacing = 5;
+
+/// The class of two walls' facings in one frame.
+int facing_class(std::uint8_t a, std::uint8_t b);
+
+/// What a wall point can meet: a distance bin and a class of facing, or nothing that was seen.
 inline constexpr int kEncounters = kFacings * kDistanceBins;
-inline constexpr int encounter(int distance_bin, Facing facing) {
-  return static_cast<int>(facing) * kDistanceBins + distance_bin;
+inline constexpr int encounter(int distance_bin, int facing) {
+  return facing * kDistanceBins + distance_bin;
 }
 
 /// Log-likelihood ratio [nats] of every encounter, "same place" against "unrelated":
 ///   log((1 - outliers) * P(distance | sigma) / P(distance | background) * F + outliers),
-/// where F is the ratio for the facing: two walls that are one were seen from the same side nearly always,
-/// unrelated ones every second time, and an unclear facing tells nothing. A wall that meets an unseen place
-/// counts 0.
+/// where F is the ratio for the facing: two walls that are one face the same way nearly always, unrelated
+/// ones often stand at right angles or back to back, and an unclear facing tells nothing. A wall that meets
+/// an unseen place counts 0.
 std::array<float, kEncounters> evidence_table(const ErrorModel& model,
                                               const std::array<double, kDistanceBins>& background);
 
@@ -50,6 +57,13 @@ struct Evidence {
   double score = 0.0;  ///< log-likelihood ratio "same place" against "unrelated" [nats]
   ErrorModel model;
   double seen_walls = 0.0;  ///< wall points of either map that lie where the other one has seen
+};
+
+/// How the walls of two maps that lie where the other one has seen meet the other's, as shares of them.
+struct WallShares {
+  double seen = 0.0;      ///< so many wall points lie there, of both maps
+  double apart = 0.0;     ///< with no wall within the distance asked for: a wall where the other saw floor
+  double contrary = 0.0;  ///< on a wall of the other one that stands across, or was seen from behind
 };
 
 /// Scores poses of one pair of maps. Every wall point of each map is looked up in the other's distance map;
@@ -67,6 +81,9 @@ class WallEvidence {
   /// Evidence for a pose between the grid frames, in cells. Only models of sigma >= min_sigma [cells] are
   /// tried. O(points + models * bins).
   Evidence operator()(const SE2& T_fixed_moving_cells, double min_sigma = 0.0) const;
+
+  /// What becomes of the walls; `apart` counts those from `apart_from` cells on. O(points).
+  WallShares shares(const SE2& T_fixed_moving_cells, int apart_from) const;
 
  private:
   /// How often each encounter happened, and behind them how often the other map had not seen the place.
@@ -91,7 +108,7 @@ class WallEvidence {
 
     std::vector<float> x;
     std::vector<float> y;
-    std::vector<int> facing;
+    std::vector<std::uint8_t> facing;
     float weight = 0.0F;  // walls that each of them stands for
   };
 

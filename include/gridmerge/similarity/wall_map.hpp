@@ -16,22 +16,40 @@ inline constexpr int kDistanceBins = 24;
 /// In Place::distance: the map has not seen this place, so a wall here would tell nothing.
 inline constexpr std::uint8_t kUnseen = 255;
 
-/// The side of a wall from which it was seen is a direction, counted in parts of a turn.
+/// The side of a wall from which it was seen is a direction, counted in parts of a turn: a facing below
+/// kDirections. A thin wall with floor on both sides has an axis instead, the direction across it:
+/// kDirections plus parts of a turn, of half a turn. kNoDirection: neither is known.
 inline constexpr int kDirections = 32;
+inline constexpr int kAxes = kDirections / 2;
+inline constexpr std::uint8_t kNoDirection = kDirections + kAxes;
+inline constexpr int kFacingCodes = kNoDirection + 1;
 
-/// In place of a direction: the wall is free on both sides, or its side is not known.
-inline constexpr std::uint8_t kNoDirection = 255;
+/// Whether it is the axis of a wall with floor on both sides.
+inline constexpr bool is_axis(std::uint8_t facing) {
+  return facing >= kDirections && facing < kNoDirection;
+}
+
+/// The facing after a turn by `steps` parts of a turn, which must not be negative.
+inline constexpr std::uint8_t turned(std::uint8_t facing, int steps) {
+  if (facing == kNoDirection) return facing;
+  if (is_axis(facing)) return static_cast<std::uint8_t>(kDirections + (facing - kDirections + steps) % kAxes);
+  return static_cast<std::uint8_t>((facing + steps) % kDirections);
+}
+
+/// The parts of a turn by which a map is turned, in [0, kDirections).
+int steps_of_turn(double theta);
 
 /// What a map says of walls at one place.
 struct Place {
   std::uint8_t distance = kUnseen;     ///< to the nearest wall: a distance bin, or kUnseen
-  std::uint8_t facing = kNoDirection;  ///< where that wall's free side is, as seen from the wall
+  std::uint8_t facing = kNoDirection;  ///< of that wall: where its free side is, or its axis
 };
 
 /// A wall where a map has one.
 struct WallPoint {
   Point2 position;                     ///< [cells, grid frame]
-  std::uint8_t facing = kNoDirection;  ///< where its free side is
+  std::uint8_t facing = kNoDirection;  ///< where its free side is, or its axis
+  bool stands_alone = false;  ///< it belongs to a small thing that touches no wall: furniture, a pillar
 };
 
 /// A map as the engine compares it: where its walls are and which way they face, and for every place how far
