@@ -15,7 +15,7 @@ namespace {
 
 TEST(Building, KindsHaveNames) {
   for (const BuildingKind kind : building_kinds()) EXPECT_EQ(building_kind(name_of(kind)), kind);
-  EXPECT_EQ(building_kinds().size(), 8U);
+  EXPECT_EQ(building_kinds().size(), 12U);
   EXPECT_FALSE(building_kind("castle"));
 }
 

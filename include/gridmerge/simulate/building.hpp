@@ -21,6 +21,10 @@ enum class BuildingKind {
   loop,       ///< a corridor around a core, rooms outside
   curved,     ///< a corridor along an arc, radial and slanted walls
   outdoor,    ///< a fenced yard: houses at odd angles, trees, bushes, parked cars
+  corridor,  ///< one long corridor along the longer side, perhaps bent or branched, with few doors and niches
+  arena,  ///< blocks and pillars that lie on themselves after half or a quarter turn; up to 5 pillars do not
+  maze,   ///< ways between walls that have no thickness, with some loops
+  bare,   ///< a hall without furniture: walls, recesses, a few side rooms, perhaps pillars
 };
 
 /// All kinds, in the order above.
