@@ -62,7 +62,7 @@ double distance_between(const std::vector<Edge>& a, const std::vector<Edge>& b) 
   return least;
 }
 
-TEST(Arena, LiesOnItselfWhenItIsTurnedButForItsLonePillars) {
+TEST(Arena, LiesOnItselfWhenItIsTurnedExceptForItsLonePillars) {
   std::set<int> folds;
   std::set<std::size_t> lone;
   for (const auto& [width, height] : {std::pair{8.0, 8.0}, std::pair{25.0, 25.0}, std::pair{40.0, 25.0}}) {

@@ -44,7 +44,8 @@ inline constexpr double kMinBuildingSide = 8.0;    ///< [m]
 inline constexpr double kMaxBuildingSide = 500.0;  ///< [m]
 
 /// An invented building of about `width` x `height` metres. The same arguments give the same building.
-/// Throws std::invalid_argument for sides outside [kMinBuildingSide, kMaxBuildingSide]. O(area).
+/// Throws std::invalid_argument for sides outside [kMinBuildingSide, kMaxBuildingSide]. O(area); O(area^2)
+/// for an arena, a quarter of a second at the largest.
 Building make_building(BuildingKind kind, double width, double height, std::uint64_t seed);
 
 /// The building as a map in its own frame, `resolution` metres a cell: edges occupied, floor that can be
