@@ -6,15 +6,23 @@ usage: experiments/simulated_picture.py GRIDMERGE OUTPUT.png
 """
 
 import pathlib
+import re
 import struct
 import subprocess
 import sys
 import tempfile
 import zlib
 
-KINDS = ["office", "hall", "warehouse", "apartment", "symmetric", "loop", "curved", "outdoor"]
+SIZES = {"apartment": "14x11", "corridor": "50x20", "arena": "25x25", "maze": "25x17"}
+USUAL_SIZE = "40x25"
 TILE_WIDTH, TILE_HEIGHT, MARGIN = 300, 210, 10
 OCCUPIED, FREE, UNKNOWN = 0, 254, 205
+
+
+def all_kinds(gridmerge: str) -> list[str]:
+    """As `gridmerge simulate --help` lists them."""
+    text = subprocess.run([gridmerge, "simulate", "--help"], check=True, capture_output=True, text=True).stdout
+    return re.search(r"--kind KIND:{(.*?)}", text)[1].split(",")
 
 
 def read_pgm(path: pathlib.Path) -> tuple[int, int, bytes]:
@@ -47,13 +55,14 @@ def png(width: int, height: int, pixels: bytearray) -> bytes:
 def main() -> None:
     if len(sys.argv) != 3:
         sys.exit(__doc__)
+    kinds = all_kinds(sys.argv[1])
     columns = 4
     width = columns * (TILE_WIDTH + MARGIN) + MARGIN
-    height = 2 * len(KINDS) // columns * (TILE_HEIGHT + MARGIN) + MARGIN
+    height = 2 * -(-len(kinds) // columns) * (TILE_HEIGHT + MARGIN) + MARGIN
     canvas = bytearray([255]) * (width * height)
     with tempfile.TemporaryDirectory() as folder:
-        for number, kind in enumerate(KINDS):
-            size = "14x11" if kind == "apartment" else "40x25"
+        for number, kind in enumerate(kinds):
+            size = SIZES.get(kind, USUAL_SIZE)
             output = pathlib.Path(folder) / kind
             subprocess.run([sys.argv[1], "simulate", "--kind", kind, "--size", size, "--overlap", "0.4", "--seed", "8",
                             "--others", "0", "-o", output, "--quiet"], check=True, stdout=subprocess.DEVNULL)

@@ -20,14 +20,18 @@ struct Kind {
   void (*draw)(Draughtsman&, Random&, double, double);
 };
 
-constexpr std::array<Kind, 8> kKinds{{{BuildingKind::office, "office", draw_office},
-                                      {BuildingKind::hall, "hall", draw_hall},
-                                      {BuildingKind::warehouse, "warehouse", draw_warehouse},
-                                      {BuildingKind::apartment, "apartment", draw_apartment},
-                                      {BuildingKind::symmetric, "symmetric", draw_symmetric},
-                                      {BuildingKind::loop, "loop", draw_loop},
-                                      {BuildingKind::curved, "curved", draw_curved},
-                                      {BuildingKind::outdoor, "outdoor", draw_outdoor}}};
+constexpr auto kKinds = std::to_array<Kind>({{BuildingKind::office, "office", draw_office},
+                                             {BuildingKind::hall, "hall", draw_hall},
+                                             {BuildingKind::warehouse, "warehouse", draw_warehouse},
+                                             {BuildingKind::apartment, "apartment", draw_apartment},
+                                             {BuildingKind::symmetric, "symmetric", draw_symmetric},
+                                             {BuildingKind::loop, "loop", draw_loop},
+                                             {BuildingKind::curved, "curved", draw_curved},
+                                             {BuildingKind::outdoor, "outdoor", draw_outdoor},
+                                             {BuildingKind::corridor, "corridor", draw_corridor},
+                                             {BuildingKind::arena, "arena", draw_arena},
+                                             {BuildingKind::maze, "maze", draw_maze},
+                                             {BuildingKind::bare, "bare", draw_bare}});
 
 }  // namespace
 

@@ -45,5 +45,9 @@ void draw_symmetric(Draughtsman& pen, Random& random, double width, double heigh
 void draw_loop(Draughtsman& pen, Random& random, double width, double height);
 void draw_curved(Draughtsman& pen, Random& random, double width, double height);
 void draw_outdoor(Draughtsman& pen, Random& random, double width, double height);
+void draw_corridor(Draughtsman& pen, Random& random, double width, double height);
+void draw_arena(Draughtsman& pen, Random& random, double width, double height);
+void draw_maze(Draughtsman& pen, Random& random, double width, double height);
+void draw_bare(Draughtsman& pen, Random& random, double width, double height);
 
 }  // namespace gridmerge

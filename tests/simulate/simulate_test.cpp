@@ -5,7 +5,10 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "gridmerge/evaluate/displacement.hpp"
 
@@ -159,6 +162,28 @@ TEST(Simulate, RobotsStartWhereTheyAreToldTo) {
     // The map's origin is the start.
     const Point2 origin = simulation.maps[i].T_building_map * Point2{0.0, 0.0};
     EXPECT_LT(std::hypot(start.x - origin.x, start.y - origin.y), 0.3);
+  }
+}
+
+TEST(Simulate, SparseAndDenseSensorsAndMuchDriftStillGiveMapsAndATruth) {
+  for (const BuildingKind kind :
+       {BuildingKind::corridor, BuildingKind::arena, BuildingKind::maze, BuildingKind::bare}) {
+    for (const auto& [step, range] : {std::pair{4.0, 3.0}, std::pair{0.25, 30.0}}) {
+      SCOPED_TRACE(std::string(name_of(kind)) + " " + std::to_string(range));
+      SimulateOptions options = small(kind);
+      options.sensor.angular_step = step / 180.0 * std::numbers::pi;
+      options.sensor.range = range;
+      options.longest_way = 30.0;
+      options.drift = 3.5;
+      const Simulation simulation = simulate(options);
+      for (const SimulatedMap& map : simulation.maps) {
+        const double cell = map.grid.resolution * map.grid.resolution;
+        EXPECT_GT(static_cast<double>(count_cells(map.grid).known()) * cell, 10.0);
+        EXPECT_GT(map.bend, 0.01);
+        EXPECT_LT(map.bend, 2.0);
+      }
+      for (const SimulatedPair& pair : simulation.pairs) EXPECT_LT(pair.tolerance, 6.0);
+    }
   }
 }
 

@@ -21,6 +21,10 @@ enum class BuildingKind {
   loop,       ///< a corridor around a core, rooms outside
   curved,     ///< a corridor along an arc, radial and slanted walls
   outdoor,    ///< a fenced yard: houses at odd angles, trees, bushes, parked cars
+  corridor,  ///< one long corridor along the longer side, perhaps bent or branched, with few doors and niches
+  arena,  ///< blocks and pillars that lie on themselves after half or a quarter turn; up to 5 pillars do not
+  maze,   ///< ways between walls that have no thickness, with some loops
+  bare,   ///< a hall without furniture: walls, recesses, a few side rooms, perhaps pillars
 };
 
 /// All kinds, in the order above.
@@ -40,7 +44,8 @@ inline constexpr double kMinBuildingSide = 8.0;    ///< [m]
 inline constexpr double kMaxBuildingSide = 500.0;  ///< [m]
 
 /// An invented building of about `width` x `height` metres. The same arguments give the same building.
-/// Throws std::invalid_argument for sides outside [kMinBuildingSide, kMaxBuildingSide]. O(area).
+/// Throws std::invalid_argument for sides outside [kMinBuildingSide, kMaxBuildingSide]. O(area); O(area^2)
+/// for an arena, a quarter of a second at the largest.
 Building make_building(BuildingKind kind, double width, double height, std::uint64_t seed);
 
 /// The building as a map in its own frame, `resolution` metres a cell: edges occupied, floor that can be
