@@ -78,7 +78,7 @@ def write_grid(path: pathlib.Path, grid: Grid) -> None:
 def cropped(grid: Grid) -> Grid:
     """The part that holds all that is known; the frame stays."""
     rows, columns = np.nonzero(grid.known.any(axis=1))[0], np.nonzero(grid.known.any(axis=0))[0]
-    cells = grid.cells[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1]
+    cells = grid.cells[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1].copy()  # lets go of the rest
     return Grid(cells, grid.resolution, round(grid.x + columns[0] * grid.resolution, 6),
                 round(grid.y + rows[0] * grid.resolution, 6))
 
