@@ -9,8 +9,8 @@ Of every pairs.tsv (and negatives.tsv beside it) in DATA or in its folders it sh
     unrelated pairs that were accepted,
     right answers that were refused, and
     with --missed, pairs whose best hypothesis is wrong, and which were refused.
-The two maps lie at the estimated pose, and for wrong answers at the true one too. Below or beside that is what they have
-in common, enlarged. Runs `gridmerge evaluate` into OUTPUT, and `gridmerge match` for the cases shown. --keep takes the
+The two maps lie at the estimated pose, and for wrong answers at the true one too. Below or beside that is what they
+have in common, enlarged. Runs `gridmerge evaluate` into OUTPUT, and `gridmerge match` for the cases shown. --keep takes the
 results of the last run. The pictures show the data, whose licence may not be this project's, so they stay in
 OUTPUT, a build folder. Needs numpy and Pillow.
 """
@@ -235,8 +235,8 @@ def page(sections: dict[str, list[str]], counts: dict[str, int], total: int, dat
         more = f'<p class="soft">{left} more are not shown.</p>' if left else ""
         body += f'<h2 id="{key}">{SECTIONS[key]}: {counts[key]}</h2>{"".join(articles)}{more}'
     return ('<!doctype html><html lang="en"><meta charset="utf-8"><title>Errors of the verdict</title>'
-            f"<style>{STYLE}</style><h1>Errors of the verdict</h1><p>{total} cases of {html.escape(str(data))}. The most probable come first. "
-            f'A click on a map enlarges it; a hypothesis within the tolerance is green.</p><nav>{links}</nav>'
+            f"<style>{STYLE}</style><h1>Errors of the verdict</h1><p>{total} cases of {html.escape(str(data))}. "
+            f'The most probable come first. A click on a map enlarges it; a hypothesis within the tolerance is green.</p><nav>{links}</nav>'
             f'<p class="legend">{legend}</p>{body}<script>{SCRIPT}</script></html>\n')
 
 
