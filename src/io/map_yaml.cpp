@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "gridmerge/io/map_file.hpp"
 #include "number.hpp"
@@ -42,6 +44,16 @@ YAML::Node load_yaml(std::string_view text) {
     throw ParseError("not valid YAML: nested too deeply");
   } catch (const YAML::Exception& error) {
     throw ParseError(fmt::format("not valid YAML: line {}: {}", error.mark.line + 1, error.msg));
+  }
+}
+
+// YAML forbids it; yaml-cpp takes the first value, Python's loaders the last, so that nobody can say what was
+// meant.
+void check_keys_differ(const YAML::Node& map) {
+  std::set<std::string> keys;
+  for (const auto& entry : map) {
+    if (entry.first.IsScalar() && !keys.insert(entry.first.Scalar()).second)
+      throw ParseError(fmt::format("{} is given twice", in_quotes(entry.first.Scalar())));
   }
 }
 
@@ -125,6 +137,7 @@ std::string yaml_string(const std::string& text) {
 MapYaml parse_map_yaml(std::string_view text) {
   const YAML::Node document = load_yaml(text);
   if (!document.IsMap()) throw ParseError("not a YAML map of keys and values");
+  check_keys_differ(document);
   MapYaml map;
   map.image = read_image(document);
   map.resolution = to_number(required(document, "resolution"), "resolution");

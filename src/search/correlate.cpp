@@ -2,6 +2,7 @@
 #include "correlate.hpp"
 
 #include "../grid/multiversion.hpp"
+#include "../grid/unaligned.hpp"
 
 namespace gridmerge {
 
@@ -10,9 +11,6 @@ namespace {
 // 32 lanes of 8 bits and 16 lanes of 16: one AVX2 register each, or two of SSE2.
 using Bytes = std::int8_t __attribute__((vector_size(32)));
 using Words = std::int16_t __attribute__((vector_size(32)));
-// The same in memory that is not aligned.
-using UnalignedBytes = std::int8_t __attribute__((vector_size(32), aligned(1), may_alias));
-using UnalignedWords = std::int16_t __attribute__((vector_size(32), aligned(2), may_alias));
 constexpr int kLanes = 32;
 constexpr std::size_t kGroup = 8;  // inputs that fit a sum of 8 bits
 static_assert(kCorrelateBlock == 2 * kLanes);
@@ -40,18 +38,20 @@ void correlate_row(const std::int8_t* input, const std::int32_t* offsets, std::s
       const std::size_t last = first + kGroup < count ? first + kGroup : count;
       Bytes group0{}, group1{};
       for (std::size_t i = first; i < last; ++i) {
-        const auto* lanes = reinterpret_cast<const UnalignedBytes*>(input + x + offsets[i]);
-        group0 += lanes[0];
-        group1 += lanes[1];
+        const std::int8_t* const at = input + x + offsets[i];
+        Bytes lanes0, lanes1;
+        load(at, lanes0);
+        load(at + kLanes, lanes1);
+        group0 += lanes0;
+        group1 += lanes1;
       }
       add_widened(group0, sum0, sum1);
       add_widened(group1, sum2, sum3);
     }
-    auto* out = reinterpret_cast<UnalignedWords*>(output + x);
-    out[0] = sum0;
-    out[1] = sum1;
-    out[2] = sum2;
-    out[3] = sum3;
+    store(sum0, output + x);
+    store(sum1, output + x + kLanes / 2);
+    store(sum2, output + x + kLanes);
+    store(sum3, output + x + kLanes + kLanes / 2);
   }
 }
 

@@ -2,9 +2,9 @@
 #include "distance_kernels.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include "../grid/multiversion.hpp"
+#include "../grid/unaligned.hpp"
 #include "gridmerge/similarity/distance_map.hpp"
 
 namespace gridmerge {
@@ -17,17 +17,6 @@ using Eight = std::uint16_t __attribute__((vector_size(16)));
 using StripBytes = std::uint8_t __attribute__((vector_size(16)));
 using Bytes = std::uint8_t __attribute__((vector_size(32)));
 static_assert(sizeof(Column) == kStripRows * sizeof(std::uint16_t));
-
-// By reference: returned by value, vectors would have another ABI in each of a function's versions.
-template <typename Vector, typename Value>
-inline __attribute__((always_inline)) void load(const Value* from, Vector& vector) {
-  std::memcpy(&vector, from, sizeof vector);
-}
-
-template <typename Vector, typename Value>
-inline __attribute__((always_inline)) void store(const Vector& vector, Value* to) {
-  std::memcpy(to, &vector, sizeof vector);
-}
 
 /// nearest = min(nearest + 1, the distances at `at`), stored there.
 inline __attribute__((always_inline)) void relax_column(Column& nearest, std::uint16_t* at) {

@@ -73,9 +73,12 @@ void draw_hall(Draughtsman& pen, Random& random, double width, double height) {
   }
   const int pieces = static_cast<int>(width * height / 45.0);  // counters, kiosks, benches
   for (int i = 0; i < pieces; ++i) {
-    pen.box({random.uniform(1.5, width - 1.5), random.uniform(depth + 1.5, height - recess - 1.5)},
-            random.uniform(0.6, 3.5), random.uniform(0.5, 1.5),
-            random.chance(0.7) ? Point2{1.0, 0.0} : direction(random.uniform(0.0, std::numbers::pi)));
+    const Point2 along =
+        random.chance(0.7) ? Point2{1.0, 0.0} : direction(random.uniform(0.0, std::numbers::pi));
+    const double across = random.uniform(0.5, 1.5);
+    const double length = random.uniform(0.6, 3.5);
+    const Point2 at{random.uniform(1.5, width - 1.5), random.uniform(depth + 1.5, height - recess - 1.5)};
+    pen.box(at, length, across, along);
   }
 }
 
@@ -144,8 +147,9 @@ void draw_curved(Draughtsman& pen, Random& random, double width, double height) 
       for (int k = furniture.pick(1, 3); k > 0; --k) {
         const Point2 u = direction(span * (i + furniture.uniform(0.25, 0.75)) / rooms);
         const double r = middle + furniture.uniform(-0.25, 0.25) * (to - from);
-        pen.box({centre.x + r * u.x, centre.y + r * u.y}, furniture.uniform(0.5, 1.6),
-                furniture.uniform(0.4, 0.8), u);
+        const double across = furniture.uniform(0.4, 0.8);
+        const double length = furniture.uniform(0.5, 1.6);
+        pen.box({centre.x + r * u.x, centre.y + r * u.y}, length, across, u);
       }
     }
   };
@@ -174,12 +178,18 @@ void draw_outdoor(Draughtsman& pen, Random& random, double width, double height)
               0.4 * length, 0.6 * depth, u);
     }
   }
-  for (int i = static_cast<int>(area / 40.0); i > 0; --i)
-    pen.pillar(somewhere(1.0), random.uniform(0.1, 0.35));
-  for (int i = static_cast<int>(area / 60.0); i > 0; --i)
-    draw_bush(pen, random, somewhere(1.0), random.uniform(0.4, 1.4));
-  for (int i = static_cast<int>(area / 150.0); i > 0; --i)
-    pen.box(somewhere(2.5), 4.2, 1.8, direction(random.uniform(0.0, std::numbers::pi)));
+  for (int i = static_cast<int>(area / 40.0); i > 0; --i) {  // trees
+    const double radius = random.uniform(0.1, 0.35);
+    pen.pillar(somewhere(1.0), radius);
+  }
+  for (int i = static_cast<int>(area / 60.0); i > 0; --i) {
+    const double radius = random.uniform(0.4, 1.4);
+    draw_bush(pen, random, somewhere(1.0), radius);
+  }
+  for (int i = static_cast<int>(area / 150.0); i > 0; --i) {  // cars
+    const Point2 along = direction(random.uniform(0.0, std::numbers::pi));
+    pen.box(somewhere(2.5), 4.2, 1.8, along);
+  }
 }
 
 }  // namespace gridmerge

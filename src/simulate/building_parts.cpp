@@ -60,12 +60,18 @@ void furnish(Draughtsman& pen, Random& random, const Room& room) {
   for (int i = 0; i < pieces; ++i) {
     const Point2 at = inside(kDoorway);
     switch (random.pick(0, 4)) {
-      case 0:
-        pen.desk(at, random.chance(0.5) ? 1 : -1, random.chance(0.5) ? 1 : -1);
+      case 0: {
+        const int front = random.chance(0.5) ? 1 : -1;
+        const int side = random.chance(0.5) ? 1 : -1;
+        pen.desk(at, side, front);
         break;
-      case 1:
-        pen.table(at, random.uniform(0.8, 2.4), random.uniform(0.7, 1.2));
+      }
+      case 1: {
+        const double across = random.uniform(0.7, 1.2);
+        const double length = random.uniform(0.8, 2.4);
+        pen.table(at, length, across);
         break;
+      }
       case 2:
         pen.chair(at);
         break;
@@ -74,7 +80,9 @@ void furnish(Draughtsman& pen, Random& random, const Room& room) {
         break;
       default: {
         const double angle = random.uniform(0.0, 6.283);
-        pen.box(at, random.uniform(0.5, 1.6), random.uniform(0.4, 0.8), {std::cos(angle), std::sin(angle)});
+        const double across = random.uniform(0.4, 0.8);
+        const double length = random.uniform(0.5, 1.6);
+        pen.box(at, length, across, {std::cos(angle), std::sin(angle)});
       }
     }
   }
@@ -91,7 +99,8 @@ void draw_row_of_rooms(const Hands& hands, double length, double depth) {
   std::vector<Door> doors;
   double at = 0.0;
   while (at < length) {
-    double width = usual * (random.chance(0.2) ? 2.0 : 1.0) * (random.chance(0.15) ? 1.3 : 1.0);
+    double width = usual * (random.chance(0.2) ? 2.0 : 1.0);
+    width *= random.chance(0.15) ? 1.3 : 1.0;
     if (length - at - width < 0.8 * usual) width = length - at;
     const double offset = random.chance(0.75) ? door_at : random.uniform(0.3, width - 1.4);
     const double door_width = random.chance(0.15) ? 1.4 : 0.9;

@@ -142,7 +142,8 @@ void draw_loop(Draughtsman& pen, Random& random, double width, double height) {
   }
   for (int i = 0; i < static_cast<int>((length_x + length_y) / 12.0); ++i) {  // what stands in corridors
     const double x = random.uniform(core.left, core.right);
-    pen.box({x, random.chance(0.5) ? depth + 0.3 : height - depth - 0.3}, random.uniform(0.5, 1.5), 0.4);
+    const double length = random.uniform(0.5, 1.5);
+    pen.box({x, random.chance(0.5) ? depth + 0.3 : height - depth - 0.3}, length, 0.4);
   }
 }
 

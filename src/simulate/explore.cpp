@@ -18,20 +18,20 @@ constexpr double kSharpTurn = 1.0;  // a robot that turns by more scans on the w
 
 }  // namespace
 
-Coverage::Coverage(const FloorPlan& plan)
+SeenFloor::SeenFloor(const FloorPlan& plan)
     : plan_(&plan),
       width_((plan.width() + kPlanCells - 1) / kPlanCells),
       seen_(static_cast<std::size_t>(width_) *
                 ((plan.cells() / std::max(1, plan.width()) + kPlanCells - 1) / kPlanCells),
             0) {}
 
-std::size_t Coverage::index(int plan_cell) const {
+std::size_t SeenFloor::index(int plan_cell) const {
   const int row = plan_cell / plan_->width() / kPlanCells;
   return static_cast<std::size_t>(row) * width_ + plan_cell % plan_->width() / kPlanCells;
 }
 
-void Coverage::look(const RayCaster& caster, const SE2& from, double range, double cleared,
-                    double field_of_view) {
+void SeenFloor::look(const RayCaster& caster, const SE2& from, double range, double cleared,
+                     double field_of_view) {
   constexpr double kStep = 0.5 * kPlanCells * FloorPlan::kCell;
   for (int i = 0; i < kLooks; ++i) {
     const double angle = from.theta + field_of_view * ((i + 0.5) / kLooks - 0.5);
@@ -45,18 +45,18 @@ void Coverage::look(const RayCaster& caster, const SE2& from, double range, doub
   }
 }
 
-int Coverage::count() const {
+int SeenFloor::count() const {
   return static_cast<int>(std::count(seen_.begin(), seen_.end(), std::uint8_t{1}));
 }
 
-int count_common(const Coverage& a, const Coverage& b) {
+int count_common(const SeenFloor& a, const SeenFloor& b) {
   int common = 0;
   for (std::size_t i = 0; i < a.seen_.size(); ++i) common += a.seen_[i] & b.seen_[i];
   return common;
 }
 
 Exploration explore(const FloorPlan& plan, const RayCaster& caster, const Errand& errand) {
-  Exploration result{{}, Coverage(plan), Coverage(plan)};
+  Exploration result{{}, SeenFloor(plan), SeenFloor(plan)};
   PathSearch search(plan);
   std::vector<std::uint8_t> territory(static_cast<std::size_t>(plan.cells()), 0);
   search.search(errand.start, errand.reach, [&](int cell, double) {

@@ -11,19 +11,19 @@
 namespace gridmerge {
 
 /// What has been seen of a floor: a raster of kPlanCells plan cells.
-class Coverage {
+class SeenFloor {
  public:
   static constexpr int kPlanCells = 4;  // plan cells along a side of one
 
-  explicit Coverage(const FloorPlan& plan);
+  explicit SeenFloor(const FloorPlan& plan);
 
   /// Marks what can be seen from a pose, up to `range` metres (up to `cleared` where nothing is met) and half
   /// of `field_of_view` to either side.
   void look(const RayCaster& caster, const SE2& from, double range, double cleared, double field_of_view);
   bool has_seen(int plan_cell) const { return seen_[index(plan_cell)] != 0; }
   int count() const;
-  /// Cells that both have seen. For coverages of plans of one size.
-  friend int count_common(const Coverage& a, const Coverage& b);
+  /// Cells that both have seen. For floors of one plan, or of plans of one size.
+  friend int count_common(const SeenFloor& a, const SeenFloor& b);
 
  private:
   std::size_t index(int plan_cell) const;
@@ -44,8 +44,8 @@ struct Errand {
 
 struct Exploration {
   std::vector<SE2> poses;  ///< T_building_robot, heading along the way, every `scan_every`
-  Coverage seen;           ///< by the eyes
-  Coverage drawn;          ///< by the range finder
+  SeenFloor seen;          ///< by the eyes
+  SeenFloor drawn;         ///< by the range finder
 };
 
 /// Goes to the nearest place in reach that has not been seen, again and again, until there is none or the way

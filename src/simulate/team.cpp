@@ -80,7 +80,7 @@ double mean_overlap(const std::vector<Exploration>& explorations) {
     double largest = 0.0;
     for (std::size_t k = 0; k < explorations.size(); ++k) {
       if (i == k) continue;
-      const Coverage &a = explorations[i].drawn, &b = explorations[k].drawn;
+      const SeenFloor &a = explorations[i].drawn, &b = explorations[k].drawn;
       largest = std::max(
           largest, count_common(a, b) / static_cast<double>(std::max(1, std::min(a.count(), b.count()))));
     }

@@ -43,8 +43,12 @@ std::vector<Edge> scatter(const FloorPlan& clear, int pieces, Random& random) {
       case 1:
         pen.pillar(at, random.uniform(0.1, 0.25));
         break;
-      default:
-        pen.box(at, random.uniform(0.3, 1.0), random.uniform(0.25, 0.6), any_direction(random));
+      default: {
+        const Point2 along = any_direction(random);
+        const double across = random.uniform(0.25, 0.6);
+        const double length = random.uniform(0.3, 1.0);
+        pen.box(at, length, across, along);
+      }
     }
   }
   return pen.edges;

@@ -72,7 +72,7 @@ TEST_F(Info, ReadsABareImageWithItsResolution) {
 
 TEST_F(Info, AFileNameThatIsNotUtf8IsNoObstacle) {
   const std::string odd = write_map(directory, "caf\xe9", make_grid(5, 5, 0.1, {}, Cell::free));
-  EXPECT_NO_THROW(Json::parse(run({"info", "--json", odd}).out));
+  EXPECT_TRUE(Json::accept(run({"info", "--json", odd}).out));
 }
 
 }  // namespace

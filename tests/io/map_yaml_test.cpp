@@ -95,6 +95,24 @@ TEST(MapYaml, EveryKeyButModeIsRequired) {
   }
 }
 
+TEST(MapYaml, NoKeyIsGivenTwice) {
+  const std::string text = kGood + "mode: scale\nnote: a\n";
+  for (const char* line :
+       {"image: a.pgm", "resolution: 0.05", "origin: [0, 0, 0]", "negate: 1", "occupied_thresh: 0.5",
+        "free_thresh: 0.1", "mode: raw", "note: b", "'note': a", "? mode\n: scale"}) {
+    const std::string given(line);
+    std::string key = given.substr(0, given.find(given[0] == '?' ? "\n" : ":"));
+    std::erase_if(key, [](char c) { return c == '\'' || c == '?' || c == ' '; });
+    EXPECT_EQ(error_of(text + given + "\n"), "'" + key + "' is given twice") << line;
+    EXPECT_EQ(error_of(given + "\n" + text), "'" + key + "' is given twice") << line;
+  }
+  EXPECT_TRUE(contains(error_of(kGood + "mode: scale\nmode: nonsense\n"), "'mode' is given twice"));
+  // A map in the map has names of its own, and names differ in the case of their letters.
+  EXPECT_EQ(parse_map_yaml(text + "more: {image: 1, mode: 2}\nMode: raw\n").mode, MapMode::scale);
+  EXPECT_LT(error_of(kGood + std::string(5000, 'k') + ": 1\n" + std::string(5000, 'k') + ": 1\n").size(),
+            200u);
+}
+
 struct BadYaml {
   const char* name;
   std::string text;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "gridmerge/search/exhaustive.hpp"
 
@@ -36,6 +38,32 @@ TEST(Correlate, EqualsTheLiteralSum) {
         for (const int offset : offsets) sum += input.values[first + y * input.width + x + offset];
         ASSERT_EQ(output.values[y * output.width + x], sum) << run << " " << x << " " << y;
       }
+    }
+  }
+}
+
+// Vectors of 32 bytes are read from anywhere, and written to rows that a std::vector aligns to 16 bytes at
+// best.
+TEST(Correlate, ReadsAndWritesAtEveryAlignment) {
+  std::mt19937 random(12);
+  EvidenceImage input{kCorrelateBlock + 96, 3, {}};
+  for (int i = 0; i < input.width * input.height; ++i)
+    input.values.push_back(static_cast<std::int8_t>(static_cast<int>(random() % 31) - kMaxCorrelated));
+  std::vector<std::vector<std::int16_t>> kept;  // so that the next one lies elsewhere
+  for (std::size_t first = 0; first < 32; ++first) {
+    for (std::int32_t offset = 0; offset < 32; ++offset) {
+      const std::size_t spare = 8 * (kept.size() % 3);
+      ScoreImage output{kCorrelateBlock, 2, std::vector<std::int16_t>(2 * kCorrelateBlock + spare, 77)};
+      correlate(input, first, {offset, offset + 1, 31}, output);
+      for (int y = 0; y < output.height; ++y) {
+        for (int x = 0; x < output.width; ++x) {
+          const std::int8_t* at = input.values.data() + first + y * input.width + x;
+          ASSERT_EQ(output.values[y * output.width + x], at[offset] + at[offset + 1] + at[31])
+              << first << " " << offset << " " << x << " " << y;
+        }
+      }
+      for (std::size_t i = 0; i < spare; ++i) ASSERT_EQ(output.values[2 * kCorrelateBlock + i], 77);
+      kept.push_back(std::move(output.values));
     }
   }
 }

@@ -7,6 +7,8 @@ namespace gridmerge {
 
 /// Random numbers that are the same with every standard library (those of <random>'s distributions are not):
 /// SplitMix64 (Steele, Lea & Flood, "Fast splittable pseudorandom number generators", 2014).
+/// Draw once in an expression: in which order the arguments of a call or the operands of * are computed is
+/// the compiler's choice, and with it who gets which number. Braces {} compute from left to right.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
