@@ -57,6 +57,7 @@ def as_json(result: gridmerge.MergeResult) -> dict[str, Any]:
         "joins": joins,
         "left_out": [one.name for one in result.left_out],
         "left_out_reasons": [one.reason for one in result.left_out],
+        "expected_false_joins": result.expected_false_joins,
     }
 
 

@@ -230,8 +230,13 @@ std::vector<PoseFigures> figures_of(const std::vector<Hypothesis>& hypotheses) {
 }
 
 void weigh(std::vector<Hypothesis>& hypotheses) {
-  const std::vector<double> probabilities = probabilities_of(figures_of(hypotheses));
-  for (std::size_t i = 0; i < hypotheses.size(); ++i) hypotheses[i].probability = probabilities[i];
+  std::vector<PoseFigures> figures = figures_of(hypotheses);
+  set_leads(figures);
+  const std::vector<double> probabilities = probabilities_of(figures);
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    hypotheses[i].figures = figures[i];
+    hypotheses[i].probability = probabilities[i];
+  }
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }

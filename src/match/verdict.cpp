@@ -47,13 +47,12 @@ std::span<const VerdictTerm> verdict_terms() {
   using F = PoseFigures;
   constexpr TermKind kAmount = TermKind::amount, kQuality = TermKind::quality;
   static constexpr std::array kTerms{
-      VerdictTerm{"walls", "ln seen_walls", kAmount, 1.0, 7.0,
-                  [](const F& f) { return logarithm(f.seen_walls, 1.0); }},
       VerdictTerm{"lines", "ln wall_lines", kAmount, 0.0, 3.0,
                   [](const F& f) { return logarithm(f.wall_lines, 1.0); }},
       VerdictTerm{"tells apart", "-ln(1 + exp(-3 (wall_lines - 3.5)))", kAmount, -12.0, 0.0,
                   [](const F& f) { return -std::log1p(std::exp(-3.0 * (f.wall_lines - 3.5))); }},
       VerdictTerm{"held", "ln(held / held_most)", kAmount, -3.5, 0.0, how_held},
+      VerdictTerm{"lead", "lead / 10", kAmount, 0.0, 10.0, [](const F& f) { return 0.1 * f.lead; }},
       VerdictTerm{"met locally", "-ln(1.05 - walls_met_locally)", kQuality, 0.0, 2.5,
                   [](const F& f) { return missing(f.walls_met_locally, 0.05); }},
       VerdictTerm{"bend explains", "ln((1.05 - walls_met) / (1.05 - walls_met_locally))", kQuality, 0.0, 2.0,
@@ -70,6 +69,16 @@ double log_odds_of(const PoseFigures& figures) {
   double sum = kVerdictBias;
   for (std::size_t i = 0; i < terms.size(); ++i) sum += kVerdictWeights[i].weight * terms[i](figures);
   return sum;
+}
+
+void set_leads(std::span<PoseFigures> hypotheses) {
+  for (PoseFigures& one : hypotheses) {
+    double next = 0.0;
+    for (const PoseFigures& other : hypotheses) {
+      if (&other != &one) next = std::max(next, other.score);
+    }
+    one.lead = one.score > 0.0 ? (one.score - next) / std::sqrt(one.score) : 0.0;
+  }
 }
 
 std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses) {

@@ -12,14 +12,18 @@ struct VerdictWeight {
   double weight;
 };
 
-inline constexpr double kVerdictBias = -18.184;
+inline constexpr double kVerdictBias = -16.418;
 
 /// In the order of verdict_terms().
 inline constexpr std::array kVerdictWeights{
-    VerdictWeight{"walls", 0.341},       VerdictWeight{"lines", 0.000},
-    VerdictWeight{"tells apart", 1.000}, VerdictWeight{"held", 0.496},
-    VerdictWeight{"met locally", 2.461}, VerdictWeight{"bend explains", 2.319},
-    VerdictWeight{"cells agree", 3.927}, VerdictWeight{"things met", 2.821},
+    VerdictWeight{"lines", 0.560},
+    VerdictWeight{"tells apart", 3.000},
+    VerdictWeight{"held", 1.097},
+    VerdictWeight{"lead", 0.426},
+    VerdictWeight{"met locally", 3.624},
+    VerdictWeight{"bend explains", 0.641},
+    VerdictWeight{"cells agree", 3.202},
+    VerdictWeight{"things met", 2.133},
 };
 
 }  // namespace gridmerge

@@ -32,9 +32,9 @@ constexpr std::size_t kClimbingWalls = 60;
 constexpr double kUnseenWorth = 0.3;
 
 struct Meetings {
-  double seen = 0.0;   // walls where the other map has seen
-  double met = 0.0;    // of these, the walls that meet another one
-  double worth = 0.0;  // what a patch climbs on: 1 for a wall on another one, less with their distance
+  double seen = 0.0;         // walls where the other map has seen
+  double met = 0.0;          // of these, the walls that meet another one
+  double worth = 0.0;        // what a patch climbs on: 1 for a wall on another one, less with their distance
   double seen_things = 0.0;  // the same of walls of things that stand alone
   double things_met = 0.0;
 

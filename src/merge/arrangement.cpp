@@ -295,15 +295,16 @@ Arrangement arrange_within(const ArrangementProblem& problem, double accept_prob
   if (!(max_false_joins >= 0.0) || !std::isfinite(max_false_joins))
     throw std::invalid_argument("max_false_joins must be a number from 0 on");
   Arrangement arrangement = arrange(problem, accept_probability);
-  // What a float cannot tell from certainty is not asked for: then nothing is joined.
-  while (expected_false_joins(arrangement) > max_false_joins) {
+  constexpr double kLeastStep = 0.2;    // of the doubt that is still allowed, so that this ends
+  constexpr double kLeastDoubt = 1e-9;  // from there on nothing is surer
+  while (expected_false_joins(arrangement) > max_false_joins && 1.0 - accept_probability > kLeastDoubt) {
     double least = 1.0;
     for (const NodeGroup& group : arrangement.groups) {
       for (const PlacedNode& node : group) least = std::min(least, node.probability);
     }
-    const double next = std::nextafter(std::max(least, accept_probability), 2.0);
-    if (next > 1.0) break;
-    accept_probability = next;
+    accept_probability =
+        std::max(std::nextafter(least, 2.0), accept_probability + kLeastStep * (1.0 - accept_probability));
+    accept_probability = std::min(accept_probability, 1.0);
     arrangement = arrange(problem, accept_probability);
   }
   return arrangement;

@@ -29,7 +29,7 @@ TEST_F(Merge, WritesTheFilesOfTheContract) {
   EXPECT_EQ(files_in(output), all_files);
 
   const Json json = Json::parse(read_file(output + "/transforms.json"));
-  expect_keys(json, {"maps", "components", "joins", "left_out", "left_out_reasons"});
+  expect_keys(json, {"maps", "components", "joins", "left_out", "left_out_reasons", "expected_false_joins"});
   EXPECT_EQ(json.at("left_out"), Json::array());
   ASSERT_EQ(json.at("components").size(), 1u);
   expect_keys(json.at("components").at(0), {"map", "frame", "members"});

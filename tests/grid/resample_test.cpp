@@ -178,7 +178,7 @@ TEST(TransformGrid, FindsNothingUnderAFarCentre) {
 }
 
 RC_GTEST_PROP(QuarterTurned, KeepsEveryCellWhereItIsInTheMapFrame, ()) {
-  OccupancyGrid grid = *test::any_grid();
+  OccupancyGrid grid = *any_grid();
   const int quarters = *rc::gen::inRange(-5, 6);
   const OccupancyGrid turned = quarter_turned(grid, quarters);
   RC_ASSERT(turned.cells.size() == grid.cells.size());

@@ -5,8 +5,14 @@
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <string>
+#include <vector>
+
+#include "match/verdict_model.hpp"
 
 namespace gridmerge {
 namespace {
@@ -15,6 +21,7 @@ namespace {
 PoseFigures clear_pose() {
   PoseFigures figures;
   figures.score = 6000.0;
+  figures.lead = 40.0;
   figures.wall_score = 5800.0;
   figures.seen_walls = 240.0;
   figures.walls_met = 0.93;
@@ -58,6 +65,29 @@ TEST(PoseFigures, EachHasANameAUnitAMeaningAndAPlaceOfItsOwn) {
   }
   // As many as there are members, all of them numbers.
   EXPECT_EQ(pose_figures().size() * sizeof(double), sizeof(PoseFigures));
+}
+
+/// docs/verdict.md says of the model what the tables in the code say.
+TEST(VerdictTables, AreThoseOfTheDocs) {
+  std::ifstream file("docs/verdict.md");
+  const std::string docs((std::istreambuf_iterator<char>(file)), {});
+  ASSERT_FALSE(docs.empty());
+  const auto expect_row = [&](const std::string& row) {
+    EXPECT_NE(docs.find(row), std::string::npos) << "docs/verdict.md lacks\n" << row;
+  };
+  for (const PoseFigure& figure : pose_figures()) {
+    const std::string unit = *figure.unit == '\0' ? "" : figure.unit;
+    expect_row("| `" + std::string(figure.name) + "` | " + unit + " | " + figure.meaning + " |\n");
+  }
+  ASSERT_EQ(kVerdictWeights.size(), verdict_terms().size());
+  for (std::size_t i = 0; i < kVerdictWeights.size(); ++i) {
+    const VerdictTerm& term = verdict_terms()[i];
+    EXPECT_STREQ(term.name, kVerdictWeights[i].term);
+    char weight[32];
+    std::snprintf(weight, sizeof weight, "%.2f", kVerdictWeights[i].weight);
+    expect_row("| " + std::string(term.name) + " | `" + term.formula + "` | " +
+               (term.kind == TermKind::amount ? "amount" : "quality") + " | " + weight + " |\n");
+  }
 }
 
 TEST(VerdictTerms, StayWithinTheirBoundsWhateverTheFigures) {

@@ -255,5 +255,30 @@ RC_GTEST_PROP(Arrange, OrderOfTheMapsPlaysNoPart, ()) {
   }
 }
 
+/// Three pairs of maps, each with one candidate of its own odds.
+ArrangementProblem three_pairs() {
+  ArrangementProblem problem;
+  problem.maps.assign(6, MapExtent{{0.0, 0.0}, 5.0, 20.0});
+  for (std::size_t i = 0; i < 3; ++i)
+    problem.pairs.push_back({2 * i, 2 * i + 1, {CandidateJoin{{1.0, 0.0, 0.0}, 2.5 + 1.5 * i, 0.1}}});
+  return problem;
+}
+
+TEST(ArrangeWithin, MakesAsManyJoinsAsTheBudgetOfFalseOnesAllows) {
+  const ArrangementProblem problem = three_pairs();  // doubts of 0.076, 0.018 and 0.004
+  const auto joins = [&](double budget) { return 6 - arrange_within(problem, 0.8, budget).groups.size(); };
+  EXPECT_EQ(joins(1.0), 3U);
+  EXPECT_EQ(joins(0.05), 2U);
+  EXPECT_EQ(joins(0.01), 1U);
+  EXPECT_EQ(joins(0.0), 0U);
+  for (const double budget : {1.0, 0.05, 0.01, 0.001, 0.0})
+    EXPECT_LE(expected_false_joins(arrange_within(problem, 0.8, budget)), budget);
+}
+
+TEST(ArrangeWithin, RefusesABudgetThatIsNone) {
+  EXPECT_THROW(arrange_within({}, 0.8, -0.1), std::invalid_argument);
+  EXPECT_THROW(arrange_within({}, 0.8, std::nan("")), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace gridmerge

@@ -189,7 +189,8 @@ TEST(TransformsJson, IsTheDocumentedText) {
   "left_out_reasons": [
     "ambiguous",
     "nothing_to_compare"
-  ]
+  ],
+  "expected_false_joins": null
 }
 )");
 }
@@ -206,7 +207,7 @@ TEST(TransformsJson, NamesTheMapOfEveryComponent) {
 TEST(TransformsJson, OfNothing) {
   EXPECT_EQ(transforms_json({}, {}),
             "{\n  \"maps\": [],\n  \"components\": [],\n  \"joins\": [],\n  \"left_out\": [],\n  "
-            "\"left_out_reasons\": []\n}\n");
+            "\"left_out_reasons\": [],\n  \"expected_false_joins\": null\n}\n");
 }
 
 TEST(TransformsJson, EveryMapNeedsAName) {

@@ -8,6 +8,7 @@ namespace gridmerge {
 /// What speaks for a pose of two maps and against it. pose_figures() lists them with their meanings.
 struct PoseFigures {
   double score = 0.0;
+  double lead = 0.0;
   double wall_score = 0.0;
   double seen_walls = 0.0;
   double walls_met = 0.0;

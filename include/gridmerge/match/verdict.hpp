@@ -49,7 +49,10 @@ struct VerdictTerm {
 /// All terms, in the order of the model's weights.
 std::span<const VerdictTerm> verdict_terms();
 
-/// What speaks for a pose against "none of these", before its rivals are known: the weighted sum of its terms
+/// Gives each of several distinct hypotheses of one pair its `lead`, from the scores. O(hypotheses^2).
+void set_leads(std::span<PoseFigures> hypotheses);
+
+/// What speaks for a pose against "none of these", its rivals' odds left aside: the weighted sum of its terms
 /// [nats].
 double log_odds_of(const PoseFigures& figures);
 
