@@ -260,7 +260,8 @@ ArrangementProblem three_pairs() {
   ArrangementProblem problem;
   problem.maps.assign(6, MapExtent{{0.0, 0.0}, 5.0, 20.0});
   for (std::size_t i = 0; i < 3; ++i)
-    problem.pairs.push_back({2 * i, 2 * i + 1, {CandidateJoin{{1.0, 0.0, 0.0}, 2.5 + 1.5 * i, 0.1}}});
+    problem.pairs.push_back(
+        {2 * i, 2 * i + 1, {CandidateJoin{{1.0, 0.0, 0.0}, 2.5 + 1.5 * static_cast<double>(i), 0.1}}});
   return problem;
 }
 

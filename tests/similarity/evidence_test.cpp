@@ -21,7 +21,7 @@ constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 int class_by_angle(std::uint8_t point, std::uint8_t place, double theta) {
   if (point == kNoDirection || place == kNoDirection) return kUnclearFacing;
   const auto parts = [](std::uint8_t facing) { return is_axis(facing) ? facing - kDirections : facing; };
-  double between = parts(point) + std::lround(theta / (2.0 * std::numbers::pi) * kDirections) - parts(place);
+  double between = parts(point) + std::round(theta / (2.0 * std::numbers::pi) * kDirections) - parts(place);
   const bool lines = is_axis(point) || is_axis(place);
   between = std::abs(std::remainder(between, lines ? kAxes : kDirections));
   int facing = 1;
