@@ -39,7 +39,7 @@ function near(a: SE2, b: SE2): boolean {
 }
 
 test("a map that was left out is placed by hand, and the saved poses join it", async () => {
-  const folder = mergeInto("pair", pair);
+  const folder = mergeInto("pair", pair, "--accept", "1");
   assert.equal(transforms(folder).components.length, 0);
   const tab = await open(folder);
   const { page } = tab;
@@ -154,7 +154,7 @@ function view(folder: string): Promise<{ server: ChildProcess; address: string }
 }
 
 test("with gridmerge view the engine refines what was placed by hand", async () => {
-  const { server, address } = await view(mergeInto("pair", pair));
+  const { server, address } = await view(mergeInto("pair", pair, "--accept", "1"));
   try {
     const tab = await open(address);
     const { page } = tab;
