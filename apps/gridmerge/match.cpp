@@ -41,7 +41,7 @@ std::string describe_verdict(const MatchResult& result, const SearchOptions& sea
   if (result.verdict == Verdict::accepted) {
     return fmt::format("accepted: the maps show one place, with probability {:.4f}", result.probability);
   }
-  const auto refused = [&](const char* why) {
+  const auto refused = [&](const std::string& why) {
     return fmt::format("refused: {} (probability {:.4f})", why, result.probability);
   };
   switch (result.reason) {
@@ -51,8 +51,7 @@ std::string describe_verdict(const MatchResult& result, const SearchOptions& sea
       if (slides(result.hypotheses.front().figures))
         return refused(
             fmt::format("the maps are free to slide along {:.0f} degrees",
-                        180.0 / std::numbers::pi * result.hypotheses.front().figures.free_direction)
-                .c_str());
+                        180.0 / std::numbers::pi * result.hypotheses.front().figures.free_direction));
       return refused("two ways to lay the maps explain them nearly equally well");
     case Reason::contradiction:
       return refused("the maps disagree where both know the same places");

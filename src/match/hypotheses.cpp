@@ -126,12 +126,12 @@ PoseJudge::PoseJudge(const ComparedMaps& maps)
       stride_(std::max(
           1, static_cast<int>(std::sqrt(static_cast<double>(maps.moving.cells.size()) / kRankedCells)))) {}
 
-PoseFigures PoseJudge::figures(const SE2& T_cells, int stride) const {
+PoseFigures PoseJudge::figures(const SE2& T_cells) const {
   const WallMap &fixed = maps_.fixed_walls, &moving = maps_.moving_walls;
   const double cell = maps_.cell;
   const Evidence walls = walls_(T_cells);
   const AgreementCounts common =
-      count_agreement(maps_.fixed, maps_.moving, to_map_frames(T_cells, fixed, moving), stride);
+      count_agreement(maps_.fixed, maps_.moving, to_map_frames(T_cells, fixed, moving), stride_);
   const double cells_per_cell = std::pow(maps_.moving.resolution / cell, 2);
   const WallSupport support = measure_wall_support(fixed, moving, T_cells);
   const WallsMet met = measure_walls_met(fixed, moving, T_cells);
@@ -164,7 +164,7 @@ PoseFigures PoseJudge::figures(const SE2& T_cells, int stride) const {
 }
 
 Hypothesis PoseJudge::judge(const SE2& T_cells) const {
-  const PoseFigures found = figures(T_cells, stride_);
+  const PoseFigures found = figures(T_cells);
   return {to_map_frames(T_cells, maps_.fixed_walls, maps_.moving_walls), found.score, 0.0, found};
 }
 

@@ -49,11 +49,7 @@ class PoseJudge {
  public:
   explicit PoseJudge(const ComparedMaps& maps);
 
-  /// All that speaks for a pose between the grid frames [cells] and against it. `stride` as
-  /// count_agreement().
-  PoseFigures figures(const SE2& T_cells, int stride) const;
-
-  /// The hypothesis of a pose, its probability not yet known.
+  /// The hypothesis of a pose between the grid frames [cells], its probability not yet known.
   Hypothesis judge(const SE2& T_cells) const;
 
   /// The hypothesis at the maximum of the evidence near a judged one: of all walls, in steps down to a
@@ -64,6 +60,9 @@ class PoseJudge {
   const WallEvidence& walls() const { return walls_; }
 
  private:
+  /// All that speaks for a pose between the grid frames [cells] and against it.
+  PoseFigures figures(const SE2& T_cells) const;
+
   /// Of the poses between the map frames that lay cell on cell, near one between the grid frames [cells], the
   /// one at which most cells agree; none if the maps' cells differ in size, or if there is none near.
   std::optional<SE2> best_cell_on_cell(const SE2& T_cells) const;
