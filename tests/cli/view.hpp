@@ -30,7 +30,12 @@ class View : public CliTest {
     host = "127.0.0.1:" + std::to_string(port);
   }
 
-  httplib::Client client() const { return httplib::Client("127.0.0.1", port); }
+  /// It waits for as long as a busy machine may take under sanitizers.
+  httplib::Client client() const {
+    httplib::Client client("127.0.0.1", port);
+    client.set_read_timeout(100);
+    return client;
+  }
 
   /// A question about the second map, displaced from where it lies on the first.
   Json question() const {
