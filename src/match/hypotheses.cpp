@@ -87,7 +87,6 @@ constexpr double kLastSettlingStep = 0.0625;  // [cells]
 constexpr std::size_t kSettlingWalls = 4000;
 constexpr double kSnapWithin = 2.0;  // [cells]
 
-constexpr double kApartFrom = 0.5;        // [m]
 constexpr double kSlide = 1.0;            // [m]
 constexpr int kSlideDirections = 8;       // over half a turn
 constexpr std::size_t kSlideWalls = 600;  // that are looked at
@@ -135,18 +134,15 @@ PoseFigures PoseJudge::figures(const SE2& T_cells) const {
   const double cells_per_cell = std::pow(maps_.moving.resolution / cell, 2);
   const WallSupport support = measure_wall_support(fixed, moving, T_cells);
   const WallsMet met = measure_walls_met(fixed, moving, T_cells);
-  const WallShares shares = walls_.shares(T_cells, static_cast<int>(std::ceil(kApartFrom / cell)));
   const Hold hold = measure_hold(sliding_walls_, T_cells, cell);
 
   PoseFigures figures;
   figures.score = walls.score + area_evidence(cells_per_cell * static_cast<double>(common.agreement),
                                               cells_per_cell * static_cast<double>(common.disagreement));
   figures.wall_score = walls.score;
-  figures.seen_walls = shares.seen * cell;
+  figures.seen_walls = walls.seen_walls * cell;
   figures.walls_met = met.rigidly;
   figures.walls_met_locally = met.locally;
-  figures.walls_apart = shares.apart;
-  figures.walls_contrary = shares.contrary;
   figures.wall_lines = support.lines;
   figures.seen_things = met.seen_things * cell;
   figures.things_met = met.things_met;
@@ -231,7 +227,7 @@ std::vector<PoseFigures> figures_of(const std::vector<Hypothesis>& hypotheses) {
 
 void weigh(std::vector<Hypothesis>& hypotheses) {
   std::vector<PoseFigures> figures = figures_of(hypotheses);
-  set_leads(figures);
+  compare_rivals(figures);
   const std::vector<double> probabilities = probabilities_of(figures);
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     hypotheses[i].figures = figures[i];

@@ -70,7 +70,7 @@ double probability_among_all(const Hypothesis& pose, const ComparedMaps& maps) {
     if (metric.displacement(in_cells(pose), in_cells(other)) >= distinct_displacement(maps))
       figures.push_back(other.figures);
   }
-  set_leads(figures);
+  compare_rivals(figures);
   return probabilities_of(figures).front();
 }
 

@@ -33,6 +33,30 @@ double how_held(const PoseFigures& f) {
 }
 constexpr double kSlides = -2.0;  // of it: less than an eighth
 
+/// Of bent maps few walls can meet, even at the right pose. There a lead tells that no pose of unrelated maps
+/// has: as far as the errors are those of bent maps, since of crisp ones of a symmetric floor the wrong half
+/// leads as well.
+double far_ahead_though_bent(const PoseFigures& f) {
+  constexpr double kFar = 25.0, kAllOfIt = 10.0;  // sqrt(nats)
+  constexpr double kCrisp = 0.1, kBent = 0.2;     // [m]
+  const double ahead = std::clamp((f.lead - kFar) / kAllOfIt, 0.0, 1.0);
+  const double bent =
+      std::clamp(std::log2(std::max(f.sigma, kCrisp) / kCrisp) / std::log2(kBent / kCrisp), 0.0, 1.0);
+  return ahead * bent;
+}
+
+/// Two maps of one empty room agree in 99 of 100 cells, whichever way they lie: more tells nothing.
+double cells_agree(double acceptance_index) {
+  constexpr double kNearlyAll = 0.99;
+  return missing(std::min(acceptance_index, kNearlyAll), 0.01);
+}
+
+/// By how much more of the cells agree than under the next pose, or than maps agree under any.
+double agrees_better(const PoseFigures& f) {
+  constexpr double kAnyPose = 0.93;
+  return cells_agree(f.acceptance_index) - cells_agree(std::max(f.next_acceptance_index, kAnyPose));
+}
+
 double logistic(double log_odds) {
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
@@ -53,12 +77,17 @@ std::span<const VerdictTerm> verdict_terms() {
                   [](const F& f) { return -std::log1p(std::exp(-3.0 * (f.wall_lines - 3.5))); }},
       VerdictTerm{"held", "ln(held / held_most)", kAmount, -3.5, 0.0, how_held},
       VerdictTerm{"lead", "lead / 10", kAmount, 0.0, 10.0, [](const F& f) { return 0.1 * f.lead; }},
+      VerdictTerm{"far ahead, bent",
+                  "(lead - 25) / 10 within [0, 1], times log2(sigma / 0.1 m) within [0, 1]", TermKind::excuse,
+                  0.0, 1.0, far_ahead_though_bent},
       VerdictTerm{"met locally", "-ln(1.05 - walls_met_locally)", kQuality, 0.0, 2.5,
                   [](const F& f) { return missing(f.walls_met_locally, 0.05); }},
       VerdictTerm{"bend explains", "ln((1.05 - walls_met) / (1.05 - walls_met_locally))", kQuality, 0.0, 2.0,
                   [](const F& f) { return missing(f.walls_met_locally, 0.05) - missing(f.walls_met, 0.05); }},
-      VerdictTerm{"cells agree", "-ln(1.01 - acceptance_index)", kQuality, 1.0, 4.6,
-                  [](const F& f) { return missing(f.acceptance_index, 0.01); }},
+      VerdictTerm{"cells agree", "-ln(1.01 - min(acceptance_index, 0.99))", kQuality, 1.0, 3.92,
+                  [](const F& f) { return cells_agree(f.acceptance_index); }},
+      VerdictTerm{"agrees better", "what \"cells agree\" is more than for max(next_acceptance_index, 0.93)",
+                  kQuality, 0.0, 1.39, agrees_better},
       VerdictTerm{"things met", "-ln(1.05 - share), the share of things met drawn towards 1/3 by 4 m",
                   kQuality, 0.05, 2.5, [](const F& f) { return missing(things_share(f), 0.05); }}};
   return kTerms;
@@ -71,13 +100,16 @@ double log_odds_of(const PoseFigures& figures) {
   return sum;
 }
 
-void set_leads(std::span<PoseFigures> hypotheses) {
+void compare_rivals(std::span<PoseFigures> hypotheses) {
   for (PoseFigures& one : hypotheses) {
-    double next = 0.0;
+    double next_score = 0.0;
+    one.next_acceptance_index = 0.0;
     for (const PoseFigures& other : hypotheses) {
-      if (&other != &one) next = std::max(next, other.score);
+      if (&other == &one) continue;
+      next_score = std::max(next_score, other.score);
+      one.next_acceptance_index = std::max(one.next_acceptance_index, other.acceptance_index);
     }
-    one.lead = one.score > 0.0 ? (one.score - next) / std::sqrt(one.score) : 0.0;
+    one.lead = one.score > 0.0 ? (one.score - next_score) / std::sqrt(one.score) : 0.0;
   }
 }
 
@@ -125,6 +157,18 @@ Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_pr
   if (mended([](TermKind kind) { return kind == TermKind::quality; }) >= accept_probability)
     return Reason::contradiction;
   return Reason::several;
+}
+
+const char* name_of(TermKind kind) {
+  switch (kind) {
+    case TermKind::amount:
+      return "amount";
+    case TermKind::quality:
+      return "quality";
+    case TermKind::excuse:
+      break;
+  }
+  return "excuse";
 }
 
 const char* name_of(Verdict verdict) {

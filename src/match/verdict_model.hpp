@@ -12,18 +12,20 @@ struct VerdictWeight {
   double weight;
 };
 
-inline constexpr double kVerdictBias = -16.418;
+inline constexpr double kVerdictBias = -15.802;
 
 /// In the order of verdict_terms().
 inline constexpr std::array kVerdictWeights{
-    VerdictWeight{"lines", 0.560},
+    VerdictWeight{"lines", 0.137},
     VerdictWeight{"tells apart", 3.000},
-    VerdictWeight{"held", 1.097},
-    VerdictWeight{"lead", 0.426},
-    VerdictWeight{"met locally", 3.624},
-    VerdictWeight{"bend explains", 0.641},
-    VerdictWeight{"cells agree", 3.202},
-    VerdictWeight{"things met", 2.133},
+    VerdictWeight{"held", 1.000},
+    VerdictWeight{"lead", 0.512},
+    VerdictWeight{"far ahead, bent", 8.000},
+    VerdictWeight{"met locally", 2.945},
+    VerdictWeight{"bend explains", 1.994},
+    VerdictWeight{"cells agree", 3.236},
+    VerdictWeight{"agrees better", 4.039},
+    VerdictWeight{"things met", 2.395},
 };
 
 }  // namespace gridmerge

@@ -34,14 +34,12 @@ constexpr double kUnseenWorth = 0.3;
 struct Meetings {
   double seen = 0.0;         // walls where the other map has seen
   double met = 0.0;          // of these, the walls that meet another one
-  double worth = 0.0;        // what a patch climbs on: 1 for a wall on another one, less with their distance
   double seen_things = 0.0;  // the same of walls of things that stand alone
   double things_met = 0.0;
 
   Meetings& operator+=(const Meetings& other) {
     seen += other.seen;
     met += other.met;
-    worth += other.worth;
     seen_things += other.seen_things;
     things_met += other.things_met;
     return *this;
@@ -74,10 +72,12 @@ constexpr auto kWorth = [] {
   return worth;
 }();
 
-Meetings look_up(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls) {
+/// Calls `meet(wall, place)` for every wall that falls where the map has seen, and returns how many do not.
+template <typename Meet>
+std::size_t look_up(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls,
+                    Meet meet) {
   const double c = std::cos(T_map_walls.theta), s = std::sin(T_map_walls.theta);
-  const auto& is_contrary = contrary_facings()[steps_of_turn(T_map_walls.theta)];
-  Meetings meetings;
+  std::size_t unseen = 0;
   for (const WallPoint& wall : walls) {
     const double x = c * wall.position.x - s * wall.position.y + T_map_walls.x;
     const double y = s * wall.position.x + c * wall.position.y + T_map_walls.y;
@@ -86,19 +86,36 @@ Meetings look_up(const WallMap& map, const std::vector<WallPoint>& walls, const 
       place = map.places[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +
                          static_cast<std::size_t>(x)];
     if (place.distance == kUnseen) {
-      meetings.worth += kUnseenWorth;
-      continue;
+      ++unseen;
+    } else {
+      meet(wall, place);
     }
-    meetings.seen += 1.0;
-    const double thing = wall.stands_alone ? 1.0 : 0.0;
-    meetings.seen_things += thing;
-    if (is_contrary[wall.facing][place.facing]) continue;
-    const double met = place.distance <= kMeetingDistance ? 1.0 : 0.0;
-    meetings.met += met;
-    meetings.things_met += met * thing;
-    meetings.worth += kWorth[place.distance];
   }
+  return unseen;
+}
+
+Meetings count_meetings(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls) {
+  const auto& is_contrary = contrary_facings()[steps_of_turn(T_map_walls.theta)];
+  Meetings meetings;
+  look_up(map, walls, T_map_walls, [&](const WallPoint& wall, const Place& place) {
+    const bool met = place.distance <= kMeetingDistance && !is_contrary[wall.facing][place.facing];
+    meetings.seen += 1.0;
+    if (wall.stands_alone) meetings.seen_things += 1.0;
+    if (!met) return;
+    meetings.met += 1.0;
+    if (wall.stands_alone) meetings.things_met += 1.0;
+  });
   return meetings;
+}
+
+/// What a patch climbs on: 1 for a wall on another one, less with their distance.
+double worth_of(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls) {
+  const auto& is_contrary = contrary_facings()[steps_of_turn(T_map_walls.theta)];
+  double worth = 0.0;
+  const std::size_t unseen = look_up(map, walls, T_map_walls, [&](const WallPoint& wall, const Place& place) {
+    if (!is_contrary[wall.facing][place.facing]) worth += kWorth[place.distance];
+  });
+  return worth + kUnseenWorth * static_cast<double>(unseen);
 }
 
 /// The walls of both maps in one square of the moving map.
@@ -139,8 +156,8 @@ class PatchMatcher {
 
  private:
   Meetings at(const Patch& patch, const SE2& T_fixed_moving) const {
-    Meetings sum = look_up(fixed_, patch.moving, T_fixed_moving);
-    sum += look_up(moving_, patch.fixed, inverse(T_fixed_moving));
+    Meetings sum = count_meetings(fixed_, patch.moving, T_fixed_moving);
+    sum += count_meetings(moving_, patch.fixed, inverse(T_fixed_moving));
     return sum;
   }
 
@@ -157,12 +174,12 @@ class PatchMatcher {
     };
     const double fixed_weight = all_per_drawn(patch.fixed, fixed_walls);
     const double moving_weight = all_per_drawn(patch.moving, moving_walls);
-    const auto worth_of = [&](const SE2& T_fixed_moving) {
-      return moving_weight * look_up(fixed_, moving_walls, T_fixed_moving).worth +
-             fixed_weight * look_up(moving_, fixed_walls, inverse(T_fixed_moving)).worth;
+    const auto worth_at = [&](const SE2& T_fixed_moving) {
+      return moving_weight * worth_of(fixed_, moving_walls, T_fixed_moving) +
+             fixed_weight * worth_of(moving_, fixed_walls, inverse(T_fixed_moving));
     };
     SE2 best = start_;
-    double most = worth_of(best);
+    double most = worth_at(best);
     for (double step = kFirstStep / fixed_.cell; step >= kLastStep; step /= 2.0) {
       bool improved = true;
       for (int i = 0; i < kMaxMoves && improved; ++i) {
@@ -171,7 +188,7 @@ class PatchMatcher {
         for (const auto& [dx, dy, turn] : kMoves) {
           const SE2 pose = metric.moved(from, step * dx, step * dy, step * turn / metric.radius);
           if (metric.displacement(pose, start_) > kFarthestShift / fixed_.cell) continue;
-          const double worth = worth_of(pose);
+          const double worth = worth_at(pose);
           if (worth <= most) continue;
           most = worth;
           best = pose;

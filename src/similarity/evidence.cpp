@@ -60,8 +60,6 @@ std::vector<ModelScores> tabulate(const std::array<double, kDistanceBins>& backg
   return nats;
 }
 
-constexpr int kOnWall = 2;  // cells: a wall within this distance is met
-
 /// What is added to the distance bin to name the encounter, by both facings.
 constexpr auto kEncounterOffset = [] {
   std::array<std::array<std::uint8_t, kFacingCodes>, kFacingCodes> offsets{};
@@ -238,27 +236,6 @@ Evidence WallEvidence::operator()(const SE2& T_fixed_moving_cells, double min_si
   best.model = models[best_score - scores.begin()];
   best.seen_walls = moving_walls_.weight * seen(in_fixed) + fixed_walls_.weight * seen(in_moving);
   return best;
-}
-
-WallShares WallEvidence::shares(const SE2& T_fixed_moving_cells, int apart_from) const {
-  WallShares shares;
-  const auto add = [&](const Histogram& met, double weight) {
-    for (int facing = 0; facing < kFacings; ++facing) {
-      for (int bin = 0; bin < kDistanceBins; ++bin) {
-        const double walls = weight * met[encounter(bin, facing)];
-        shares.seen += walls;
-        if (bin >= apart_from) shares.apart += walls;
-        if (bin <= kOnWall && facing >= kFirstContraryFacing) shares.contrary += walls;
-      }
-    }
-  };
-  add(count_encounters(*fixed_, moving_walls_, T_fixed_moving_cells), moving_walls_.weight);
-  add(count_encounters(*moving_, fixed_walls_, inverse(T_fixed_moving_cells)), fixed_walls_.weight);
-  if (shares.seen > 0.0) {
-    shares.apart /= shares.seen;
-    shares.contrary /= shares.seen;
-  }
-  return shares;
 }
 
 }  // namespace gridmerge

@@ -147,13 +147,13 @@ TEST(ThinWalls, AMazeLiesOnItselfWhereverItsBorderIs) {
 TEST(Painted, BlackAroundARoomSaysNoMoreThanUnknown) {
   const OccupancyGrid building = test::draw_building(3);
   const auto framed = [&](Cell around) {
-    OccupancyGrid framed =
+    OccupancyGrid drawn =
         make_grid(building.width + 400, building.height + 300, building.resolution, {}, around);
     for (int row = 0; row < building.height; ++row)
       for (int column = 0; column < building.width; ++column)
         if (building.at(column, row) != Cell::unknown)
-          framed.at(column + 200, row + 150) = building.at(column, row);
-    return framed;
+          drawn.at(column + 200, row + 150) = building.at(column, row);
+    return drawn;
   };
   const OccupancyGrid painted = framed(Cell::occupied);
   const MatchResult itself = match(painted, painted);

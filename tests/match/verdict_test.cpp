@@ -26,8 +26,6 @@ PoseFigures clear_pose() {
   figures.seen_walls = 240.0;
   figures.walls_met = 0.93;
   figures.walls_met_locally = 0.95;
-  figures.walls_apart = 0.01;
-  figures.walls_contrary = 0.03;
   figures.wall_lines = 12.0;
   figures.seen_things = 40.0;
   figures.things_met = 0.9;
@@ -35,6 +33,7 @@ PoseFigures clear_pose() {
   figures.held = 4000.0;
   figures.held_most = 5000.0;
   figures.acceptance_index = 0.985;
+  figures.next_acceptance_index = 0.95;
   figures.common_area = 300.0;
   figures.overlap = 0.6;
   figures.sigma = 0.07;
@@ -85,8 +84,8 @@ TEST(VerdictTables, AreThoseOfTheDocs) {
     EXPECT_STREQ(term.name, kVerdictWeights[i].term);
     char weight[32];
     std::snprintf(weight, sizeof weight, "%.2f", kVerdictWeights[i].weight);
-    expect_row("| " + std::string(term.name) + " | `" + term.formula + "` | " +
-               (term.kind == TermKind::amount ? "amount" : "quality") + " | " + weight + " |\n");
+    expect_row("| " + std::string(term.name) + " | `" + term.formula + "` | " + name_of(term.kind) + " | " +
+               weight + " |\n");
   }
 }
 
@@ -116,8 +115,56 @@ TEST(ProbabilitiesOf, RiseWithWhatSpeaksForThePose) {
   EXPECT_LT(log_odds_of(changed(&PoseFigures::held, 100.0)), usual);
 }
 
+/// Two walls and a corner, which fit another corner as well.
+PoseFigures corner_pose() {
+  PoseFigures corner = changed(&PoseFigures::wall_lines, 2.0);
+  corner.seen_walls = 8.0;
+  corner.lead = 5.0;
+  corner.seen_things = 0.0;
+  corner.next_acceptance_index = 0.97;
+  return corner;
+}
+
 TEST(ProbabilitiesOf, ACornerTellsNoPlacesApart) {
-  EXPECT_LT(alone(changed(&PoseFigures::wall_lines, 2.0)), 0.5);
+  EXPECT_LT(alone(corner_pose()), 0.01);
+}
+
+TEST(ProbabilitiesOf, ALeadSpeaksForBentMapsOnly) {
+  PoseFigures bent = clear_pose();
+  bent.walls_met = 0.5;
+  bent.walls_met_locally = 0.75;
+  bent.things_met = 0.5;
+  bent.acceptance_index = 0.95;
+  bent.lead = 50.0;
+  bent.sigma = 0.25;
+  EXPECT_GT(alone(bent), 0.98);
+  PoseFigures crisp = bent;
+  crisp.sigma = 0.05;  // the walls that do meet lie on each other: so should the others
+  EXPECT_LT(alone(crisp), 0.95);
+  PoseFigures bent_without_lead = bent;
+  bent_without_lead.lead = 15.0;  // unrelated maps have as much
+  EXPECT_LT(alone(bent_without_lead), 0.95);
+}
+
+TEST(ProbabilitiesOf, MoreThanNearlyAllCellsTellsNothing) {
+  EXPECT_EQ(log_odds_of(changed(&PoseFigures::acceptance_index, 0.991)),
+            log_odds_of(changed(&PoseFigures::acceptance_index, 1.0)));
+}
+
+TEST(CompareRivals, GivesEachItsLeadOverTheBestOther) {
+  std::vector<PoseFigures> poses(3);
+  for (int i = 0; i < 3; ++i) {
+    poses[i].score = 100.0 * (i + 1);
+    poses[i].acceptance_index = 0.9 + 0.02 * i;
+  }
+  compare_rivals(poses);
+  EXPECT_DOUBLE_EQ(poses[2].lead, 100.0 / std::sqrt(300.0));
+  EXPECT_DOUBLE_EQ(poses[0].lead, -200.0 / std::sqrt(100.0));
+  EXPECT_DOUBLE_EQ(poses[2].next_acceptance_index, 0.92);
+  EXPECT_DOUBLE_EQ(poses[0].next_acceptance_index, 0.94);
+  std::vector<PoseFigures> alone_here(1, clear_pose());
+  compare_rivals(alone_here);
+  EXPECT_EQ(alone_here[0].next_acceptance_index, 0.0);
 }
 
 TEST(ProbabilitiesOf, ThingsCountByHowManyThereAre) {
@@ -168,16 +215,16 @@ TEST(ExplainRefusal, NamesWhatHoldsThePairBack) {
   contradicting.walls_met = contradicting.walls_met_locally = 0.45;
   contradicting.acceptance_index = 0.88;
   contradicting.things_met = 0.1;
+  contradicting.lead = 8.0;
   EXPECT_EQ(reason({contradicting}), Reason::contradiction);
 
-  PoseFigures corner = changed(&PoseFigures::wall_lines, 2.0);
-  corner.seen_walls = 8.0;
+  const PoseFigures corner = corner_pose();
   EXPECT_EQ(reason({corner}), Reason::too_little_overlap);
   // Two ways to lay a room on itself: not too little, whatever their number of lines.
   EXPECT_EQ(reason({corner, corner}), Reason::ambiguous);
 
   PoseFigures hopeless = contradicting;
-  hopeless.wall_lines = 1.5;
+  hopeless.wall_lines = 1.0;
   hopeless.seen_walls = 8.0;
   EXPECT_EQ(reason({hopeless}), Reason::several);
   EXPECT_STREQ(name_of(Reason::ambiguous), "ambiguous");
@@ -187,6 +234,7 @@ TEST(ExplainRefusal, NamesWhatHoldsThePairBack) {
 TEST(ExplainRefusal, MapsThatSlideAreAmbiguous) {
   PoseFigures corridor = changed(&PoseFigures::wall_lines, 3.0);
   corridor.held = 0.0;
+  corridor.lead = 2.0;
   EXPECT_EQ(explain_refusal(std::vector{corridor}, 0.95), Reason::ambiguous);
 }
 

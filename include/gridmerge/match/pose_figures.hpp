@@ -13,8 +13,6 @@ struct PoseFigures {
   double seen_walls = 0.0;
   double walls_met = 0.0;
   double walls_met_locally = 0.0;
-  double walls_apart = 0.0;
-  double walls_contrary = 0.0;
   double wall_lines = 0.0;
   double seen_things = 0.0;
   double things_met = 0.0;
@@ -23,6 +21,7 @@ struct PoseFigures {
   double held_most = 0.0;
   double free_direction = 0.0;
   double acceptance_index = 0.0;
+  double next_acceptance_index = 0.0;
   double common_area = 0.0;
   double overlap = 0.0;
   double sigma = 0.0;

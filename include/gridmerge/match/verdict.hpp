@@ -31,7 +31,11 @@ const char* name_of(Reason reason);
 enum class TermKind {
   amount,   ///< how much the maps have in common
   quality,  ///< how well they agree where both have seen
+  excuse,   ///< what lets a pose be believed although one of the others is poor
 };
+
+/// "amount", "quality", "excuse".
+const char* name_of(TermKind kind);
 
 /// A term of the model: the one place where its name, meaning and formula stand. Tables, fit and docs follow.
 struct VerdictTerm {
@@ -49,8 +53,9 @@ struct VerdictTerm {
 /// All terms, in the order of the model's weights.
 std::span<const VerdictTerm> verdict_terms();
 
-/// Gives each of several distinct hypotheses of one pair its `lead`, from the scores. O(hypotheses^2).
-void set_leads(std::span<PoseFigures> hypotheses);
+/// Gives each of several distinct hypotheses of one pair what it has before the others: `lead` and
+/// `next_acceptance_index`. O(hypotheses^2).
+void compare_rivals(std::span<PoseFigures> hypotheses);
 
 /// What speaks for a pose against "none of these", its rivals' odds left aside: the weighted sum of its terms
 /// [nats].

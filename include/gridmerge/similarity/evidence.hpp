@@ -59,13 +59,6 @@ struct Evidence {
   double seen_walls = 0.0;  ///< wall points of either map that lie where the other one has seen
 };
 
-/// How the walls of two maps that lie where the other one has seen meet the other's, as shares of them.
-struct WallShares {
-  double seen = 0.0;      ///< so many wall points lie there, of both maps
-  double apart = 0.0;     ///< with no wall within the distance asked for: a wall where the other saw floor
-  double contrary = 0.0;  ///< on a wall of the other one that stands across, or was seen from behind
-};
-
 /// Scores poses of one pair of maps. Every wall point of each map is looked up in the other's distance map;
 /// the pose is judged by the error model that explains the distances best (maximum likelihood), so one scale
 /// serves clean maps and bent ones.
@@ -81,9 +74,6 @@ class WallEvidence {
   /// Evidence for a pose between the grid frames, in cells. Only models of sigma >= min_sigma [cells] are
   /// tried. O(points + models * bins).
   Evidence operator()(const SE2& T_fixed_moving_cells, double min_sigma = 0.0) const;
-
-  /// What becomes of the walls; `apart` counts those from `apart_from` cells on. O(points).
-  WallShares shares(const SE2& T_fixed_moving_cells, int apart_from) const;
 
  private:
   /// How often each encounter happened, and behind them how often the other map had not seen the place.
