@@ -136,6 +136,14 @@ OccupancyGrid without_painted(const OccupancyGrid& grid, double reach) {
   return seen;
 }
 
+bool is_mostly_painted(const OccupancyGrid& grid) {
+  const CellCounts counts = count_cells(grid);
+  if (2 * counts.occupied <= counts.known())
+    return false;  // as of nearly every map: what follows takes longer
+  const std::size_t painted = counts.occupied - count_cells(without_painted(grid)).occupied;
+  return 2 * painted > counts.known();
+}
+
 OccupancyGrid downsample(const OccupancyGrid& grid, int factor) {
   if (factor < 1) throw std::invalid_argument("the downsampling factor must be at least 1");
   OccupancyGrid coarse = make_grid((grid.width - 1) / factor + 1, (grid.height - 1) / factor + 1,

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "gridmerge/grid/resample.hpp"
+
 namespace gridmerge {
 
 namespace {
@@ -121,6 +123,12 @@ void warn_of_missing_cells(const OccupancyGrid& grid, std::vector<std::string>& 
     warnings.emplace_back("the map has no occupied cell");
   } else if (counts.free == 0) {
     warnings.emplace_back("the map has no free cell");
+  } else if (is_mostly_painted(grid)) {
+    warnings.push_back(
+        fmt::format("{} of {} known cells are occupied, most of them far from any free one: was the unseen "
+                    "painted black? "
+                    "They count as unknown",
+                    counts.occupied, counts.known()));
   }
 }
 

@@ -11,9 +11,6 @@ namespace gridmerge {
 
 namespace {
 
-/// Walls are no thicker than this from where they can be seen.
-constexpr double kWallDepth = 0.15;  // [m]
-
 /// How many occupied cells lie in the quarters of a grid, counter-clockwise from the lower left; those on a
 /// middle row or column are in none.
 std::array<std::size_t, 4> occupied_by_quarter(const OccupancyGrid& grid) {
@@ -56,7 +53,7 @@ OccupancyGrid in_canonical_orientation(OccupancyGrid grid) {
 
 PreparedMap::PreparedMap(const OccupancyGrid& grid) {
   validate(grid);
-  known_ = in_canonical_orientation(crop_to_known(without_painted(crop_to_known(grid), kWallDepth)));
+  known_ = in_canonical_orientation(crop_to_known(without_painted(crop_to_known(grid))));
   counts_ = count_cells(known_);
 }
 

@@ -13,6 +13,7 @@
 #include "component.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/parallel.hpp"
+#include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/prepared_map.hpp"
 #include "gridmerge/merge/arrangement.hpp"
 #include "gridmerge/merge/coverage.hpp"
@@ -26,7 +27,10 @@ namespace {
 /// A map with all that does not depend on the others.
 struct Input {
   explicit Input(std::shared_ptr<const OccupancyGrid> map)
-      : grid(std::move(map)), prepared(*grid), coverage(prepared.known()) {}
+      : grid(std::move(map)), prepared(*grid), coverage(prepared.known()) {
+    // What somebody painted black would hide what others have seen there.
+    if (is_mostly_painted(*grid)) grid = std::make_shared<const OccupancyGrid>(without_painted(*grid));
+  }
 
   std::shared_ptr<const OccupancyGrid> grid;
   PreparedMap prepared;

@@ -230,5 +230,21 @@ RC_GTEST_PROP(WithoutPainted, ForgetsWhatNoFreeCellIsNear, (unsigned seed)) {
   }
 }
 
+TEST(IsMostlyPainted, AsksForMoreThanHalfOfTheKnownCells) {
+  OccupancyGrid grid = make_grid(100, 100, 0.05);
+  for (int y = 40; y < 60; ++y)
+    for (int x = 40; x < 60; ++x) grid.at(x, y) = Cell::free;
+  EXPECT_FALSE(is_mostly_painted(grid));
+  const auto paint = [&](int rows) {
+    for (int y = 0; y < rows; ++y)
+      for (int x = 0; x < 100; ++x) grid.at(x, y) = Cell::occupied;
+  };
+  paint(4);  // as many cells as are free
+  EXPECT_FALSE(is_mostly_painted(grid));
+  paint(5);
+  EXPECT_TRUE(is_mostly_painted(grid));
+  EXPECT_FALSE(is_mostly_painted(make_grid(10, 10, 0.05)));
+}
+
 }  // namespace
 }  // namespace gridmerge

@@ -197,6 +197,15 @@ TEST(Interpret, WarnsOfMissingCells) {
   EXPECT_EQ(interpret(yaml_of(), row_of({205, 0})).warnings, Warnings{"the map has no free cell"});
 }
 
+TEST(Interpret, WarnsWhereWhatWasNotSeenIsPaintedBlack) {
+  std::vector<std::uint16_t> pixels(100, 0);
+  pixels[50] = 254;
+  const std::vector<std::string> warnings = interpret(yaml_of(), row_of(pixels)).warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("99 of 100 known cells are occupied"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("painted black"), std::string::npos) << warnings[0];
+}
+
 RC_GTEST_PROP(Interpret, NegateIsTheSameAsAnInvertedPicture, ()) {
   MapYaml yaml = yaml_of(*rc::gen::element(MapMode::trinary, MapMode::scale));
   MapImage image =

@@ -53,6 +53,18 @@ struct Team {
   std::vector<SE2> T_map_building;
 };
 
+/// The map on a large sheet that is black where the map knows nothing, as hand-edited maps are.
+OccupancyGrid painted_black(const OccupancyGrid& map) {
+  constexpr int kMargin = 150;
+  OccupancyGrid sheet = make_grid(map.width + 2 * kMargin, map.height + 2 * kMargin, map.resolution,
+                                  map.origin, Cell::occupied);
+  for (int row = 0; row < map.height; ++row)
+    for (int column = 0; column < map.width; ++column)
+      if (map.at(column, row) != Cell::unknown)
+        sheet.at(column + kMargin, row + kMargin) = map.at(column, row);
+  return sheet;
+}
+
 void expect_same(const MergeResult& a, const MergeResult& b) {
   ASSERT_EQ(a.components.size(), b.components.size());
   for (std::size_t i = 0; i < a.components.size(); ++i) {
@@ -309,6 +321,21 @@ TEST(Merger, IsAsItWasAfterAnError) {
   EXPECT_THROW(merger.set_known_pose(id, KnownPose{{}, 0.0, 0.0}), std::invalid_argument);
   EXPECT_EQ(merger.maps(), std::vector<Merger::MapId>{id});
   EXPECT_EQ(merger.result().left_out, std::vector<std::size_t>{0});
+}
+
+TEST(Merge, BlackPaintHidesNothingThatOthersHaveSeen) {
+  Team team;
+  team.maps.pop_back();
+  const MergeResult plain = merge(team.maps);
+  team.maps[0] = painted_black(team.maps[0]);
+  const MergeResult painted = merge(team.maps);
+  ASSERT_EQ(painted.components.size(), 1U);
+  ASSERT_EQ(painted.components[0].members.size(), 4U);
+  const CellCounts with = count_cells(painted.components[0].fused.grid),
+                   without = count_cells(plain.components[0].fused.grid);
+  EXPECT_NEAR(static_cast<double>(with.free), static_cast<double>(without.free),
+              0.02 * static_cast<double>(without.free));
+  EXPECT_LT(with.occupied, 2 * without.occupied);
 }
 
 }  // namespace

@@ -13,10 +13,17 @@ OccupancyGrid crop_to_known(const OccupancyGrid& grid);
 /// origin turns back, so points keep their coordinates in the map frame. Nothing is resampled. O(cells).
 OccupancyGrid quarter_turned(const OccupancyGrid& grid, int quarters);
 
+/// Walls are no thicker than this from where they can be seen [m].
+inline constexpr double kWallDepth = 0.15;
+
 /// The grid without occupied cells that are farther than `reach` metres (and three cells) from every free
 /// one, along a row or a column: they become unknown. Such cells were never seen by a robot: somebody painted
 /// them. O(cells).
-OccupancyGrid without_painted(const OccupancyGrid& grid, double reach);
+OccupancyGrid without_painted(const OccupancyGrid& grid, double reach = kWallDepth);
+
+/// Whether more than half of the known cells are such: all that no robot has seen was painted black.
+/// O(cells).
+bool is_mostly_painted(const OccupancyGrid& grid);
 
 /// The grid with cells `factor` times as large (factor >= 1): occupied where any of the factor x factor cells
 /// is, else free where any is, else unknown. Same origin. Probabilities are dropped. Throws
