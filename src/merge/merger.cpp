@@ -177,7 +177,7 @@ class Merger::State {
     }
     for (std::size_t a = 0; a < maps.size(); ++a) {
       for (std::size_t b = a + 1; b < maps.size(); ++b) {
-        PairCandidates pair{a, b, candidate_joins(match_between(maps[a], maps[b]))};
+        PairCandidates pair{a, b, candidate_joins(match_between(maps[a], maps[b]), maps.size())};
         const std::optional<KnownPose> of_a = known_pose(maps[a]), of_b = known_pose(maps[b]);
         if (of_a && of_b && !(of_a->fixed && of_b->fixed))
           apply_known_poses(*of_a, *of_b, problem.maps[a], problem.maps[b], pair);
