@@ -26,8 +26,8 @@ constexpr double kLeastGain = 0.1;
 /// Weighs groups against each other, and keeps what it has found until the groups change.
 class Arranger {
  public:
-  Arranger(const ArrangementProblem& problem, double accept_probability)
-      : weights_(problem), accept_(accept_probability) {
+  Arranger(const ArrangementProblem& problem, double accept_probability, double keep_probability)
+      : weights_(problem), accept_(accept_probability), keep_(keep_probability) {
     NodeGroup fixed;
     for (std::size_t map = 0; map < problem.maps.size(); ++map) {
       if (weights_.is_fixed(map)) {
@@ -156,7 +156,7 @@ class Arranger {
       probabilities[i] = weights_.probability_of_lying_so(halves[i].first, halves[i].second);
     });
     const auto least = std::min_element(probabilities.begin(), probabilities.end());
-    if (least == probabilities.end() || *least >= accept_) return {group};
+    if (least == probabilities.end() || *least >= keep_) return {group};
     const auto& weakest = halves[static_cast<std::size_t>(least - probabilities.begin())];
     return {weakest.first, weakest.second};
   }
@@ -211,7 +211,8 @@ class Arranger {
   }
 
   JoinWeights weights_;
-  double accept_;
+  double accept_;  // from this probability on, groups are joined
+  double keep_;    // and from this one on, they stay together
   NodeGroups groups_;
   std::map<std::pair<Key, Key>, WeighedJoin> weighed_;
   std::set<Key> sure_;  // groups that need no cut
@@ -256,10 +257,12 @@ double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b, cons
   return std::min(displacement(b, T_a_b, T_a_b_other), displacement(a, inverse(T_a_b), inverse(T_a_b_other)));
 }
 
-Arrangement arrange(const ArrangementProblem& problem, double accept_probability) {
+namespace {
+
+Arrangement arrange(const ArrangementProblem& problem, double accept_probability, double keep_probability) {
   validate(problem, accept_probability);
   Arrangement arrangement;
-  for (NodeGroup& group : Arranger(problem, accept_probability).settle())
+  for (NodeGroup& group : Arranger(problem, accept_probability, keep_probability).settle())
     arrangement.groups.push_back(in_order(std::move(group)));
   std::sort(arrangement.groups.begin(), arrangement.groups.end(),
             [](const NodeGroup& a, const NodeGroup& b) { return a.front().map < b.front().map; });
@@ -277,6 +280,12 @@ Arrangement arrange(const ArrangementProblem& problem, double accept_probability
   std::sort(arrangement.used.begin(), arrangement.used.end(),
             [](const UsedCandidate& a, const UsedCandidate& b) { return a.pair < b.pair; });
   return arrangement;
+}
+
+}  // namespace
+
+Arrangement arrange(const ArrangementProblem& problem, double accept_probability) {
+  return arrange(problem, accept_probability, accept_probability);
 }
 
 double expected_false_joins(const Arrangement& arrangement) {
@@ -297,15 +306,14 @@ Arrangement arrange_within(const ArrangementProblem& problem, double accept_prob
   Arrangement arrangement = arrange(problem, accept_probability);
   constexpr double kLeastStep = 0.2;    // of the doubt that is still allowed, so that this ends
   constexpr double kLeastDoubt = 1e-9;  // from there on nothing is surer
-  while (expected_false_joins(arrangement) > max_false_joins && 1.0 - accept_probability > kLeastDoubt) {
+  double keep = accept_probability;
+  while (expected_false_joins(arrangement) > max_false_joins && 1.0 - keep > kLeastDoubt) {
     double least = 1.0;
     for (const NodeGroup& group : arrangement.groups) {
       for (const PlacedNode& node : group) least = std::min(least, node.probability);
     }
-    accept_probability =
-        std::max(std::nextafter(least, 2.0), accept_probability + kLeastStep * (1.0 - accept_probability));
-    accept_probability = std::min(accept_probability, 1.0);
-    arrangement = arrange(problem, accept_probability);
+    keep = std::min(1.0, std::max(std::nextafter(least, 2.0), keep + kLeastStep * (1.0 - keep)));
+    arrangement = arrange(problem, accept_probability, keep);
   }
   return arrangement;
 }

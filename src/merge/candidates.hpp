@@ -11,11 +11,8 @@ namespace gridmerge {
 /// How many hypotheses of a pair are kept for the arrangement.
 inline constexpr std::size_t kKeptHypotheses = 12;
 
-/// The hypotheses of a match of two of `maps` maps, with their odds. Those that the match calls less likely
+/// The hypotheses of a match, with the odds that their probabilities give them. Those that are less likely
 /// than one in a thousand are left out.
-///
-/// A match gives the odds of two maps by themselves. Among three or more most pairs share little or nothing,
-/// and the surest of many matches is too often of a place that looks the same: their odds are less.
-std::vector<CandidateJoin> candidate_joins(const MatchResult& match, std::size_t maps);
+std::vector<CandidateJoin> candidate_joins(const MatchResult& match);
 
 }  // namespace gridmerge

@@ -19,6 +19,13 @@ namespace {
 constexpr double kPoseNats = 5.0;
 /// No single pair says more than this about two maps: their errors have causes in common with other pairs'.
 constexpr double kMostLogOdds = 6.0;
+/// What a pair says by itself of two of three or more maps. Most pairs of them share little or nothing, and
+/// the surest of many matches is too often of a place that looks the same: the odds are so many times what
+/// the match says, and one in so many sure matches is of a place that repeats. With these, 120 simulated
+/// teams have as many false joins as their budgets allow (benchmark/teams.py).
+constexpr double kOddsAmongMany = 0.4;
+constexpr double kRepeats = 0.005;
+
 /// Where the strongest pair has spoken, the second counts by so much, the third by the square of that...
 constexpr double kDependence = 0.3;
 /// A pair of whose places a share is fresh speaks of them with this power of the share: what borders on known
@@ -255,13 +262,19 @@ WeighedJoin JoinWeights::join_of_pair(const PlacedNode& a, const PlacedNode& b) 
   const CandidateJoin& best = *std::max_element(
       pair.candidates.begin(), pair.candidates.end(),
       [](const CandidateJoin& x, const CandidateJoin& y) { return x.log_odds < y.log_odds; });
-  const auto probability = [](double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); };
+  const bool of_many = problem_.maps.size() > 2;
+  const auto probability = [&](const CandidateJoin& candidate) {
+    const double p = 1.0 / (1.0 + std::exp(-candidate.log_odds));
+    if (!of_many || candidate.is_known) return p;
+    const double odds = kOddsAmongMany * p / (1.0 - p + kRepeats);
+    return odds / (1.0 + odds);
+  };
   double sum = 0.0;  // above 1 where candidates were made likelier by what is known beforehand
-  for (const CandidateJoin& candidate : pair.candidates) sum += probability(candidate.log_odds);
+  for (const CandidateJoin& candidate : pair.candidates) sum += probability(candidate);
   const SE2 T = pair.fixed == a.map ? best.T_fixed_moving : inverse(best.T_fixed_moving);
   return {a.T_group_map * T * inverse(b.T_group_map),
           {best.log_odds, best.log_odds},
-          probability(best.log_odds) / std::max(1.0, sum),
+          probability(best) / std::max(1.0, sum),
           true};
 }
 

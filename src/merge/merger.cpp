@@ -11,6 +11,7 @@
 
 #include "candidates.hpp"
 #include "component.hpp"
+#include "copies.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
@@ -89,14 +90,19 @@ class Merger::State {
   MergeResult result() {
     MergeResult result;
     with_threads(options_.match.threads, [&] {
-      match_new_pairs();
-      const std::vector<MapId> maps = in_canonical_order();
+      const std::vector<Copy> copies = find_copies();
+      const std::vector<MapId> maps = those_that_count(copies);
+      match_new_pairs(maps);
       const ArrangementProblem problem = make_problem(maps);
       const Arrangement arrangement =
           arrange_within(problem, options_.match.accept_probability, options_.max_false_joins);
       result.expected_false_joins = expected_false_joins(arrangement);
       result.joins = make_joins(maps, problem, arrangement);
       add_components(maps, problem, arrangement, result);
+      std::vector<const OccupancyGrid*> grids;
+      for (const auto& [id, input] : inputs_) grids.push_back(input->grid.get());
+      add_copies(copies, grids, options_.resolution, result);
+      sort_components(result);
     });
     return result;
   }
@@ -129,9 +135,36 @@ class Merger::State {
     return maps;
   }
 
-  void match_new_pairs() {
+  /// The first of several equal maps is the one that counts. What is known of a pose tells maps apart.
+  std::vector<Copy> find_copies() const {
+    const std::vector<MapId> maps = in_canonical_order();  // equal ones follow each other
+    const std::vector<std::size_t> index = places_of(maps);
+    std::vector<Copy> copies;
+    std::size_t original = 0;
+    for (std::size_t i = 1; i < maps.size(); ++i) {
+      const PreparedMap &first = inputs_.at(maps[original])->prepared, &next = inputs_.at(maps[i])->prepared;
+      if (known_poses_.contains(maps[i]) || !is_copy(first, next)) {
+        original = i;
+      } else {
+        copies.push_back({index[i], index[original], between_copies(first, next)});
+      }
+    }
+    return copies;
+  }
+
+  /// In canonical order.
+  std::vector<MapId> those_that_count(const std::vector<Copy>& copies) const {
+    const std::vector<MapId> order = ids();
+    std::vector<MapId> maps = in_canonical_order();
+    std::erase_if(maps, [&](MapId id) {
+      return std::any_of(copies.begin(), copies.end(),
+                         [&](const Copy& copy) { return order[copy.map] == id; });
+    });
+    return maps;
+  }
+
+  void match_new_pairs(const std::vector<MapId>& maps) {
     std::vector<Pair> pairs;
-    const std::vector<MapId> maps = in_canonical_order();
     for (auto a = maps.begin(); a != maps.end(); ++a) {
       for (auto b = std::next(a); b != maps.end(); ++b) {
         if (!matches_.contains(std::minmax(*a, *b))) pairs.emplace_back(*a, *b);
@@ -177,7 +210,7 @@ class Merger::State {
     }
     for (std::size_t a = 0; a < maps.size(); ++a) {
       for (std::size_t b = a + 1; b < maps.size(); ++b) {
-        PairCandidates pair{a, b, candidate_joins(match_between(maps[a], maps[b]), maps.size())};
+        PairCandidates pair{a, b, candidate_joins(match_between(maps[a], maps[b]))};
         const std::optional<KnownPose> of_a = known_pose(maps[a]), of_b = known_pose(maps[b]);
         if (of_a && of_b && !(of_a->fixed && of_b->fixed))
           apply_known_poses(*of_a, *of_b, problem.maps[a], problem.maps[b], pair);
@@ -242,6 +275,9 @@ class Merger::State {
     std::sort(result.left_out.begin(), result.left_out.end());
     for (const std::size_t map : result.left_out)
       result.left_out_reasons.push_back(why_left_out(result.joins, map));
+  }
+
+  static void sort_components(MergeResult& result) {
     std::sort(result.components.begin(), result.components.end(), [](const Component& a, const Component& b) {
       const auto key = [](const Component& c) {
         return std::pair(-std::ssize(c.members), c.members.front().map);

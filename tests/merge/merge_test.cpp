@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/resample.hpp"
 #include "gridmerge/merge/merger.hpp"
 #include "support/building.hpp"
 
@@ -336,6 +337,79 @@ TEST(Merge, BlackPaintHidesNothingThatOthersHaveSeen) {
   EXPECT_NEAR(static_cast<double>(with.free), static_cast<double>(without.free),
               0.02 * static_cast<double>(without.free));
   EXPECT_LT(with.occupied, 2 * without.occupied);
+}
+
+/// A map given again, from another frame and turned by a quarter, as a file that was saved twice may be.
+OccupancyGrid saved_again(const OccupancyGrid& map) {
+  OccupancyGrid copy = quarter_turned(map, 1);
+  copy.origin = SE2{4.0, -7.0, 0.4} * copy.origin;
+  return copy;
+}
+
+TEST(Merge, AMapGivenTwiceCountsOnce) {
+  Team team;
+  const MergeResult once = merge(team.maps);
+  team.expect_merged(once);
+  for (std::size_t given_twice = 0; given_twice < 4; ++given_twice) {
+    std::vector<OccupancyGrid> maps = team.maps;
+    maps.push_back(saved_again(maps[given_twice]));
+    const MergeResult twice = merge(maps);
+    ASSERT_EQ(twice.components.size(), 1U);
+    const std::vector<Member>& members = twice.components[0].members;
+    ASSERT_EQ(members.size(), 5U);
+    for (std::size_t i = 0; i < 4; ++i) {  // nothing else changes, not by a bit
+      EXPECT_EQ(members[i].T_component_map, once.components[0].members[i].T_component_map);
+      EXPECT_EQ(members[i].probability, once.components[0].members[i].probability);
+    }
+    EXPECT_EQ(twice.components[0].fused.grid.cells, once.components[0].fused.grid.cells);
+    EXPECT_EQ(twice.expected_false_joins, once.expected_false_joins);
+    EXPECT_EQ(twice.left_out, once.left_out);
+    // It lies on its original: T_component_copy takes its middle where the original's goes.
+    EXPECT_EQ(members[4].map, 5U);
+    const SE2 T_original_copy = inverse(members[given_twice].T_component_map) * members[4].T_component_map;
+    const SE2 expected = inverse(SE2{4.0, -7.0, 0.4});
+    EXPECT_NEAR(T_original_copy.x, expected.x, 1e-9);
+    EXPECT_NEAR(T_original_copy.y, expected.y, 1e-9);
+    EXPECT_NEAR(normalize_angle(T_original_copy.theta - expected.theta), 0.0, 1e-9);
+    // A join with every other map, as the original has one.
+    ASSERT_EQ(twice.joins.size(), 15U);
+    for (const Join& join : twice.joins) {
+      EXPECT_LT(join.fixed, join.moving);
+      if (join.moving != 5) continue;
+      if (join.fixed == given_twice) {
+        EXPECT_EQ(join.outcome, JoinOutcome::accepted);
+        EXPECT_EQ(join.match.acceptance_index, 1.0);
+        continue;
+      }
+      for (const Join& original : twice.joins) {
+        if (std::minmax(original.fixed, original.moving) != std::minmax(join.fixed, given_twice)) continue;
+        EXPECT_EQ(join.outcome, original.outcome);
+        EXPECT_EQ(join.probability, original.probability);
+        const SE2 T = join.T_fixed_moving * SE2{4.0, -7.0, 0.4};
+        const SE2 of_original =
+            original.fixed == join.fixed ? original.T_fixed_moving : inverse(original.T_fixed_moving);
+        EXPECT_NEAR(T.x, of_original.x, 1e-9);
+        EXPECT_NEAR(T.y, of_original.y, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(Merge, OfAMapAndItsCopiesIsThatMap) {
+  const OccupancyGrid map = test::draw_building(1);
+  const MergeResult result = merge({map, test::draw_building(2), saved_again(map), map});
+  ASSERT_EQ(result.components.size(), 1U);
+  EXPECT_EQ(result.components[0].members.size(), 3U);
+  EXPECT_EQ(result.components[0].members[0].T_component_map, SE2{});
+  EXPECT_EQ(result.components[0].members[2].T_component_map, SE2{});
+  EXPECT_EQ(result.left_out, std::vector<std::size_t>{1});
+  EXPECT_EQ(result.left_out_reasons.size(), 1U);
+  EXPECT_EQ(result.joins.size(), 6U);
+}
+
+TEST(Merge, EmptyMapsAreNoCopiesOfEachOther) {
+  const OccupancyGrid empty = make_grid(20, 20, 0.1, {}, Cell::free);
+  EXPECT_TRUE(merge({empty, empty}).components.empty());
 }
 
 }  // namespace

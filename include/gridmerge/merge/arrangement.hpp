@@ -94,9 +94,11 @@ Arrangement arrange(const ArrangementProblem& problem, double accept_probability
 /// doubt in a member that is not fixed. O(maps).
 double expected_false_joins(const Arrangement& arrangement);
 
-/// arrange() with as many joins as a budget of false ones allows: as long as more are expected, the maps are
-/// arranged anew from a higher probability on, that of the least sure member. O(joins) times arrange().
-/// Throws std::invalid_argument as arrange(), and for a budget that is negative or not finite.
+/// arrange() with as many joins as a budget of false ones allows: as long as more are expected, the groups
+/// are cut from a higher probability on, that of the least sure member. Joined are they from
+/// `accept_probability` on: what two maps alone say is seldom as sure as what many say in the end. O(joins)
+/// times arrange(). Throws std::invalid_argument as arrange(), and for a budget that is negative or not
+/// finite.
 Arrangement arrange_within(const ArrangementProblem& problem, double accept_probability,
                            double max_false_joins);
 

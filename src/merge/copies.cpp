@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "copies.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "gridmerge/merge/fuse.hpp"
+#include "joins.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+/// A join of the originals as one of two maps that lie on them.
+Join carried_over(Join join, const SE2& T_copy_fixed, const SE2& T_moving_copy) {
+  const auto carry = [&](SE2& T_fixed_moving) {
+    T_fixed_moving = T_copy_fixed * T_fixed_moving * T_moving_copy;
+  };
+  carry(join.T_fixed_moving);
+  carry(join.match.T_fixed_moving);
+  for (Hypothesis& hypothesis : join.match.hypotheses) carry(hypothesis.T_fixed_moving);
+  return join;
+}
+
+/// Of a map and its copy: they lie on each other in every cell.
+Join join_of_copies(std::size_t fixed, std::size_t moving, const SE2& T_fixed_moving, std::size_t known) {
+  MatchResult match;
+  match.verdict = Verdict::accepted;
+  match.reason = Reason::none;
+  match.T_fixed_moving = T_fixed_moving;
+  match.probability = 1.0;
+  match.acceptance_index = 1.0;
+  match.agreement = known;
+  match.overlap = 1.0;
+  Hypothesis only;
+  only.T_fixed_moving = T_fixed_moving;
+  only.probability = 1.0;
+  only.figures.acceptance_index = only.figures.overlap = 1.0;
+  match.hypotheses.push_back(only);
+  return make_join(fixed, moving, std::move(match));
+}
+
+Member* find_member(MergeResult& result, std::size_t map, Component*& of) {
+  for (Component& component : result.components) {
+    for (Member& member : component.members) {
+      if (member.map != map) continue;
+      of = &component;
+      return &member;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+bool is_copy(const PreparedMap& a, const PreparedMap& b) {
+  const OccupancyGrid &one = a.known(), &other = b.known();
+  return a.counts().occupied > 0 && a.counts().occupied == b.counts().occupied &&
+         a.counts().free == b.counts().free && one.width == other.width &&
+         one.resolution == other.resolution && one.cells == other.cells;
+}
+
+SE2 between_copies(const PreparedMap& a, const PreparedMap& b) {
+  return a.known().origin == b.known().origin ? SE2{} : a.known().origin * inverse(b.known().origin);
+}
+
+void add_copies(const std::vector<Copy>& copies, const std::vector<const OccupancyGrid*>& grids,
+                double resolution, MergeResult& result) {
+  if (copies.empty()) return;
+  struct LiesOn {
+    std::size_t original;
+    SE2 T_original_map;
+  };
+  std::map<std::size_t, LiesOn> places;  // of every input
+  for (std::size_t i = 0; i < grids.size(); ++i) places[i] = {i, {}};
+  for (const Copy& copy : copies) places[copy.map] = {copy.original, copy.T_original_map};
+
+  std::map<std::pair<std::size_t, std::size_t>, Join> joins;
+  for (const Join& join : result.joins) joins[{join.fixed, join.moving}] = join;
+  result.joins.clear();
+  for (std::size_t a = 0; a < grids.size(); ++a) {
+    for (std::size_t b = a + 1; b < grids.size(); ++b) {
+      const LiesOn &of_a = places[a], &of_b = places[b];
+      const SE2 T_a = inverse(of_a.T_original_map);
+      if (of_a.original == of_b.original) {
+        result.joins.push_back(
+            join_of_copies(a, b, T_a * of_b.T_original_map, count_cells(*grids[a]).known()));
+        continue;
+      }
+      const auto [first, second] = std::minmax(of_a.original, of_b.original);
+      const Join& of_originals = joins.at({first, second});
+      Join join = carried_over(first == of_a.original ? of_originals : inverted(of_originals), T_a,
+                               of_b.T_original_map);
+      join.fixed = a;
+      join.moving = b;
+      result.joins.push_back(std::move(join));
+    }
+  }
+
+  for (const Copy& copy : copies) {
+    Component* component = nullptr;
+    const Member* original = find_member(result, copy.original, component);
+    if (original == nullptr) {
+      const auto alone = std::lower_bound(result.left_out.begin(), result.left_out.end(), copy.original);
+      result.left_out_reasons.erase(result.left_out_reasons.begin() + (alone - result.left_out.begin()));
+      result.left_out.erase(alone);
+      const PlacedMap placed{grids[copy.original], {}};
+      component = &result.components.emplace_back();
+      component->members.push_back({copy.original, {}, 1.0, {}});
+      component->fused = fuse({placed}, resolution > 0.0 ? resolution : finest_resolution({placed}));
+      original = &component->members.front();
+    }
+    Member member = *original;
+    member.map = copy.map;
+    member.T_component_map = original->T_component_map * copy.T_original_map;
+    member.sd = original->sd ? original->sd : PoseDeviation{};
+    component->members.push_back(member);
+  }
+  for (Component& component : result.components) {
+    std::sort(component.members.begin(), component.members.end(),
+              [](const Member& a, const Member& b) { return a.map < b.map; });
+  }
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "gridmerge/grid/se2.hpp"
+#include "gridmerge/match/prepared_map.hpp"
+#include "gridmerge/merge/merge_result.hpp"
+
+namespace gridmerge {
+
+/// A map that holds the same cells as another input: given twice, it counts once.
+struct Copy {
+  std::size_t map = 0;       ///< index of the input
+  std::size_t original = 0;  ///< index of the one that counts
+  SE2 T_original_map;        ///< from the copy's frame to the original's
+};
+
+/// Whether two maps hold the same cells, walls among them. O(cells) if they do, mostly O(1) if not.
+bool is_copy(const PreparedMap& a, const PreparedMap& b);
+
+/// From b's frame to a's, where the two hold the same cells.
+SE2 between_copies(const PreparedMap& a, const PreparedMap& b);
+
+/// Gives every copy its place beside its original: in the original's component, or in one of the two, and in
+/// a join with every other map that the original has one with. `grids` are all inputs; `resolution` is that
+/// of fused maps, 0 for the finest.
+void add_copies(const std::vector<Copy>& copies, const std::vector<const OccupancyGrid*>& grids,
+                double resolution, MergeResult& result);
+
+}  // namespace gridmerge
