@@ -45,7 +45,7 @@ TEST_F(Streams, AMessageIsOneLineWhateverTheFileIsCalled) {
 
 TEST_F(Streams, TheProgressBarIsForTerminalsAndGoesAway) {
   std::string table = "fixed\tmoving\n";
-  for (int i = 0; i < 40; ++i) table += "left.yaml\tother.yaml\n";
+  for (int i = 0; i < 12; ++i) table += "left.yaml\tother.yaml\n";
   const std::string negatives = directory.write("negatives.tsv", table);
   const std::vector<std::string> arguments = {"evaluate", "--negatives", negatives, "--threads", "1"};
   RunOptions terminal;
