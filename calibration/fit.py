@@ -29,7 +29,7 @@ TERM = "term: "
 RIDGE = 1.0  # on weights of terms that are scaled to unit variance
 LEAST_WEIGHT = {"tells apart": 1.0, "held": 1.0}
 # No unrelated pair has any of it, so the cases would give it any weight: as much as one case of all those may speak.
-MOST_WEIGHT = {"far ahead, bent": 8.0}
+MOST_WEIGHT = {"far ahead, bent": 12.0}
 # Corners fit corners and plain rooms fit plain rooms, of which the cases hold too few: this is added to what is fitted.
 CAUTION = {"tells apart": 2.0}
 CASES_A_KIND = 540.0  # what the true pairs of a kind of maps weigh together, and the unrelated ones

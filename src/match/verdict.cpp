@@ -37,11 +37,11 @@ constexpr double kSlides = -2.0;  // of it: less than an eighth
 /// has: as far as the errors are those of bent maps, since of crisp ones of a symmetric floor the wrong half
 /// leads as well.
 double far_ahead_though_bent(const PoseFigures& f) {
-  constexpr double kFar = 25.0, kAllOfIt = 10.0;  // sqrt(nats)
-  constexpr double kCrisp = 0.1, kBent = 0.2;     // [m]
+  constexpr double kFar = 20.0, kAllOfIt = 30.0;  // sqrt(nats)
+  constexpr double kCrisp = 0.1, kBent = 0.25;    // [m]
   const double ahead = std::clamp((f.lead - kFar) / kAllOfIt, 0.0, 1.0);
   const double bent =
-      std::clamp(std::log2(std::max(f.sigma, kCrisp) / kCrisp) / std::log2(kBent / kCrisp), 0.0, 1.0);
+      std::clamp(std::log(std::max(f.sigma, kCrisp) / kCrisp) / std::log(kBent / kCrisp), 0.0, 1.0);
   return ahead * bent;
 }
 
@@ -78,8 +78,8 @@ std::span<const VerdictTerm> verdict_terms() {
       VerdictTerm{"held", "ln(held / held_most)", kAmount, -3.5, 0.0, how_held},
       VerdictTerm{"lead", "lead / 10", kAmount, 0.0, 10.0, [](const F& f) { return 0.1 * f.lead; }},
       VerdictTerm{"far ahead, bent",
-                  "(lead - 25) / 10 within [0, 1], times log2(sigma / 0.1 m) within [0, 1]", TermKind::excuse,
-                  0.0, 1.0, far_ahead_though_bent},
+                  "(lead - 20) / 30 within [0, 1], times ln(sigma / 0.1 m) / ln(2.5) within [0, 1]",
+                  TermKind::excuse, 0.0, 1.0, far_ahead_though_bent},
       VerdictTerm{"met locally", "-ln(1.05 - walls_met_locally)", kQuality, 0.0, 2.5,
                   [](const F& f) { return missing(f.walls_met_locally, 0.05); }},
       VerdictTerm{"bend explains", "ln((1.05 - walls_met) / (1.05 - walls_met_locally))", kQuality, 0.0, 2.0,

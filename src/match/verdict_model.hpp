@@ -12,20 +12,20 @@ struct VerdictWeight {
   double weight;
 };
 
-inline constexpr double kVerdictBias = -15.802;
+inline constexpr double kVerdictBias = -15.754;
 
 /// In the order of verdict_terms().
 inline constexpr std::array kVerdictWeights{
-    VerdictWeight{"lines", 0.137},
+    VerdictWeight{"lines", 0.131},
     VerdictWeight{"tells apart", 3.000},
     VerdictWeight{"held", 1.000},
-    VerdictWeight{"lead", 0.512},
-    VerdictWeight{"far ahead, bent", 8.000},
-    VerdictWeight{"met locally", 2.945},
-    VerdictWeight{"bend explains", 1.994},
-    VerdictWeight{"cells agree", 3.236},
-    VerdictWeight{"agrees better", 4.039},
-    VerdictWeight{"things met", 2.395},
+    VerdictWeight{"lead", 0.508},
+    VerdictWeight{"far ahead, bent", 12.000},
+    VerdictWeight{"met locally", 2.947},
+    VerdictWeight{"bend explains", 1.978},
+    VerdictWeight{"cells agree", 3.224},
+    VerdictWeight{"agrees better", 4.037},
+    VerdictWeight{"things met", 2.389},
 };
 
 }  // namespace gridmerge
