@@ -22,8 +22,8 @@ struct Hypothesis {
 };
 
 struct MatchOptions {
-  int threads = 0;                  ///< worker threads; 0 = one a core. The result does not depend on it.
-  std::size_t max_hypotheses = 10;  ///< how many distinct hypotheses the result lists
+  int threads = 0;                   ///< worker threads; 0 = one a core. The result does not depend on it.
+  std::size_t max_hypotheses = 10;   ///< how many distinct hypotheses the result lists
   double accept_probability = 0.95;  ///< the verdict is `accepted` from this probability on
   /// Called now and then with the share of the work that is done, in [0, 1]; never from two threads at once.
   std::function<void(double)> progress;
