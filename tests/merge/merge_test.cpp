@@ -395,6 +395,21 @@ TEST(Merge, AMapGivenTwiceCountsOnce) {
   }
 }
 
+/// Two pieces of a corridor slide along it, whatever frame says so.
+TEST(Merge, TheFreeDirectionTurnsWithTheFrame) {
+  OccupancyGrid corridor = make_grid(400, 40, 0.05, {}, Cell::free);
+  for (int x = 0; x < 400; ++x) corridor.at(x, 2) = corridor.at(x, 37) = Cell::occupied;
+  OccupancyGrid piece = make_grid(200, 40, 0.05, SE2{3.0, 1.0, 0.5}, Cell::free);
+  for (int x = 0; x < 200; ++x) piece.at(x, 2) = piece.at(x, 37) = Cell::occupied;
+  const auto directions = [](const std::vector<OccupancyGrid>& maps) {
+    const MergeResult result = merge(maps);
+    return result.joins.at(0).match.hypotheses.at(0).figures.free_direction;
+  };
+  const auto off = [](double a, double b) { return std::abs(0.5 * normalize_angle(2.0 * (a - b))); };
+  EXPECT_LT(off(directions({corridor, piece}), 0.0), 0.01);
+  EXPECT_LT(off(directions({piece, corridor}), 0.5), 0.01);
+}
+
 TEST(Merge, OfAMapAndItsCopiesIsThatMap) {
   const OccupancyGrid map = test::draw_building(1);
   const MergeResult result = merge({map, test::draw_building(2), saved_again(map), map});

@@ -11,8 +11,8 @@ namespace gridmerge {
 struct WallsMet {
   double rigidly = 0.0;  ///< with one pose for all of them
   double locally = 0.0;  ///< when every patch of the maps may also shift and turn a little by itself
-  /// Of the walls of small things that stand alone (WallPoint::stands_alone): how many lie where the other map
-  /// has seen, and the share of them that meets, locally.
+  /// Of the walls of small things that stand alone (WallPoint::stands_alone): how many lie where the other
+  /// map has seen, and the share of them that meets, locally.
   double seen_things = 0.0;
   double things_met = 0.0;
 };
