@@ -28,7 +28,7 @@ CASES = HERE / "cases.tsv.gz"
 TERM = "term: "
 RIDGE = 1.0  # on weights of terms that are scaled to unit variance
 LEAST_WEIGHT = {"tells apart": 1.0, "held": 1.0}
-# No unrelated pair has any of it, so the cases would give it any weight: as much as one case of all those may speak.
+# Hardly a wrong pose has any of it, so the cases alone would give it any weight.
 MOST_WEIGHT = {"far ahead, bent": 12.0}
 # Corners fit corners and plain rooms fit plain rooms, of which the cases hold too few: this is added to what is fitted.
 CAUTION = {"tells apart": 2.0}
