@@ -117,7 +117,7 @@ void add_copies(const std::vector<Copy>& copies, const std::vector<const Occupan
     Member member = *original;
     member.map = copy.map;
     member.T_component_map = original->T_component_map * copy.T_original_map;
-    member.sd = original->sd ? original->sd : PoseDeviation{};
+    member.sd = original->sd.value_or(PoseDeviation{});
     component->members.push_back(member);
   }
   for (Component& component : result.components) {

@@ -90,8 +90,9 @@ class Merger::State {
   MergeResult result() {
     MergeResult result;
     with_threads(options_.match.threads, [&] {
-      const std::vector<Copy> copies = find_copies();
-      const std::vector<MapId> maps = those_that_count(copies);
+      const std::vector<MapId> all = in_canonical_order();
+      const std::vector<Copy> copies = find_copies(all);
+      const std::vector<MapId> maps = those_that_count(all, copies);
       match_new_pairs(maps);
       const ArrangementProblem problem = make_problem(maps);
       const Arrangement arrangement =
@@ -136,8 +137,8 @@ class Merger::State {
   }
 
   /// The first of several equal maps is the one that counts. What is known of a pose tells maps apart.
-  std::vector<Copy> find_copies() const {
-    const std::vector<MapId> maps = in_canonical_order();  // equal ones follow each other
+  /// In canonical order equal ones follow each other.
+  std::vector<Copy> find_copies(const std::vector<MapId>& maps) const {
     const std::vector<std::size_t> index = places_of(maps);
     std::vector<Copy> copies;
     std::size_t original = 0;
@@ -152,10 +153,8 @@ class Merger::State {
     return copies;
   }
 
-  /// In canonical order.
-  std::vector<MapId> those_that_count(const std::vector<Copy>& copies) const {
+  std::vector<MapId> those_that_count(std::vector<MapId> maps, const std::vector<Copy>& copies) const {
     const std::vector<MapId> order = ids();
-    std::vector<MapId> maps = in_canonical_order();
     std::erase_if(maps, [&](MapId id) {
       return std::any_of(copies.begin(), copies.end(),
                          [&](const Copy& copy) { return order[copy.map] == id; });
