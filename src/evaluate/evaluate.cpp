@@ -36,12 +36,12 @@ class Evaluator {
     MatchOutcome outcome = describe(pair.fixed, pair.moving, result);
     outcome.tier = pair.tier;
     outcome.tolerance = pair.tolerance;
-    if (!result.hypotheses.empty()) {
-      outcome.error = rms_displacement(moving->moments, result.T_fixed_moving, pair.T_fixed_moving);
-      for (const Hypothesis& hypothesis : result.hypotheses)
-        outcome.errors.push_back(
-            rms_displacement(moving->moments, hypothesis.T_fixed_moving, pair.T_fixed_moving));
-    }
+    const auto error_of = [&](const SE2& T_fixed_moving) {
+      return rms_displacement(moving->moments, T_fixed_moving, pair.T_fixed_moving);
+    };
+    if (!result.hypotheses.empty()) outcome.error = error_of(result.T_fixed_moving);
+    for (JudgedHypothesis& judged : outcome.hypotheses)
+      judged.error = error_of(judged.hypothesis.T_fixed_moving);
     return outcome;
   }
 
@@ -89,7 +89,7 @@ class Evaluator {
     outcome.probability = result.probability;
     outcome.seconds = result.seconds;
     outcome.reason = result.reason;
-    outcome.hypotheses = result.hypotheses;
+    for (const Hypothesis& hypothesis : result.hypotheses) outcome.hypotheses.push_back({hypothesis, {}});
     return outcome;
   }
 

@@ -120,14 +120,11 @@ std::string features_table(const Evaluation& evaluation) {
   text += '\n';
   for (const MatchOutcome& match : evaluation.matches) {
     for (std::size_t i = 0; i < match.hypotheses.size(); ++i) {
-      const Hypothesis& hypothesis = match.hypotheses[i];
-      const char* truth = match.negative()                      ? "negative"
-                          : match.errors[i] <= *match.tolerance ? "right"
-                                                                : "wrong";
+      const auto& [hypothesis, error] = match.hypotheses[i];
+      const char* truth = !error ? "negative" : *error <= *match.tolerance ? "right" : "wrong";
       const SE2& T = hypothesis.T_fixed_moving;
       fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}", match.fixed,
-                     match.moving, match.tier, i + 1, truth, match.negative() ? -1.0 : match.errors[i], T.x,
-                     T.y, T.theta);
+                     match.moving, match.tier, i + 1, truth, error.value_or(-1.0), T.x, T.y, T.theta);
       for (const PoseFigure& figure : pose_figures())
         fmt::format_to(std::back_inserter(text), "\t{}", hypothesis.figures.*figure.value);
       for (const VerdictTerm& term : verdict_terms())

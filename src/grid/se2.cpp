@@ -11,6 +11,10 @@ double normalize_angle(double angle) {
   return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
 }
 
+double undirected_angle(double angle) {
+  return 0.5 * normalize_angle(2.0 * angle);
+}
+
 SE2 operator*(const SE2& T_a_b, const SE2& T_b_c) {
   const Point2 translation = T_a_b * Point2{T_b_c.x, T_b_c.y};
   return {translation.x, translation.y, normalize_angle(T_a_b.theta + T_b_c.theta)};

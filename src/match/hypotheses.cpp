@@ -26,6 +26,9 @@ constexpr int kMostRotations = 720;
 /// hypothesis.
 constexpr double kDistinctShare = 0.03;
 constexpr double kMinDistinct = 10.0;  // cells
+/// Poses nearer than so many times that are near each other: maps that are bent by a few per cent may lie in
+/// either.
+constexpr double kNearDistinct = 2.0;
 /// About so many cells decide how much of the common area agrees.
 constexpr double kRankedCells = 60000.0;
 double longer_side(const OccupancyGrid& grid) {
@@ -59,10 +62,6 @@ SE2 to_map_frames(const SE2& T_cells, const WallMap& fixed, const WallMap& movin
 SE2 to_cells(const SE2& T_fixed_moving, const WallMap& fixed, const WallMap& moving) {
   const SE2 T_metres = inverse(fixed.T_map_grid) * T_fixed_moving * moving.T_map_grid;
   return {T_metres.x / fixed.cell, T_metres.y / fixed.cell, T_metres.theta};
-}
-
-double undirected(double angle) {
-  return 0.5 * normalize_angle(2.0 * angle);
 }
 
 ExhaustiveSearchOptions choose_search(const ComparedMaps& maps) {
@@ -149,7 +148,7 @@ PoseFigures PoseJudge::figures(const SE2& T_cells) const {
   figures.spread = support.spread * cell;
   figures.held = hold.least;
   figures.held_most = hold.most;
-  figures.free_direction = undirected(hold.direction + fixed.T_map_grid.theta);
+  figures.free_direction = undirected_angle(hold.direction + fixed.T_map_grid.theta);
   figures.acceptance_index = common.acceptance_index();
   figures.common_area =
       static_cast<double>(common.both_known()) * maps_.moving.resolution * maps_.moving.resolution;
@@ -225,9 +224,22 @@ std::vector<PoseFigures> figures_of(const std::vector<Hypothesis>& hypotheses) {
   return figures;
 }
 
-void weigh(std::vector<Hypothesis>& hypotheses) {
+std::vector<PoseFigures> compared_figures(const std::vector<Hypothesis>& hypotheses,
+                                          const ComparedMaps& maps) {
+  const PoseMetric metric = make_pose_metric(maps.moving_walls);
+  const double near = kNearDistinct * distinct_displacement(maps);
   std::vector<PoseFigures> figures = figures_of(hypotheses);
-  compare_rivals(figures);
+  compare_rivals(figures, [&](std::size_t a, std::size_t b) {
+    const auto in_cells = [&](std::size_t i) {
+      return to_cells(hypotheses[i].T_fixed_moving, maps.fixed_walls, maps.moving_walls);
+    };
+    return metric.displacement(in_cells(a), in_cells(b)) < near;
+  });
+  return figures;
+}
+
+void weigh(std::vector<Hypothesis>& hypotheses, const ComparedMaps& maps) {
+  std::vector<PoseFigures> figures = compared_figures(hypotheses, maps);
   const std::vector<double> probabilities = probabilities_of(figures);
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     hypotheses[i].figures = figures[i];
@@ -256,10 +268,10 @@ std::vector<Hypothesis> find_hypotheses(const ComparedMaps& maps, std::size_t ma
   std::vector<Hypothesis> judged(poses.size());
   parallel_for(poses.size(), [&](std::size_t i) { judged[i] = judge.judge(poses[i].T_fixed_moving); });
   std::erase_if(judged, [](const Hypothesis& hypothesis) { return !(hypothesis.score > 0.0); });
-  weigh(judged);
+  weigh(judged, maps);
   if (!judged.empty()) {
     judged.front() = judge.settle(judged.front());
-    weigh(judged);
+    weigh(judged, maps);
   }
   return judged;
 }

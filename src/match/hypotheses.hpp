@@ -35,9 +35,6 @@ struct ComparedMaps {
 SE2 to_map_frames(const SE2& T_cells, const WallMap& fixed, const WallMap& moving);
 SE2 to_cells(const SE2& T_fixed_moving, const WallMap& fixed, const WallMap& moving);
 
-/// The angle of a line [rad] in (-pi/2, pi/2].
-double undirected(double angle);
-
 /// How densely every pose of these maps is searched.
 ExhaustiveSearchOptions choose_search(const ComparedMaps& maps);
 
@@ -84,8 +81,12 @@ class PoseJudge {
 std::vector<Hypothesis> find_hypotheses(const ComparedMaps& maps, std::size_t max_hypotheses,
                                         const std::function<void(double)>& progress);
 
+/// The figures of each, with what it has before its rivals (compare_rivals()).
+std::vector<PoseFigures> compared_figures(const std::vector<Hypothesis>& hypotheses,
+                                          const ComparedMaps& maps);
+
 /// Gives each its probability, and sorts by it, best first.
-void weigh(std::vector<Hypothesis>& hypotheses);
+void weigh(std::vector<Hypothesis>& hypotheses, const ComparedMaps& maps);
 
 /// The figures of each.
 std::vector<PoseFigures> figures_of(const std::vector<Hypothesis>& hypotheses);

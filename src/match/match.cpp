@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "gridmerge/grid/parallel.hpp"
 #include "hypotheses.hpp"
@@ -42,22 +43,25 @@ MatchResult match_in_arena(const PreparedMap& fixed, const PreparedMap& moving, 
   result.disagreement = counts.disagreement;
   result.overlap = measure_overlap(maps.fixed, maps.moving, counts);
 
-  if (swapped) {
-    for (Hypothesis& hypothesis : result.hypotheses) {
-      hypothesis.T_fixed_moving = inverse(hypothesis.T_fixed_moving);
-      hypothesis.figures.free_direction =
-          undirected(hypothesis.figures.free_direction + hypothesis.T_fixed_moving.theta);
-    }
-  }
   const Hypothesis& best = result.hypotheses.front();
   result.T_fixed_moving = best.T_fixed_moving;
   result.probability = best.probability;
   result.verdict = best.probability >= options.accept_probability ? Verdict::accepted : Verdict::refused;
   if (result.hypotheses.size() > options.max_hypotheses) result.hypotheses.resize(options.max_hypotheses);
-  return result;
+  return swapped ? inverse(std::move(result)) : result;
 }
 
 }  // namespace
+
+MatchResult inverse(MatchResult result) {
+  result.T_fixed_moving = inverse(result.T_fixed_moving);
+  for (Hypothesis& hypothesis : result.hypotheses) {
+    hypothesis.T_fixed_moving = inverse(hypothesis.T_fixed_moving);
+    double& free_direction = hypothesis.figures.free_direction;
+    free_direction = undirected_angle(free_direction + hypothesis.T_fixed_moving.theta);
+  }
+  return result;
+}
 
 MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options) {
   validate(options);

@@ -65,13 +65,12 @@ double probability_among_all(const Hypothesis& pose, const ComparedMaps& maps) {
   const auto in_cells = [&](const Hypothesis& one) {
     return to_cells(one.T_fixed_moving, maps.fixed_walls, maps.moving_walls);
   };
-  std::vector<PoseFigures> figures{pose.figures};
+  std::vector<Hypothesis> all{pose};
   for (const Hypothesis& other : find_hypotheses(maps, kRankedPoses, {})) {
     if (metric.displacement(in_cells(pose), in_cells(other)) >= distinct_displacement(maps))
-      figures.push_back(other.figures);
+      all.push_back(other);
   }
-  compare_rivals(figures);
-  return probabilities_of(figures).front();
+  return probabilities_of(compared_figures(all, maps)).front();
 }
 
 double displacement(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_a, const SE2& T_b) {

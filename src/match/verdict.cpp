@@ -37,7 +37,7 @@ constexpr double kSlides = -2.0;  // of it: less than an eighth
 /// has: as far as the errors are those of bent maps, since of crisp ones of a symmetric floor the wrong half
 /// leads as well.
 double far_ahead_though_bent(const PoseFigures& f) {
-  constexpr double kFar = 20.0, kAllOfIt = 30.0;  // sqrt(nats)
+  constexpr double kFar = 30.0, kAllOfIt = 20.0;  // sqrt(nats)
   constexpr double kCrisp = 0.1, kBent = 0.25;    // [m]
   const double ahead = std::clamp((f.lead - kFar) / kAllOfIt, 0.0, 1.0);
   const double bent =
@@ -71,14 +71,12 @@ std::span<const VerdictTerm> verdict_terms() {
   using F = PoseFigures;
   constexpr TermKind kAmount = TermKind::amount, kQuality = TermKind::quality;
   static constexpr std::array kTerms{
-      VerdictTerm{"lines", "ln wall_lines", kAmount, 0.0, 3.0,
-                  [](const F& f) { return logarithm(f.wall_lines, 1.0); }},
       VerdictTerm{"tells apart", "-ln(1 + exp(-3 (wall_lines - 3.5)))", kAmount, -12.0, 0.0,
                   [](const F& f) { return -std::log1p(std::exp(-3.0 * (f.wall_lines - 3.5))); }},
       VerdictTerm{"held", "ln(held / held_most)", kAmount, -3.5, 0.0, how_held},
       VerdictTerm{"lead", "lead / 10", kAmount, 0.0, 10.0, [](const F& f) { return 0.1 * f.lead; }},
       VerdictTerm{"far ahead, bent",
-                  "(lead - 20) / 30 within [0, 1], times ln(sigma / 0.1 m) / ln(2.5) within [0, 1]",
+                  "(lead - 30) / 20 within [0, 1], times ln(sigma / 0.1 m) / ln(2.5) within [0, 1]",
                   TermKind::excuse, 0.0, 1.0, far_ahead_though_bent},
       VerdictTerm{"met locally", "-ln(1.05 - walls_met_locally)", kQuality, 0.0, 2.5,
                   [](const F& f) { return missing(f.walls_met_locally, 0.05); }},
@@ -100,12 +98,15 @@ double log_odds_of(const PoseFigures& figures) {
   return sum;
 }
 
-void compare_rivals(std::span<PoseFigures> hypotheses) {
-  for (PoseFigures& one : hypotheses) {
+void compare_rivals(std::span<PoseFigures> hypotheses,
+                    const std::function<bool(std::size_t, std::size_t)>& are_near) {
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    PoseFigures& one = hypotheses[i];
     double next_score = 0.0;
     one.next_acceptance_index = 0.0;
-    for (const PoseFigures& other : hypotheses) {
-      if (&other == &one) continue;
+    for (std::size_t j = 0; j < hypotheses.size(); ++j) {
+      const PoseFigures& other = hypotheses[j];
+      if (j == i || (other.score < one.score && are_near && are_near(i, j))) continue;
       next_score = std::max(next_score, other.score);
       one.next_acceptance_index = std::max(one.next_acceptance_index, other.acceptance_index);
     }

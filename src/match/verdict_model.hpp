@@ -12,20 +12,15 @@ struct VerdictWeight {
   double weight;
 };
 
-inline constexpr double kVerdictBias = -15.754;
+inline constexpr double kVerdictBias = -14.950;
 
 /// In the order of verdict_terms().
 inline constexpr std::array kVerdictWeights{
-    VerdictWeight{"lines", 0.131},
-    VerdictWeight{"tells apart", 3.000},
-    VerdictWeight{"held", 1.000},
-    VerdictWeight{"lead", 0.508},
-    VerdictWeight{"far ahead, bent", 12.000},
-    VerdictWeight{"met locally", 2.947},
-    VerdictWeight{"bend explains", 1.978},
-    VerdictWeight{"cells agree", 3.224},
-    VerdictWeight{"agrees better", 4.037},
-    VerdictWeight{"things met", 2.389},
+    VerdictWeight{"tells apart", 3.000}, VerdictWeight{"held", 1.000},
+    VerdictWeight{"lead", 0.610},        VerdictWeight{"far ahead, bent", 12.000},
+    VerdictWeight{"met locally", 2.712}, VerdictWeight{"bend explains", 2.018},
+    VerdictWeight{"cells agree", 3.004}, VerdictWeight{"agrees better", 4.551},
+    VerdictWeight{"things met", 2.537},
 };
 
 }  // namespace gridmerge

@@ -21,7 +21,8 @@ Join carried_over(Join join, const SE2& T_copy_fixed, const SE2& T_moving_copy) 
   carry(join.match.T_fixed_moving);
   for (Hypothesis& hypothesis : join.match.hypotheses) {
     carry(hypothesis.T_fixed_moving);
-    turn_free_direction(hypothesis.figures, T_copy_fixed.theta);
+    double& free_direction = hypothesis.figures.free_direction;
+    free_direction = undirected_angle(free_direction + T_copy_fixed.theta);
   }
   return join;
 }

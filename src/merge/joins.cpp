@@ -78,22 +78,9 @@ Join make_join(std::size_t fixed, std::size_t moving, MatchResult match, const C
   return join;
 }
 
-void turn_free_direction(PoseFigures& figures, double angle) {
-  figures.free_direction = 0.5 * normalize_angle(2.0 * (figures.free_direction + angle));
-}
-
-MatchResult inverted(MatchResult match) {
-  match.T_fixed_moving = inverse(match.T_fixed_moving);
-  for (Hypothesis& hypothesis : match.hypotheses) {
-    hypothesis.T_fixed_moving = inverse(hypothesis.T_fixed_moving);
-    turn_free_direction(hypothesis.figures, hypothesis.T_fixed_moving.theta);
-  }
-  return match;
-}
-
 Join inverted(Join join) {
   std::swap(join.fixed, join.moving);
-  join.match = inverted(std::move(join.match));
+  join.match = inverse(std::move(join.match));
   join.T_fixed_moving = inverse(join.T_fixed_moving);
   return join;
 }

@@ -28,11 +28,7 @@ struct Company {
 /// The same when other maps had a say.
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match, const Company& company);
 
-/// PoseFigures::free_direction after a turn of the fixed map's frame by `angle`.
-void turn_free_direction(PoseFigures& figures, double angle);
-
 /// The same with the other map as the fixed one.
-MatchResult inverted(MatchResult match);
 Join inverted(Join join);
 
 /// Why a map joined nothing: the reason of the refused join of it that was most probable.

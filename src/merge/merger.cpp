@@ -191,7 +191,7 @@ class Merger::State {
 
   MatchResult match_between(MapId fixed, MapId moving) const {
     const Made& made = matches_.at(std::minmax(fixed, moving));
-    return made.fixed == fixed ? made.match : inverted(made.match);
+    return made.fixed == fixed ? made.match : inverse(made.match);
   }
 
   std::optional<KnownPose> known_pose(MapId id) const {

@@ -162,6 +162,12 @@ TEST(CompareRivals, GivesEachItsLeadOverTheBestOther) {
   EXPECT_DOUBLE_EQ(poses[0].lead, -200.0 / std::sqrt(100.0));
   EXPECT_DOUBLE_EQ(poses[2].next_acceptance_index, 0.92);
   EXPECT_DOUBLE_EQ(poses[0].next_acceptance_index, 0.94);
+  // A lower maximum beside a pose is no rival of it, but it has the pose for one.
+  const auto last_two = [](std::size_t a, std::size_t b) { return a + b == 3; };
+  compare_rivals(poses, last_two);
+  EXPECT_DOUBLE_EQ(poses[2].lead, 200.0 / std::sqrt(300.0));
+  EXPECT_DOUBLE_EQ(poses[2].next_acceptance_index, 0.9);
+  EXPECT_DOUBLE_EQ(poses[1].lead, -100.0 / std::sqrt(200.0));
   std::vector<PoseFigures> alone_here(1, clear_pose());
   compare_rivals(alone_here);
   EXPECT_EQ(alone_here[0].next_acceptance_index, 0.0);

@@ -34,6 +34,12 @@ struct EvaluateOptions {
   std::function<void(const std::string&)> warn;
 };
 
+/// A hypothesis beside the truth.
+struct JudgedHypothesis {
+  Hypothesis hypothesis;
+  std::optional<double> error;  ///< rms_displacement() [m]; none for a negative
+};
+
 /// How one pair went: a true pair, or a negative.
 struct MatchOutcome {
   std::string fixed;   ///< as the truth file writes it
@@ -47,8 +53,7 @@ struct MatchOutcome {
   std::optional<double> tolerance;  ///< [m]; none for a negative
   double seconds = 0.0;             ///< from grids in memory to the verdict
   Reason reason = Reason::none;     ///< why it was refused
-  std::vector<Hypothesis> hypotheses;
-  std::vector<double> errors;  ///< of each hypothesis [m]
+  std::vector<JudgedHypothesis> hypotheses;
 
   bool negative() const { return !tolerance; }
   bool accepted() const { return verdict == Verdict::accepted; }

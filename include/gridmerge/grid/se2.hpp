@@ -26,6 +26,9 @@ struct SE2 {
 /// The same angle [rad] in (-pi, pi].
 double normalize_angle(double angle);
 
+/// The angle of a line, which has no direction [rad]: the same in (-pi/2, pi/2].
+double undirected_angle(double angle);
+
 /// T_a_c = T_a_b * T_b_c.
 SE2 operator*(const SE2& T_a_b, const SE2& T_b_c);
 

@@ -43,6 +43,9 @@ struct MatchResult {
   std::vector<Hypothesis> hypotheses;
 };
 
+/// The result of the same two maps when the other one is called fixed. O(hypotheses).
+MatchResult inverse(MatchResult result);
+
 /// Finds how `moving` lies on `fixed`, searching every pose, and says whether to believe it.
 /// Throws std::invalid_argument for an invalid grid or option (see validate()).
 MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options = {});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -53,9 +55,12 @@ struct VerdictTerm {
 /// All terms, in the order of the model's weights.
 std::span<const VerdictTerm> verdict_terms();
 
-/// Gives each of several distinct hypotheses of one pair what it has before the others: `lead` and
-/// `next_acceptance_index`. O(hypotheses^2).
-void compare_rivals(std::span<PoseFigures> hypotheses);
+/// Gives each of several distinct hypotheses of one pair what it has before its rivals: `lead` and
+/// `next_acceptance_index`. All others are its rivals, except those that are near (`are_near`, of two
+/// indices) and score less: bent maps have no exact pose, so that a second maximum beside the first says
+/// nothing against it. O(hypotheses^2).
+void compare_rivals(std::span<PoseFigures> hypotheses,
+                    const std::function<bool(std::size_t, std::size_t)>& are_near = {});
 
 /// What speaks for a pose against "none of these", its rivals' odds left aside: the weighted sum of its terms
 /// [nats].
