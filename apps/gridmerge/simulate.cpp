@@ -28,6 +28,7 @@ struct SimulateCommandOptions {
   std::string kind = "office";
   std::string size = "40x25";
   std::vector<std::string> starts;
+  std::vector<double> headings;  // [degrees]
   int others = 1;
   double field_of_view = 270.0;  // [degrees]
   double angular_step = 0.5;     // [degrees]
@@ -68,6 +69,7 @@ SimulateOptions make_options(const SimulateCommandOptions& options) {
     const auto start = *parse_two(text, ',');
     simulation.starts.push_back({start[0], start[1]});
   }
+  for (const double heading : options.headings) simulation.headings.push_back(heading * kDegree);
   simulation.sensor.field_of_view = options.field_of_view * kDegree;
   simulation.sensor.angular_step = options.angular_step * kDegree;
   simulation.threads = options.common.threads;
@@ -140,6 +142,12 @@ void add_world_options(CLI::App& command, SimulateCommandOptions& options) {
       ->type_name("X,Y")
       ->allow_extra_args(false)
       ->check(two_numbers(',', "12.5,3"));
+  command
+      .add_option("--heading", options.headings,
+                  "Which way a robot sets off, counter-clockwise from x; once for each. It goes only to "
+                  "places ahead of its start")
+      ->type_name("DEGREES")
+      ->allow_extra_args(false);
   command
       .add_option("--longest-way", simulation.longest_way,
                   "Metres after which a robot stops; 0 = when it has seen all")

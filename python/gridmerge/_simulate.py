@@ -83,6 +83,7 @@ def simulate(
     robots: int = 2,
     overlap: float | None = None,
     starts: Sequence[tuple[float, float]] | None = None,
+    headings: Sequence[float] | None = None,
     longest_way: float = 0.0,
     clutter: float = 1.0,
     others: int = 1,
@@ -108,6 +109,8 @@ def simulate(
         overlap: wanted share of a robot's area that it has in common with another one, on average; None lets every
             robot go wherever it can.
         starts: where the robots start, (x, y) [m] in the building, one for each; None spreads them.
+        headings: which way the robots set off [rad], one for each; a robot goes only to places ahead of its start. None
+            lets them go anywhere.
         longest_way: after which a robot stops [m]; 0 = when it has seen all.
         clutter: how much stands and walks about that differs from robot to robot.
         others: how many maps of other buildings to add.
@@ -130,6 +133,8 @@ def simulate(
     options.overlap = None if overlap is None else _arguments.share("overlap", overlap)
     for start in _checked_starts(starts):
         options.add_start(*start)
+    for heading in _checked_headings(headings):
+        options.add_heading(heading)
     options.longest_way = _arguments.not_negative("longest_way", longest_way)
     options.clutter = _arguments.not_negative("clutter", clutter)
     options.drift = _arguments.not_negative("drift", drift)
@@ -156,6 +161,14 @@ def _checked_starts(starts: object) -> list[tuple[float, float]]:
     if not isinstance(starts, (Sequence, np.ndarray)) or isinstance(starts, (str, bytes)):
         raise TypeError(f"starts: must be a sequence of points, is {_arguments.kind_of(starts)}")
     return [_two_numbers(f"starts[{i}]", start) for i, start in enumerate(starts)]
+
+
+def _checked_headings(headings: object) -> list[float]:
+    if headings is None:
+        return []
+    if not isinstance(headings, (Sequence, np.ndarray)) or isinstance(headings, (str, bytes)):
+        raise TypeError(f"headings: must be a sequence of angles, is {_arguments.kind_of(headings)}")
+    return [_arguments.number(f"headings[{i}]", heading) for i, heading in enumerate(headings)]
 
 
 def _two_numbers(name: str, values: object) -> tuple[float, float]:

@@ -94,6 +94,8 @@ void bind_options(nb::module_& module) {
            [](SimulateOptions& options, double x, double y) {
              options.starts.push_back({x, y});
            })
+      .def("add_heading",
+           [](SimulateOptions& options, double heading) { options.headings.push_back(heading); })
       .def_rw("width", &SimulateOptions::width)
       .def_rw("height", &SimulateOptions::height)
       .def_rw("robots", &SimulateOptions::robots)

@@ -59,8 +59,13 @@ Exploration explore(const FloorPlan& plan, const RayCaster& caster, const Errand
   Exploration result{{}, SeenFloor(plan), SeenFloor(plan)};
   PathSearch search(plan);
   std::vector<std::uint8_t> territory(static_cast<std::size_t>(plan.cells()), 0);
+  const Point2 start = plan.centre(errand.start);
+  const double first_heading = errand.heading.value_or(0.0);
+  const Point2 ahead{std::cos(first_heading), std::sin(first_heading)};
   search.search(errand.start, errand.reach, [&](int cell, double) {
-    territory[static_cast<std::size_t>(cell)] = 1;
+    const Point2 at = plan.centre(cell);
+    const double along = (at.x - start.x) * ahead.x + (at.y - start.y) * ahead.y;
+    territory[static_cast<std::size_t>(cell)] = !errand.heading || along >= 0.0 ? 1 : 0;
     return false;
   });
 
@@ -72,7 +77,7 @@ Exploration explore(const FloorPlan& plan, const RayCaster& caster, const Errand
   };
   int here = errand.start;
   double way = 0.0, since_look = 0.0, since_scan = 0.0;
-  result.poses.push_back({plan.centre(here).x, plan.centre(here).y, 0.0});
+  result.poses.push_back({start.x, start.y, first_heading});
   look_around(result.poses.back());
   while (way < errand.longest_way) {
     const int goal = search.search(here, 4.0 * errand.reach + 1.0, [&](int cell, double) {

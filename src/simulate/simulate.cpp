@@ -21,15 +21,13 @@ void require(bool condition, const char* what) {
   if (!condition) throw std::invalid_argument(what);
 }
 
-void check(const SimulateOptions& options) {
+bool is_between(double value, double low, double high) {
+  return value >= low && value <= high;
+}
+
+/// How one robot maps.
+void check_mapping(const SimulateOptions& options) {
   options.sensor.validate();
-  const auto is_between = [](double value, double low, double high) { return value >= low && value <= high; };
-  require(options.robots >= 1 && options.robots <= 1000, "there must be between 1 and 1000 robots");
-  require(!options.overlap || is_between(*options.overlap, 0.0, 1.0), "overlap must lie in [0, 1]");
-  require(!options.overlap || options.robots >= 2, "an overlap takes two robots");
-  require(options.starts.empty() || options.starts.size() == static_cast<std::size_t>(options.robots),
-          "there must be a start for every robot, or none");
-  require(is_between(options.longest_way, 0.0, 1e5), "the longest way must be between 0 and 100000 metres");
   require(is_between(options.robot_radius, 0.05, 5.0), "a robot's radius must be between 0.05 and 5 metres");
   require(is_between(options.scan_every, 0.02, 10.0), "scans must be between 0.02 and 10 metres apart");
   require(is_between(options.drift, 0.0, 10.0), "drift must be between 0 and 10");
@@ -37,6 +35,19 @@ void check(const SimulateOptions& options) {
   require(is_between(options.resolution, 0.01, 1.0),
           "the resolution must be between 0.01 and 1 metres a cell");
   require(!options.tidy || is_between(*options.tidy, 0.0, 1.0), "walls can be made thicker by 0 to 1 metres");
+}
+
+void check(const SimulateOptions& options) {
+  check_mapping(options);
+  require(options.robots >= 1 && options.robots <= 1000, "there must be between 1 and 1000 robots");
+  require(!options.overlap || is_between(*options.overlap, 0.0, 1.0), "overlap must lie in [0, 1]");
+  require(!options.overlap || options.robots >= 2, "an overlap takes two robots");
+  require(options.starts.empty() || options.starts.size() == static_cast<std::size_t>(options.robots),
+          "there must be a start for every robot, or none");
+  require(options.headings.empty() || options.headings.size() == static_cast<std::size_t>(options.robots),
+          "there must be a heading for every robot, or none");
+  for (const double heading : options.headings) require(std::isfinite(heading), "headings must be finite");
+  require(is_between(options.longest_way, 0.0, 1e5), "the longest way must be between 0 and 100000 metres");
   require(options.threads >= 0, "threads must not be negative");
 }
 
@@ -112,13 +123,16 @@ void list_pairs(const std::vector<Survey>& surveys, Simulation& simulation) {
   for (const double overlap : largest) simulation.overlap += overlap / static_cast<double>(surveys.size());
 }
 
-Simulation send_team(const SimulateOptions& options, const Team& team, Random random) {
+Simulation send_team(const SimulateOptions& options, const Building& building, const Team& team,
+                     Random random) {
   std::vector<Random> chances;
   chances.reserve(team.errands.size());
   for (std::size_t i = 0; i < team.errands.size(); ++i) chances.push_back(random.fork());
   std::vector<std::optional<Survey>> made(team.errands.size());
   parallel_for(made.size(), [&](std::size_t i) {
-    made[i] = survey(options, team.visits[i], team.errands[i], chances[i]);
+    const Visit& visit = team.visits[i];
+    made[i] = survey(options, building, visit, explore(visit.plan, visit.caster, team.errands[i]).poses,
+                     chances[i]);
   });
   std::vector<Survey> surveys;
   surveys.reserve(made.size());
@@ -144,7 +158,7 @@ Simulation aim_for_overlap(const SimulateOptions& options, const Building& build
     Simulation simulation;
     try {
       const Team team = plan_team(aim, building, plan, chance);
-      simulation = send_team(options, team, chance);
+      simulation = send_team(options, building, team, chance);
     } catch (const std::invalid_argument&) {
       if (!best) throw;
       break;  // what is aimed for instead cannot be had
@@ -180,7 +194,7 @@ Simulation simulate_in_arena(const SimulateOptions& options) {
     simulation = send_until_overlap(options, building, plan, random);
   } else {
     const Team team = plan_team(options, building, plan, random);
-    simulation = send_team(options, team, random);
+    simulation = send_team(options, building, team, random);
   }
   simulation.building = std::move(building);
   if (options.progress) options.progress(1.0);
@@ -208,10 +222,41 @@ Simulation simulate(const SimulateOptions& options) {
   return simulation;
 }
 
+SimulatedMap simulate_way(const Building& building, std::span<const Point2> way,
+                          const SimulateOptions& options) {
+  check_mapping(options);
+  require(!way.empty(), "a way must have a point");
+  const RayCaster walls(building.edges);
+  std::vector<SE2> path{{way.front().x, way.front().y, 0.0}};
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const Point2 d{way[i].x - way[i - 1].x, way[i].y - way[i - 1].y};
+    const double length = std::hypot(d.x, d.y);
+    require(std::isfinite(length), "a way must be finite");
+    if (length == 0.0) continue;
+    const Point2 along{d.x / length, d.y / length};
+    require(std::isinf(walls.cast(way[i - 1], along, length).range), "the way goes through a wall");
+    const double heading = std::atan2(d.y, d.x);
+    if (i == 1) path.clear();
+    const int scans = std::max(1, static_cast<int>(std::round(length / options.scan_every)));
+    for (int scan = 0; scan < scans; ++scan) {
+      const double at = scan * length / scans;
+      path.push_back({way[i - 1].x + at * along.x, way[i - 1].y + at * along.y, heading});
+    }
+    if (i + 1 == way.size()) path.push_back({way[i].x, way[i].y, heading});
+  }
+  const FloorPlan plan(building.edges, options.robot_radius);
+  const int start = plan.free_cell_near(way.front(), options.robot_radius);
+  require(start >= 0, "no robot can stand where the way starts");
+  Random random(options.seed);
+  const Visit visit = make_visit(building.edges, plan, options.robot_radius, start, options.clutter, random);
+  return survey(options, building, visit, std::move(path), random.fork()).map;
+}
+
 SimulateOptions elsewhere(SimulateOptions options, int number) {
   options.robots = 1;
   options.overlap.reset();
   options.starts.clear();
+  options.headings.clear();
   options.seed = options.seed * 1000003 + static_cast<std::uint64_t>(number) + 1;
   return options;
 }

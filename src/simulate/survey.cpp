@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "drift.hpp"
 #include "gridmerge/grid/cancellation.hpp"
@@ -108,11 +109,9 @@ std::vector<PointPair> common_places(const DrawnPlaces& a, const DrawnPlaces& b)
   return places;
 }
 
-Survey survey(const SimulateOptions& options, const Visit& visit, const Errand& errand, Random random) {
-  Survey result{{}, DrawnPlaces(options.width, options.height, options.sensor.range)};
-  result.map.path = explore(visit.plan, visit.caster, errand).poses;
-
-  const std::vector<SE2>& path = result.map.path;
+Survey survey(const SimulateOptions& options, const Building& building, const Visit& visit,
+              std::vector<SE2> path, Random random) {
+  Survey result{{}, DrawnPlaces(building.width, building.height, options.sensor.range)};
   SE2 frame = path.front();
   frame.theta = random.uniform(-std::numbers::pi, std::numbers::pi);
   const SE2 T_map_building = inverse(frame);
@@ -141,6 +140,7 @@ Survey survey(const SimulateOptions& options, const Visit& visit, const Errand& 
   const RigidFit fit = fit_rigid(result.places.building_and_map());
   result.map.T_building_map = fit.T_a_b;
   result.map.bend = fit.rms;
+  result.map.path = std::move(path);
   return result;
 }
 

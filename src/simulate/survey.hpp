@@ -46,7 +46,9 @@ struct Survey {
   DrawnPlaces places;
 };
 
-/// Sends one robot through the building, as it is on its visit, and draws its map.
-Survey survey(const SimulateOptions& options, const Visit& visit, const Errand& errand, Random random);
+/// Draws the map of one robot that scans at the poses of `path` (T_building_robot, at least one), in the
+/// building as it is on its visit.
+Survey survey(const SimulateOptions& options, const Building& building, const Visit& visit,
+              std::vector<SE2> path, Random random);
 
 }  // namespace gridmerge

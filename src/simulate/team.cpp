@@ -139,11 +139,17 @@ Reach find_reach(double wanted, const Team& team) {
 Team gather(const SimulateOptions& options, const Building& building, const FloorPlan& plan,
             const std::vector<int>& starts, Random& random) {
   Team team;
-  for (const int start : starts) {
-    const double longest = options.longest_way > 0.0 ? options.longest_way : kUnlimited;
-    team.errands.push_back({start, kUnlimited, longest, options.sensor, options.scan_every});
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    Errand errand;
+    errand.start = starts[i];
+    if (!options.headings.empty()) errand.heading = options.headings[i];
+    errand.reach = kUnlimited;
+    errand.longest_way = options.longest_way > 0.0 ? options.longest_way : kUnlimited;
+    errand.sensor = options.sensor;
+    errand.scan_every = options.scan_every;
+    team.errands.push_back(errand);
     team.visits.push_back(
-        make_visit(building.edges, plan, options.robot_radius, start, options.clutter, random));
+        make_visit(building.edges, plan, options.robot_radius, starts[i], options.clutter, random));
   }
   return team;
 }

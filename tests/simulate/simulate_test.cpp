@@ -165,6 +165,51 @@ TEST(Simulate, RobotsStartWhereTheyAreToldTo) {
   }
 }
 
+TEST(Simulate, RobotsThatSetOffBackToBackPart) {
+  SimulateOptions options = small(BuildingKind::hall);
+  options.clutter = 0.0;
+  options.starts = {{12.0, 8.0}, {12.0, 8.0}};
+  options.sensor.field_of_view = std::numbers::pi;
+  options.sensor.range = 6.0;
+  const double together = simulate(options).overlap;
+  options.headings = {0.0, std::numbers::pi};
+  const Simulation simulation = simulate(options);
+  EXPECT_LT(simulation.overlap, 0.8 * together);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::vector<SE2>& path = simulation.maps[i].path;
+    EXPECT_DOUBLE_EQ(path.front().theta, options.headings[i]);
+    const double sign = i == 0 ? 1.0 : -1.0;
+    for (const SE2& pose : path) EXPECT_GT(sign * (pose.x - path.front().x), -2.0) << i;
+  }
+}
+
+TEST(SimulateWay, ScansAlongTheWay) {
+  const SimulateOptions options = small();
+  const Building hall = make_building(BuildingKind::bare, 24.0, 16.0, 5);
+  const std::vector<Point2> way{{10.0, 8.0}, {14.0, 8.0}, {14.0, 9.0}};
+  const SimulatedMap map = simulate_way(hall, way, options);
+  ASSERT_EQ(map.path.size(), 11u);  // every half metre of 5 m, and the end
+  EXPECT_EQ(map.path.front(), (SE2{10.0, 8.0, 0.0}));
+  EXPECT_EQ(map.path[8], (SE2{14.0, 8.0, 0.5 * std::numbers::pi}));
+  EXPECT_EQ(map.path.back(), (SE2{14.0, 9.0, 0.5 * std::numbers::pi}));
+  const Point2 start = map.T_building_map * Point2{0.0, 0.0};
+  EXPECT_LT(std::hypot(start.x - 10.0, start.y - 8.0), 0.3);
+  EXPECT_EQ(map.grid.cells, simulate_way(hall, way, options).grid.cells);
+
+  const std::vector<Point2> stays{{10.0, 8.0}};
+  EXPECT_EQ(simulate_way(hall, stays, options).path.size(), 1u);
+}
+
+TEST(SimulateWay, RefusesWaysThatCannotBe) {
+  const SimulateOptions options = small();
+  const Building hall = make_building(BuildingKind::bare, 24.0, 16.0, 5);
+  const auto go = [&](const std::vector<Point2>& way) { simulate_way(hall, way, options); };
+  EXPECT_THROW(go({}), std::invalid_argument);
+  EXPECT_THROW(go({{10.0, 8.0}, {100.0, 8.0}}), std::invalid_argument);  // through the outer wall
+  EXPECT_THROW(go({{-20.0, 8.0}}), std::invalid_argument);
+  EXPECT_THROW(go({{10.0, 8.0}, {std::numeric_limits<double>::quiet_NaN(), 8.0}}), std::invalid_argument);
+}
+
 TEST(Simulate, SparseAndDenseSensorsAndMuchDriftStillGiveMapsAndATruth) {
   for (const BuildingKind kind :
        {BuildingKind::corridor, BuildingKind::arena, BuildingKind::maze, BuildingKind::bare}) {
@@ -201,6 +246,8 @@ TEST(Simulate, RefusesWhatCannotBe) {
   refused([](auto& o) { o.overlap = 0.9, o.starts = {{2.0, 8.0}, {22.0, 8.0}}, o.longest_way = 2.0; });
   refused([](auto& o) { o.starts = {{-5.0, 8.0}, {22.0, 8.0}}; });
   refused([](auto& o) { o.starts = {{2.0, 8.0}}; });
+  refused([](auto& o) { o.headings = {0.0}; });
+  refused([](auto& o) { o.headings = {0.0, kNaN}; });
   refused([](auto& o) { o.width = 3.0; });
   refused([](auto& o) { o.robot_radius = 4.9; });
   refused([](auto& o) { o.drift = -0.1; });

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,10 @@ struct SimulateOptions {
   std::optional<double> overlap;
   /// Where robots start, in the building's frame, one a robot; empty spreads them over the floor.
   std::vector<Point2> starts;
+  /// Which way robots set off, in the building's frame, one a robot [rad]; empty lets them go anywhere. A
+  /// robot with a heading looks that way at first, and goes only to places that lie ahead of its start: two
+  /// that set off back to back part for good.
+  std::vector<double> headings;
   double longest_way = 0.0;  ///< a robot stops after so much way [m]; 0 = when it has seen all it wants
   RangeFinder sensor;
   double robot_radius = 0.2;  ///< [m]: where it fits through
@@ -92,6 +97,14 @@ struct Simulation {
 /// stand, starts where none can, and an overlap that cannot be had. O(robots * way * beams), and some ten
 /// times the planning where an overlap is asked for.
 Simulation simulate(const SimulateOptions& options);
+
+/// The map of one robot that goes along a given way: straight from corner to corner, turning on the spot. Of
+/// the options those count that say how a robot maps: `sensor`, `robot_radius`, `scan_every`, `drift`,
+/// `clutter`, `resolution`, `tidy` and `seed`. `way` is in the building's frame [m]. Throws
+/// std::invalid_argument, saying what is wrong, for such options out of range, a way without a point, one
+/// that goes through a wall, and a start where no robot can stand. O(way * beams).
+SimulatedMap simulate_way(const Building& building, std::span<const Point2> way,
+                          const SimulateOptions& options);
 
 /// The options for one robot in another building of the same kind, a different one for each `number` from 0
 /// on: its map is a negative.
