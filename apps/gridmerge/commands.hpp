@@ -21,6 +21,7 @@ using Action = std::function<int()>;
 /// Each adds its subcommand to `app`, which sets `action` when it is the one called.
 void add_info(CLI::App& app, Action& action);
 void add_match(CLI::App& app, Action& action);
+void add_measure(CLI::App& app, Action& action);
 void add_merge(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);
 void add_view(CLI::App& app, Action& action);

@@ -55,6 +55,7 @@ int run(int argc, char** argv) {
   Action action;
   add_info(app, action);
   add_match(app, action);
+  add_measure(app, action);
   add_merge(app, action);
   add_report(app, action);
   add_view(app, action);

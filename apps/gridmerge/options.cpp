@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "gridmerge/io/map_file.hpp"
 
@@ -20,6 +22,19 @@ std::optional<double> parse_finite(const std::string& text) {
   double value = 0.0;
   if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+std::optional<SE2> parse_pose(const std::string& text) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::optional<double> number = parse_finite(text.substr(begin, end - begin));
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+    begin = end + 1;
+  }
+  if (numbers.size() != 3) return std::nullopt;
+  return SE2{numbers[0], numbers[1], normalize_angle(numbers[2])};
 }
 
 }  // namespace
@@ -56,6 +71,16 @@ const CLI::Validator kMetresPerCell(
                  : fmt::format("'{}' is not between {} and {} metres", text, kMinResolution, kMaxResolution);
     },
     "");
+
+const CLI::Validator kPose(
+    [](std::string& text) {
+      return parse_pose(text) ? std::string() : "'" + text + "' is no pose: x,y,theta in metres and radians";
+    },
+    "");
+
+SE2 to_pose(const std::string& text) {
+  return parse_pose(text).value();
+}
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
   CLI::Option* quiet = command.add_flag("-q,--quiet", options.quiet,

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
+
+#include "gridmerge/grid/se2.hpp"
 
 namespace gridmerge::cli {
 
@@ -28,5 +31,11 @@ extern const CLI::Validator kNotNegative;
 
 /// A resolution that a map can have.
 extern const CLI::Validator kMetresPerCell;
+
+/// A pose: x,y,theta in metres and radians.
+extern const CLI::Validator kPose;
+
+/// What a text that kPose lets pass says.
+SE2 to_pose(const std::string& text);
 
 }  // namespace gridmerge::cli

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
+#include "../similarity/lattice_frames.hpp"
 #include "hypotheses.hpp"
 
 namespace gridmerge {
@@ -58,9 +58,9 @@ Hypothesis best_around(const Hypothesis& start, const SE2& T_start_cells, const 
   return best;
 }
 
-/// The probability that the pose would have among the hypotheses of a full search, those aside that are the
-/// same pose.
-double probability_among_all(const Hypothesis& pose, const ComparedMaps& maps) {
+/// Gives the pose the probability and the lead that it would have among the hypotheses of a full search,
+/// those aside that are the same pose. No probability if nothing speaks for it.
+void weigh_among_all(Hypothesis& pose, const ComparedMaps& maps) {
   const PoseMetric metric = make_pose_metric(maps.moving_walls);
   const auto in_cells = [&](const Hypothesis& one) {
     return to_cells(one.T_fixed_moving, maps.fixed_walls, maps.moving_walls);
@@ -70,7 +70,9 @@ double probability_among_all(const Hypothesis& pose, const ComparedMaps& maps) {
     if (metric.displacement(in_cells(pose), in_cells(other)) >= distinct_displacement(maps))
       all.push_back(other);
   }
-  return probabilities_of(compared_figures(all, maps)).front();
+  const std::vector<PoseFigures> figures = compared_figures(all, maps);
+  pose.figures = figures.front();
+  if (pose.score > 0.0) pose.probability = probabilities_of(figures).front();
 }
 
 double displacement(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_a, const SE2& T_b) {
@@ -85,15 +87,14 @@ double displacement(const PreparedMap& fixed, const PreparedMap& moving, const S
 }  // namespace
 
 RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_start) {
-  if (!std::isfinite(T_start.x) || !std::isfinite(T_start.y) || !std::isfinite(T_start.theta))
-    throw std::invalid_argument("the pose to start from is not finite");
+  check_finite(T_start);
   const bool swapped = is_smaller(fixed, moving);
   const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);
   const SE2 T_start_maps = swapped ? inverse(T_start) : T_start;
   const SE2 T_start_cells = to_cells(T_start_maps, maps.fixed_walls, maps.moving_walls);
   const PoseJudge judge(maps);
   const Hypothesis start = judge.judge(T_start_cells);
-  const Hypothesis best = best_around(start, T_start_cells, maps, judge);
+  Hypothesis best = best_around(start, T_start_cells, maps, judge);
 
   RefinedPose refined{.T_fixed_moving = T_start};
   refined.start_score = start.score;
@@ -109,8 +110,21 @@ RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, con
   refined.agreement = common.agreement;
   refined.disagreement = common.disagreement;
   refined.overlap = measure_overlap(maps.fixed, maps.moving, common);
-  if (refined.score > 0.0) refined.probability = probability_among_all(best, maps);
+  if (best.score > 0.0) weigh_among_all(best, maps);
+  refined.probability = best.probability;
   return refined;
+}
+
+Hypothesis judge_pose(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_fixed_moving) {
+  check_finite(T_fixed_moving);
+  const bool swapped = is_smaller(fixed, moving);
+  const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);
+  const SE2 T_maps = swapped ? inverse(T_fixed_moving) : T_fixed_moving;
+  Hypothesis pose = PoseJudge(maps).judge(to_cells(T_maps, maps.fixed_walls, maps.moving_walls));
+  weigh_among_all(pose, maps);
+  pose.T_fixed_moving = T_fixed_moving;
+  if (swapped) pose.figures.free_direction = undirected(pose.figures.free_direction + T_fixed_moving.theta);
+  return pose;
 }
 
 }  // namespace gridmerge

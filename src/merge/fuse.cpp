@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/similarity/lattice.hpp"
 
 namespace gridmerge {
 
@@ -38,6 +39,14 @@ void add(const LogOddsPatch& patch, const Lattice& lattice, Totals& total) {
   }
 }
 
+std::optional<EqualCells> measure_omega(const OccupancyGrid& lattice, const std::vector<PlacedMap>& inputs) {
+  try {
+    return EqualCells{count_equal_cells(lattice, inputs), static_cast<std::int64_t>(lattice.cells.size())};
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution) {
@@ -64,6 +73,7 @@ FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution) {
     fused.grid.cells[i] = log_odds > 0.0 ? Cell::occupied : Cell::free;
     fused.grid.probability[i] = static_cast<float>(1.0 / (1.0 + std::exp(-log_odds)));
   }
+  fused.omega = measure_omega(fused.grid, inputs);
   return fused;
 }
 

@@ -103,10 +103,20 @@ class RecordReader {
         members.at(i).fail("is not in the order of the maps");
     }
     if (component.members.size() < 2) members.fail("holds fewer than two maps");
+    if (json.has("omega")) component.fused.omega = read_omega(json);  // not in what earlier versions wrote
     component.in_world_frame = json.at("frame").is_null();
     if (!component.in_world_frame && map_at(json.at("frame")) != component.members.front().map)
       json.at("frame").fail("is not the first member");
     return component;
+  }
+
+  static std::optional<EqualCells> read_omega(const JsonReader& json) {
+    const JsonReader cells = json.at("cells"), of_cells = json.at("omega_share");
+    if (json.at("omega").is_null()) return std::nullopt;
+    const EqualCells omega{json.at("omega").count(), cells.count()};
+    if (omega.equal > omega.cells) cells.fail("is less than omega");
+    (void)share(of_cells);
+    return omega;
   }
 
   Member read_member(const JsonReader& json) {

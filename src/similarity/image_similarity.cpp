@@ -10,23 +10,17 @@
 #include "distance_kernels.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/similarity/distance_map.hpp"
+#include "gridmerge/similarity/lattice.hpp"
+#include "lattice_frames.hpp"
 #include "nearest_cells.hpp"
 
 namespace gridmerge {
 
 namespace {
 
+constexpr std::uint8_t kUnknown = static_cast<std::uint8_t>(Cell::unknown);
 constexpr std::uint8_t kFree = static_cast<std::uint8_t>(Cell::free);
 constexpr std::uint8_t kOccupied = static_cast<std::uint8_t>(Cell::occupied);
-
-constexpr double kMaxRatio =
-    100.0;  // of resolutions: keeps cells of either map within fixed-point arithmetic
-
-void check_resolutions(const OccupancyGrid& fixed, const OccupancyGrid& moving) {
-  const double ratio = fixed.resolution / moving.resolution;
-  if (!(ratio <= kMaxRatio && ratio >= 1.0 / kMaxRatio))
-    throw std::invalid_argument("the maps' resolutions differ by more than 100 times");
-}
 
 int round_up(int value, int multiple) {
   return (value + multiple - 1) / multiple * multiple;
@@ -52,6 +46,11 @@ struct SimilarityMeter::Maps {
       throw std::invalid_argument("the maps are too large for the image similarity: it takes about " +
                                   std::to_string(kMaxDistanceMapSides / 5) + " cells a side");
     }
+    const Point2 corner = inverse(fixed.origin) * Point2{fixed_map.origin.x, fixed_map.origin.y};
+    whole.left = static_cast<int>(std::lround(corner.x / fixed.resolution));
+    whole.bottom = static_cast<int>(std::lround(corner.y / fixed.resolution));
+    whole.right = whole.left + fixed_map.width;
+    whole.top = whole.bottom + fixed_map.height;
     const auto* cells = reinterpret_cast<const std::uint8_t*>(fixed.cells.data());
     for (const std::uint8_t value : {kFree, kOccupied}) {
       FixedClass& of_value = classes[value - kFree];
@@ -74,6 +73,10 @@ struct SimilarityMeter::Maps {
 
   const FixedClass& of(std::uint8_t value) const { return classes[value - kFree]; }
 
+  /// Cells of the whole fixed map.
+  std::int64_t size() const { return std::int64_t{whole.width()} * whole.height(); }
+
+  CellBox whole;         // the whole fixed map
   OccupancyGrid fixed;   // the known rectangle
   OccupancyGrid moving;  // the known rectangle
   std::array<FixedClass, 2> classes;
@@ -212,6 +215,19 @@ DirectedDistance measure_moving_to_fixed(const CellsOnLattice& moving, const Dis
   return result;
 }
 
+/// How many of the lattice's cells in `box` the moving map knows.
+std::int64_t count_known(const CellsOnLattice& moving, const CellBox& box) {
+  std::int64_t known = 0;
+  for (int row = std::max(box.bottom, moving.box.bottom); row < std::min(box.top, moving.box.top); ++row) {
+    const int left = std::max(box.left, moving.span(row).left);
+    const int right = std::min(box.right, moving.span(row).right);
+    if (left >= right) continue;
+    const auto count = static_cast<std::size_t>(right - left);
+    known += static_cast<std::int64_t>(count) - count_where(moving.at(left, row), count, kUnknown);
+  }
+  return known;
+}
+
 CommonCells compare_cells(const CellsOnLattice& moving, const OccupancyGrid& fixed) {
   CommonCells common;
   for (int row = std::max(0, moving.box.bottom); row < std::min(fixed.height, moving.box.top); ++row) {
@@ -228,23 +244,11 @@ CommonCells compare_cells(const CellsOnLattice& moving, const OccupancyGrid& fix
   return common;
 }
 
-bool is_finite(const SE2& T) {
-  return std::isfinite(T.x) && std::isfinite(T.y) && std::isfinite(T.theta);
-}
-
-void check_finite(const SE2& T) {
-  if (!is_finite(T)) throw std::invalid_argument("the transform must be finite");
-}
-
 /// Whether distances across both maps stay within 16 bits.
 bool fits(const OccupancyGrid& fixed, const CellBox& box) {
   return std::max(fixed.width, box.right) - std::min(0, box.left) + std::max(fixed.height, box.top) -
              std::min(0, box.bottom) <=
          kMaxDistanceMapSides;
-}
-
-SE2 between_grids(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& T_fixed_moving) {
-  return inverse(fixed.origin) * T_fixed_moving * moving.origin;
 }
 
 }  // namespace
@@ -269,20 +273,27 @@ bool SimilarityMeter::can_measure(const SE2& T_fixed_moving) const {
   return fits(maps_->fixed, box_on_lattice(maps_->moving, T_fixedgrid_movinggrid, maps_->fixed.resolution));
 }
 
-ImageSimilarity SimilarityMeter::operator()(const SE2& T_fixed_moving) {
+void SimilarityMeter::draw(const SE2& T_fixed_moving) {
   check_finite(T_fixed_moving);
   const Maps& maps = *maps_;
-  CellsOnLattice& moving = scratch_->moving;
   const SE2 T_fixedgrid_movinggrid = between_grids(maps.fixed, maps.moving, T_fixed_moving);
   const double resolution = maps.fixed.resolution;
   const CellBox box = box_on_lattice(maps.moving, T_fixedgrid_movinggrid, resolution);
   if (!fits(maps.fixed, box)) throw std::invalid_argument("the transform puts the maps too far apart");
-  draw_nearest_cells(maps.moving, T_fixedgrid_movinggrid, resolution, box, kStripRows, moving);
+  draw_nearest_cells(maps.moving, T_fixedgrid_movinggrid, resolution, box, kStripRows, scratch_->moving);
+}
 
+ImageSimilarity SimilarityMeter::operator()(const SE2& T_fixed_moving) {
+  draw(T_fixed_moving);
+  const Maps& maps = *maps_;
+  const CellsOnLattice& moving = scratch_->moving;
   ImageSimilarity result;
   const CommonCells common = compare_cells(moving, maps.fixed);
   result.agreement = common.equal;
   result.disagreement = common.different;
+  const std::int64_t known = maps.of(kFree).count + maps.of(kOccupied).count +
+                             count_known(moving, maps.whole) - common.equal - common.different;
+  result.omega = common.equal + maps.size() - known;
 
   FixedToMoving fixed_to_moving(moving, maps.fixed.width, maps.fixed.height, scratch_->rows, scratch_->strip);
   const auto measure = [&](std::uint8_t value, DirectedDistance& from_fixed, DirectedDistance& from_moving) {
@@ -298,6 +309,25 @@ ImageSimilarity SimilarityMeter::operator()(const SE2& T_fixed_moving) {
   return result;
 }
 
+CommonClasses SimilarityMeter::count_common(const SE2& T_fixed_moving) {
+  draw(T_fixed_moving);
+  const OccupancyGrid& fixed = maps_->fixed;
+  const CellsOnLattice& moving = scratch_->moving;
+  CommonClasses common;
+  const CellBox box = intersect(moving.box, {0, 0, fixed.width, fixed.height});
+  for (int row = box.bottom; row < box.top; ++row) {
+    for (int column = box.left; column < box.right; ++column) {
+      const auto ours = static_cast<std::uint8_t>(fixed.at(column, row));
+      const std::uint8_t theirs = *moving.at(column, row);
+      if (ours == kUnknown || theirs == kUnknown) continue;
+      ++(ours != theirs      ? common.contradicting
+         : ours == kOccupied ? common.occupied_occupied
+                             : common.free_free);
+    }
+  }
+  return common;
+}
+
 bool is_better(const ImageSimilarity& a, const ImageSimilarity& b, double c_lock) {
   if (a.undefined_terms() != b.undefined_terms()) return a.undefined_terms() < b.undefined_terms();
   return a.delta(c_lock) < b.delta(c_lock);
@@ -310,25 +340,8 @@ ImageSimilarity measure_similarity(const OccupancyGrid& fixed, const OccupancyGr
 
 std::int64_t count_equal_cells(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                const SE2& T_fixed_moving) {
-  validate(fixed);
-  validate(moving);
-  check_finite(T_fixed_moving);
-  check_resolutions(fixed, moving);
-  const SE2 T_fixedgrid_movinggrid = between_grids(fixed, moving, T_fixed_moving);
-  const CellBox all{0, 0, fixed.width, fixed.height};
-  const CellBox box = intersect(box_on_lattice(moving, T_fixedgrid_movinggrid, fixed.resolution), all);
-  CellsOnLattice drawn;
-  if (box.width() > 0 && box.height() > 0)
-    draw_nearest_cells(moving, T_fixedgrid_movinggrid, fixed.resolution, box, 1, drawn);
-  std::int64_t equal = 0;
-  for (int row = 0; row < fixed.height; ++row) {
-    for (int column = 0; column < fixed.width; ++column) {
-      const bool inside = column >= box.left && column < box.right && row >= box.bottom && row < box.top;
-      const std::uint8_t other = inside ? drawn.row(row)[column - box.left] : 0;
-      equal += static_cast<std::uint8_t>(fixed.at(column, row)) == other;
-    }
-  }
-  return equal;
+  const std::array<PlacedMap, 2> maps{{{&fixed, {}}, {&moving, T_fixed_moving}}};
+  return count_equal_cells(fixed, maps);
 }
 
 std::int64_t count_equal_cells(std::span<const OccupancyGrid> maps) {

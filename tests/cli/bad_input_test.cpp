@@ -109,6 +109,7 @@ TEST_P(BadInput, IsOneLineThatNamesFileAndCause) {
   expect_refused({"info", "--json", left, bad});
   expect_refused({"match", bad, left, "--json"});
   expect_refused({"match", left, bad, "--json"});
+  expect_refused({"measure", left, bad, "--pose", "0,0,0", "--json"});
   expect_refused({"evaluate", "--negatives", directory.write("n.tsv", "fixed\tmoving\nleft.yaml\tbad.yaml\n"),
                   "--json", directory.file("result.json")});
   EXPECT_FALSE(std::filesystem::exists(directory.file("result.json")));

@@ -32,7 +32,12 @@ TEST_F(Merge, WritesTheFilesOfTheContract) {
   expect_keys(json, {"maps", "components", "joins", "left_out", "left_out_reasons", "expected_false_joins"});
   EXPECT_EQ(json.at("left_out"), Json::array());
   ASSERT_EQ(json.at("components").size(), 1u);
-  expect_keys(json.at("components").at(0), {"map", "frame", "members"});
+  expect_keys(json.at("components").at(0), {"map", "frame", "members", "omega", "cells", "omega_share"});
+  const Json& component = json.at("components").at(0);
+  EXPECT_GT(component.at("omega"), component.at("cells").get<int>() / 10);
+  EXPECT_LT(component.at("omega"), component.at("cells"));
+  EXPECT_DOUBLE_EQ(component.at("omega_share"),
+                   component.at("omega").get<double>() / component.at("cells").get<double>());
   EXPECT_EQ(json.at("components").at(0).at("map"), "merged.yaml");
   ASSERT_EQ(json.at("components").at(0).at("members").size(), 2u);
   const Json& members = json.at("components").at(0).at("members");

@@ -9,7 +9,8 @@
 namespace gridmerge::test {
 namespace {
 
-const std::vector<std::string> kCommands = {"info", "match", "merge", "report", "view", "evaluate"};
+const std::vector<std::string> kCommands = {"info",   "match", "measure", "merge",
+                                            "report", "view",  "evaluate"};
 
 class WrongUsage : public testing::TestWithParam<std::vector<std::string>> {};
 
@@ -24,34 +25,49 @@ TEST_P(WrongUsage, IsOneLineAndExitCodeTwo) {
 using Words = std::vector<std::string>;
 INSTANTIATE_TEST_SUITE_P(
     Cli, WrongUsage,
-    testing::Values(Words{}, Words{""}, Words{"frobnicate"}, Words{"--frobnicate"}, Words{"info"},
-                    Words{"info", "a.yaml", "--frobnicate"}, Words{"match"}, Words{"match", "a.yaml"},
-                    Words{"match", "a.yaml", "b.yaml", "c.yaml"},
-                    Words{"match", "a.yaml", "b.yaml", "--threads", "-1"},
-                    Words{"match", "a.yaml", "b.yaml", "--threads", "two"},
-                    Words{"match", "a.yaml", "b.yaml", "--threads", "1.5"},
-                    Words{"match", "a.yaml", "b.yaml", "--threads", "99999999999999999999"},
-                    Words{"match", "a.yaml", "b.yaml", "--resolution", "0"},
-                    Words{"match", "a.yaml", "b.yaml", "--resolution", "-1"},
-                    Words{"match", "a.yaml", "b.yaml", "--resolution", "nan"},
-                    Words{"match", "a.yaml", "b.yaml", "--resolution", "inf"},
-                    Words{"match", "a.yaml", "b.yaml", "--resolution", "5cm"},
-                    Words{"match", "a.yaml", "b.yaml", "--accept", "1.1"},
-                    Words{"match", "a.yaml", "b.yaml", "--accept", "nan"},
-                    Words{"match", "a.yaml", "b.yaml", "--quiet", "--verbose"},
-                    Words{"merge", "a.yaml", "b.yaml"}, Words{"merge", "a.yaml", "-o", "out"},
-                    Words{"merge", "-o", "out"}, Words{"match", "a.yaml", "b.yaml", "--resolution", "1e-7"},
-                    Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "0"},
-                    Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "1e-7"},
-                    Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "1e5"},
-                    Words{"view"}, Words{"view", "a", "--port", "65536"}, Words{"view", "a", "--port", "-1"},
-                    Words{"view", "a", "--port", "http"}, Words{"view", "a", "--address", "0.0.0.0"},
-                    Words{"view", "a", "--address", "::"}, Words{"view", "a", "--address", "0"},
-                    Words{"view", "a", "--address", "0.0"}, Words{"view", "a", "--address", "0x0"},
-                    Words{"view", "a", "--address", "::0"}, Words{"view", "a", "--address", "::ffff:0.0.0.0"},
-                    Words{"view", "a", "--address", ""}, Words{"report"}, Words{"report", "a", "b"},
-                    Words{"report", "a", "--resolution", "0"}, Words{"evaluate"},
-                    Words{"evaluate", "--json", "result.json"}, Words{"evaluate", "a.tsv", "b.tsv"}));
+    testing::Values(
+        Words{}, Words{""}, Words{"frobnicate"}, Words{"--frobnicate"}, Words{"info"},
+        Words{"info", "a.yaml", "--frobnicate"}, Words{"match"}, Words{"match", "a.yaml"},
+        Words{"match", "a.yaml", "b.yaml", "c.yaml"}, Words{"match", "a.yaml", "b.yaml", "--threads", "-1"},
+        Words{"match", "a.yaml", "b.yaml", "--threads", "two"},
+        Words{"match", "a.yaml", "b.yaml", "--threads", "1.5"},
+        Words{"match", "a.yaml", "b.yaml", "--threads", "99999999999999999999"},
+        Words{"match", "a.yaml", "b.yaml", "--resolution", "0"},
+        Words{"match", "a.yaml", "b.yaml", "--resolution", "-1"},
+        Words{"match", "a.yaml", "b.yaml", "--resolution", "nan"},
+        Words{"match", "a.yaml", "b.yaml", "--resolution", "inf"},
+        Words{"match", "a.yaml", "b.yaml", "--resolution", "5cm"},
+        Words{"match", "a.yaml", "b.yaml", "--accept", "1.1"},
+        Words{"match", "a.yaml", "b.yaml", "--accept", "nan"},
+        Words{"match", "a.yaml", "b.yaml", "--quiet", "--verbose"}, Words{"merge", "a.yaml", "b.yaml"},
+        Words{"merge", "a.yaml", "-o", "out"}, Words{"merge", "-o", "out"},
+        Words{"match", "a.yaml", "b.yaml", "--resolution", "1e-7"},
+        Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "0"},
+        Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "1e-7"},
+        Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--output-resolution", "1e5"}, Words{"view"},
+        Words{"view", "a", "--port", "65536"}, Words{"view", "a", "--port", "-1"},
+        Words{"view", "a", "--port", "http"}, Words{"view", "a", "--address", "0.0.0.0"},
+        Words{"view", "a", "--address", "::"}, Words{"view", "a", "--address", "0"},
+        Words{"view", "a", "--address", "0.0"}, Words{"view", "a", "--address", "0x0"},
+        Words{"view", "a", "--address", "::0"}, Words{"view", "a", "--address", "::ffff:0.0.0.0"},
+        Words{"view", "a", "--address", ""}, Words{"report"}, Words{"report", "a", "b"},
+        Words{"report", "a", "--resolution", "0"}, Words{"evaluate"}, Words{"measure", "a.yaml", "b.yaml"},
+        Words{"measure", "a.yaml", "--pose", "0,0,0"}, Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0,0,0"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0,"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,nan,0"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0,5deg"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0,1e999"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0,0", "--pose", "1,0,0"},
+        Words{"measure", "a.yaml", "b.yaml", "c.yaml", "--pose", "0,0,0"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0,0", "--c-lock", "-1"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0,0", "--dmap", "d.jpg"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0,0", "--dmap-of", "1"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0,0", "--dmap", "d.png", "--dmap-of", "2"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0,0", "--dmap", "d.png", "--dmap-of", "-1"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0,0", "--dmap", "d.png", "--dmap-class", "wall"},
+        Words{"measure", "a.yaml", "b.yaml", "--pose", "0,0,0", "--dmap", "d.png", "--dmap-pass", "third"},
+        Words{"evaluate", "--json", "result.json"}, Words{"evaluate", "a.tsv", "b.tsv"}));
 
 TEST(Usage, AMisspeltCommandIsNamed) {
   EXPECT_NE(run({"mtach", "a.yaml", "b.yaml"}).err.find("'mtach'"), std::string::npos);

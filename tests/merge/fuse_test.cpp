@@ -56,6 +56,9 @@ TEST(Fuse, CoversAllInputsAndCountsWhatTheyShare) {
   const FusedMap fused = fuse({{&a, {}}, {&b, {1.0, 0.0, 0.0}}}, 1.0);
   EXPECT_EQ(text_of(fused.grid), Rows{"##.# #"});
   EXPECT_EQ(fused.agreeing, 2u) << "a free cell and a wall";
+  ASSERT_TRUE(fused.omega);
+  EXPECT_EQ(fused.omega->cells, 6);
+  EXPECT_EQ(fused.omega->equal, 3) << "what neither knows is equal too";
   EXPECT_EQ(fused.conflicting, 1u) << "a wall in free space";
 }
 

@@ -78,6 +78,53 @@ TEST(MatchJson, TakesAnyName) {
   EXPECT_EQ(nlohmann::json::parse(match_json("\xff.yaml", "b", {}))["fixed"], "\xef\xbf\xbd.yaml");
 }
 
+JointMeasure any_measure() {
+  PoseMeasure pair;
+  pair.T_fixed_moving = {1.25, -3.0, 0.5};
+  pair.cells = 100;
+  pair.similarity.omega = 75;
+  pair.similarity.fixed_to_moving_occupied = {3, 2};
+  pair.similarity.moving_to_fixed_occupied = {1, 4};
+  pair.similarity.agreement = 12;
+  pair.similarity.disagreement = 4;
+  pair.common = {2, 10, 4};
+  pair.engine.probability = 0.125;
+  return {75, 100, {pair}};
+}
+
+TEST(MeasureJson, HasTheDocumentedKeys) {
+  const std::string text = measure_json("a.yaml", {"b.yaml"}, any_measure(), 7.5);
+  const std::string documented =
+      R"({"fixed":"a.yaml","moving":"b.yaml","transform":{"x":1.25,"y":-3.0,"theta":0.5},"omega":75,"cells":100,)"
+      R"("psi":1.75,"psi_terms":{"fixed_moving_occupied":1.5,"fixed_moving_free":null,)"
+      R"("moving_fixed_occupied":0.25,"moving_fixed_free":null},"agreement":12,"disagreement":4,"delta":-58.25,)"
+      R"("c_lock":7.5,"acceptance_index":0.75,)"
+      R"("common":{"occupied_occupied":2,"free_free":10,"contradicting":4},)"
+      R"("engine":{"probability":0.125,"figures":{"score":0.0,)";
+  EXPECT_EQ(text.substr(0, documented.size()), documented);
+  EXPECT_EQ(nlohmann::json::parse(text).at("engine").at("figures").size(), pose_figures().size());
+}
+
+TEST(MeasureJson, OfSeveralMapsListsEach) {
+  JointMeasure joint = any_measure();
+  joint.omega = 60;
+  joint.pairs.push_back(joint.pairs.front());
+  const auto json = nlohmann::json::parse(measure_json("a", {"b", "c"}, joint, 0.0));
+  EXPECT_EQ(json.at("omega"), 60);
+  EXPECT_EQ(json.at("pairs").at(1).at("omega"), 75);
+  EXPECT_EQ(json.at("pairs").at(1).at("moving"), "c");
+  EXPECT_THROW(measure_json("a", {"b"}, joint, 0.0), std::out_of_range);
+}
+
+TEST(TransformsJson, OmegaThatCannotBeCountedIsNull) {
+  const std::vector<OccupancyGrid> maps(2, make_grid(1, 1, 1.0, {}, Cell::free));
+  MergeResult result = test::merged(maps, {{{0, {}}, {1, {}}}});
+  result.components[0].fused.omega = std::nullopt;
+  const auto json = nlohmann::json::parse(transforms_json({"a", "b"}, result));
+  EXPECT_TRUE(json.at("components").at(0).at("omega").is_null());
+  EXPECT_TRUE(json.at("components").at(0).at("omega_share").is_null());
+}
+
 TEST(TransformsJson, IsTheDocumentedText) {
   const std::vector<OccupancyGrid> maps(4, make_grid(1, 1, 1.0, {}, Cell::free));
   MergeResult result = test::merged(maps, {{{0, {}}, {2, {1.25, -3.0, 0.52}}}});
@@ -96,6 +143,7 @@ TEST(TransformsJson, IsTheDocumentedText) {
   result.components[0].members[1].probability = 0.875;
   result.components[0].members[1].sd = PoseDeviation{0.125, 0.0625};
   result.left_out_reasons.front() = Reason::ambiguous;
+  result.components[0].fused = {make_grid(5, 4, 1.0), 0, 0, EqualCells{5, 20}};
   EXPECT_EQ(transforms_json({"a.yaml", "b.yaml", "c.yaml", "d.yaml"}, result), R"({
   "maps": [
     "a.yaml",
@@ -131,7 +179,10 @@ TEST(TransformsJson, IsTheDocumentedText) {
             "theta": 0.0625
           }
         }
-      ]
+      ],
+      "omega": 5,
+      "cells": 20,
+      "omega_share": 0.25
     }
   ],
   "joins": [

@@ -89,7 +89,8 @@ TEST(MergeRecord, EveryKeyIsNeeded) {
     const Json::json_pointer place(pointer);
     Json json = any_json();
     Json& parent = json.at(place.parent_pointer());
-    if (!parent.is_object() || pointer == "/expected_false_joins") continue;  // earlier versions lack it
+    if (!parent.is_object() || pointer == "/expected_false_joins" || pointer.ends_with("/omega"))
+      continue;  // earlier versions lack it
     parent.erase(place.back());
     EXPECT_THROW(parse(json.dump()), FileError) << pointer;
   }

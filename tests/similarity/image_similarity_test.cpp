@@ -77,6 +77,29 @@ TEST(DistanceMap, EqualsTheTwoPassesOfThePaper) {
   }
 }
 
+TEST(DistanceMap, ThePassesEndInIt) {
+  std::mt19937 random(2);
+  for (int run = 0; run < 50; ++run) {
+    const OccupancyGrid map =
+        random_map(random, 1 + static_cast<int>(random() % 40), 1 + static_cast<int>(random() % 40));
+    for (const Cell value : {Cell::unknown, Cell::free, Cell::occupied})
+      EXPECT_EQ(trace_distance_map(map, value).backward.distances, make_distance_map(map, value).distances);
+  }
+}
+
+TEST(DistanceMap, ThePassesGoFromCornerToCorner) {
+  OccupancyGrid map = make_grid(3, 3, 1.0);
+  map.at(1, 1) = Cell::occupied;
+  const DistanceMapPasses passes = trace_distance_map(map, Cell::occupied);
+  constexpr std::uint16_t kNone = kNoDistance;
+  // Row 0, the lower one, first.
+  EXPECT_EQ(passes.start.distances,
+            (std::vector<std::uint16_t>{kNone, kNone, kNone, kNone, 0, kNone, kNone, kNone, kNone}));
+  EXPECT_EQ(passes.forward.distances,
+            (std::vector<std::uint16_t>{kNone, 1, 2, kNone, 0, 1, kNone, kNone, kNone}));
+  EXPECT_EQ(passes.backward.distances, (std::vector<std::uint16_t>{2, 1, 2, 1, 0, 1, 2, 1, 2}));
+}
+
 TEST(DistanceMap, CrossesTheLargestMaps) {
   OccupancyGrid map = make_grid(kMaxDistanceMapSides - 1, 1, 0.05, {}, Cell::free);
   map.at(0, 0) = Cell::occupied;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
@@ -9,10 +11,20 @@
 
 namespace gridmerge {
 
+/// omega of a fused map's inputs (Birk & Carpin 2006, eq. 3).
+struct EqualCells {
+  std::int64_t equal = 0;  ///< cells of the map at which all inputs have the same value, unknown included
+  std::int64_t cells = 0;  ///< of the map
+
+  double share() const { return cells == 0 ? 0.0 : static_cast<double>(equal) / static_cast<double>(cells); }
+};
+
 struct FusedMap {
   OccupancyGrid grid;           ///< upright (yaw 0), in the output frame; ternary cells and probabilities
   std::size_t agreeing = 0;     ///< cells known in two or more inputs, all equal
   std::size_t conflicting = 0;  ///< cells that some input calls free and another occupied
+  /// None where the inputs cannot be compared so: see count_equal_cells().
+  std::optional<EqualCells> omega = {};
 };
 
 /// Fuses all inputs in one pass on the lattice that covers them (see cover()): the log-odds of every input

@@ -5,15 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/grid/placed_map.hpp"
 
 namespace gridmerge {
-
-/// A map, and the transform that takes its frame to the output's.
-struct PlacedMap {
-  const OccupancyGrid* map = nullptr;  ///< not owned; outlives its use
-  SE2 T_output_map;
-};
 
 /// Where the cells of an output grid lie: upright (yaw 0) in the output frame.
 struct Lattice {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gridmerge/match/match.hpp"
+#include "gridmerge/match/measure.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
@@ -17,6 +18,12 @@ namespace gridmerge {
 
 /// What `gridmerge match --json` prints: one line, with its end.
 std::string match_json(const std::string& fixed, const std::string& moving, const MatchResult& result);
+
+/// What `gridmerge measure --json` prints: one line, with its end. For one moving map its measures, for
+/// several omega of all and the measures of each on the fixed one. `moving[i]` is what to call moving map i.
+/// Throws std::out_of_range when there are fewer names than maps.
+std::string measure_json(const std::string& fixed, const std::vector<std::string>& moving,
+                         const JointMeasure& measure, double c_lock);
 
 /// `transforms.json` of a merge, indented: all that there is to say of it but the maps' cells, the order of
 /// the maps included, and no times, so that the same merge gives the same bytes. `names[i]` is what to call

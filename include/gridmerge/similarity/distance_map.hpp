@@ -32,4 +32,15 @@ struct DistanceMap {
 /// kMaxDistanceMapSides. O(cells); vectorised.
 DistanceMap make_distance_map(const OccupancyGrid& grid, Cell value);
 
+/// Algorithm 2 of the paper to look at: what its two passes leave.
+struct DistanceMapPasses {
+  DistanceMap start;     ///< 0 at the cells of the value, kNoDistance elsewhere
+  DistanceMap forward;   ///< after the pass from the upper left corner on: the left and the upper neighbour
+  DistanceMap backward;  ///< after the pass from the lower right corner on: d-map_c
+};
+
+/// The passes as the paper writes them, cell by cell; `backward` equals make_distance_map(), which is ten
+/// times as fast. The upper row is the last one: y points up. Throws as make_distance_map(). O(cells).
+DistanceMapPasses trace_distance_map(const OccupancyGrid& grid, Cell value);
+
 }  // namespace gridmerge

@@ -48,6 +48,7 @@ struct ImageSimilarity {
   DirectedDistance moving_to_fixed_free;
   DirectedDistance fixed_to_moving_occupied;
   DirectedDistance moving_to_fixed_occupied;
+  std::int64_t omega = 0;         ///< cells of the fixed map that have the same value, unknown included
   std::int64_t agreement = 0;     ///< agr: cells known in both maps and equal
   std::int64_t disagreement = 0;  ///< dis: cells known in both maps and different
 
@@ -68,6 +69,13 @@ struct ImageSimilarity {
     const std::int64_t known = agreement + disagreement;
     return known == 0 ? 0.0 : static_cast<double>(agreement) / static_cast<double>(known);
   }
+};
+
+/// The cells known in both maps, by what the maps say of them.
+struct CommonClasses {
+  std::int64_t occupied_occupied = 0;
+  std::int64_t free_free = 0;
+  std::int64_t contradicting = 0;  ///< free in one map, occupied in the other
 };
 
 /// Whether `a` is the better pose of the two: fewer undefined distances (which count nothing, and would
@@ -98,7 +106,12 @@ class SimilarityMeter {
   /// O(cells of the rectangle that holds both maps' known cells).
   ImageSimilarity operator()(const SE2& T_fixed_moving);
 
+  /// agr and dis by class. Argument and errors as above. O(cells of the moving map).
+  CommonClasses count_common(const SE2& T_fixed_moving);
+
  private:
+  void draw(const SE2& T_fixed_moving);
+
   struct Maps;
   struct Scratch;
   std::shared_ptr<const Maps> maps_;
