@@ -38,6 +38,7 @@ def test_so_do_those_with_all_options(cli: Cli, tmp_path: Path) -> None:
             "--start",
             "8,6",
         ),
+        *("--heading", 0, "--heading", 90),
         *(
             "--longest-way",
             30,
@@ -62,7 +63,7 @@ def test_so_do_those_with_all_options(cli: Cli, tmp_path: Path) -> None:
             size=(15, 12),
             robots=2,
             starts=[(3, 3), (8, 6)],
-            headings=[0.0, 3.14],
+            headings=[0.0, math.radians(90)],
             longest_way=30,
             clutter=0.5,
             others=2,
