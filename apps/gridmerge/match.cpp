@@ -25,7 +25,7 @@ struct MatchCommandOptions {
   CommonOptions common;
   std::string fixed;
   std::string moving;
-  double resolution = 0.0;
+  LoadOptions load;
   SearchOptions search;
   bool json = false;
 };
@@ -90,8 +90,10 @@ std::string describe(const MatchResult& result, const MatchCommandOptions& optio
 
 MatchResult match_files(const MatchCommandOptions& options) {
   Console console(options.common);
-  const LoadedMap fixed = load(options.fixed, options.resolution, console);
-  const LoadedMap moving = load(options.moving, options.resolution, console);
+  MapReader reader(options.load, console);
+  const LoadedMap fixed = reader.read(options.fixed);
+  const LoadedMap moving = reader.read(options.moving);
+  reader.tell_warnings();
   if (!options.search.trace.empty()) {
     std::vector<std::filesystem::path> inputs = fixed.files;
     inputs.insert(inputs.end(), moving.files.begin(), moving.files.end());
@@ -126,7 +128,7 @@ void add_match(CLI::App& app, Action& action) {
   command->add_flag("--json", options->json, "Print JSON");
   add_search_options(*command, options->search);
   add_trace_option(*command, options->search);
-  add_resolution_option(*command, options->resolution);
+  add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
   command->footer(
       "The transform takes points of MOVING to FIXED, in metres and radians of the map frames.\n"

@@ -29,7 +29,7 @@ struct MergeCommandOptions {
   CommonOptions common;
   std::vector<std::string> maps;
   std::string output;
-  double resolution = 0.0;
+  LoadOptions load;
   double output_resolution = 0.0;
   double max_false_joins = MergeOptions{}.max_false_joins;
   SearchOptions search;
@@ -43,11 +43,13 @@ struct Inputs {
 
 Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
   Inputs inputs;
+  MapReader reader(options.load, console);
   for (const std::string& path : options.maps) {
-    LoadedMap map = load(path, options.resolution, console);
+    LoadedMap map = reader.read(path);
     inputs.maps.push_back(std::move(map.grid));
     inputs.files.insert(inputs.files.end(), map.files.begin(), map.files.end());
   }
+  reader.tell_warnings();
   return inputs;
 }
 
@@ -187,7 +189,7 @@ void add_merge(CLI::App& app, Action& action) {
           ->check(CLI::Range(0.0, 1e6))
           ->capture_default_str();
   add_trace_option(*command, options->search);
-  add_resolution_option(*command, options->resolution);
+  add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
   command->footer(
       "Writes merged.yaml and merged.pgm for map_server, transforms.json, preview.png and report.html. Maps\n"
