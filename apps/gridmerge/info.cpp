@@ -91,7 +91,7 @@ int info(const InfoOptions& options) {
       print(describe(path, map));
     }
   }
-  if (options.json) print(Json{{"maps", maps}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  if (options.json) print(Json{{"maps", maps}}.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
   return kDone;
 }
 
@@ -104,7 +104,7 @@ void add_info(CLI::App& app, Action& action) {
   command->add_option("MAP", options->maps, "map_server YAML, or an image with --resolution")
       ->type_name("FILE")
       ->required();
-  command->add_flag("--json", options->json, "Print JSON");
+  command->add_flag("--json", options->json, "Print JSON, on one line");
   add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
   command->footer("Example:\n  gridmerge info robot1.yaml robot2.yaml");

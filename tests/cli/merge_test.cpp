@@ -29,7 +29,7 @@ TEST_F(Merge, WritesTheFilesOfTheContract) {
   EXPECT_EQ(files_in(output), all_files);
 
   const Json json = Json::parse(read_file(output + "/transforms.json"));
-  expect_keys(json, {"maps", "components", "joins", "left_out", "left_out_reasons", "expected_false_joins"});
+  expect_keys(json, {"maps", "components", "joins", "left_out", "left_out_maps", "expected_false_joins"});
   EXPECT_EQ(json.at("left_out"), Json::array());
   ASSERT_EQ(json.at("components").size(), 1u);
   expect_keys(json.at("components").at(0), {"map", "frame", "members"});
@@ -43,7 +43,7 @@ TEST_F(Merge, WritesTheFilesOfTheContract) {
   expect_near(members.at(1).at("transform"), T_left_right, 0.1, 0.007);
   ASSERT_EQ(json.at("joins").size(), 1u);
   expect_keys(json.at("joins").at(0),
-              {"fixed", "moving", "transform", "verdict", "probability", "outcome", "reason",
+              {"fixed", "moving", "transform", "verdict", "probability", "outcome", "reason", "by_themselves",
                "acceptance_index", "agreement", "disagreement", "overlap", "hypotheses"});
   EXPECT_EQ(json.at("joins").at(0).at("fixed"), left);
   EXPECT_EQ(json.at("joins").at(0).at("moving"), right);
