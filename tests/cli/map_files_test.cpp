@@ -83,6 +83,17 @@ TEST_F(MapFiles, SolidBlackOutsideCountsAsUnknown) {
   expect_near(Json::parse(outcome.out).at("transform"), {}, 1e-9, 1e-9);
 }
 
+TEST_F(MapFiles, AScaleThatIsOffIsHintedAt) {
+  const std::string map = changed(right, "coarse.yaml", "resolution:", "resolution: 0.2");
+  const std::string hint = "hint: " + map + " fits " + left + " at 0.5 times its scale";
+  const Outcome match = run({"match", left, map});
+  EXPECT_EQ(match.exit_code, 3);
+  EXPECT_NE(match.out.find(hint), std::string::npos) << match.out;
+  EXPECT_NE(match.out.find("is its resolution 0.1 m and not 0.2 m"), std::string::npos) << match.out;
+  EXPECT_NE(run({"merge", left, map, "-o", directory.file("out")}).out.find(hint), std::string::npos);
+  EXPECT_EQ(run({"match", left, other}).out.find("hint"), std::string::npos);
+}
+
 TEST_F(MapFiles, WhatIsNoMapIsNamedWithTheRemedy) {
   const std::string gif = directory.write("a.gif", "GIF89a");
   expect_error(run({"info", gif}), gif, "a GIF image, which is not read");
