@@ -38,8 +38,7 @@ void save(const Map& map, const nb::bytes& path, bool probabilities) {
 void bind_io(nb::module_& module) {
   module.attr("MIN_RESOLUTION") = kMinResolution;
   module.attr("MAX_RESOLUTION") = kMaxResolution;
-  module.def("load", &load, nb::arg("path"), nb::arg("resolution"),
-             nb::arg("literal_thresholds"));
+  module.def("load", &load, nb::arg("path"), nb::arg("resolution"), nb::arg("literal_thresholds"));
   module.def("save", &save, nb::arg("grid"), nb::arg("path"), nb::arg("probabilities"));
   nb::class_<InitialPose>(module, "InitialPose")
       .def_prop_ro("name", [](const InitialPose& pose) { return to_str(pose.name); })
