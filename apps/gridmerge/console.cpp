@@ -21,8 +21,14 @@ constexpr auto kFirstDraw = std::chrono::milliseconds(300);
 constexpr auto kDrawInterval = std::chrono::milliseconds(100);
 constexpr int kBarWidth = 40;
 
+// There is nobody to tell that stderr cannot be written, and no reason to end the work for it.
+void print_to_stderr(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
 void print_line_to_stderr(const std::string& line) {
-  fmt::print(stderr, "{}\n", escape_controls(line));
+  print_to_stderr(escape_controls(line) + "\n");
 }
 
 }  // namespace
@@ -72,16 +78,15 @@ void Console::progress(double share) {
   next_draw_ = Clock::now() + kDrawInterval;
   bar_shown_ = true;
   share = std::clamp(share, 0.0, 1.0);
-  fmt::print(stderr, "\r[{:<{}}] {:3.0f} %", std::string(static_cast<std::size_t>(share * kBarWidth), '#'),
-             kBarWidth, 100.0 * share);
-  std::fflush(stderr);
+  print_to_stderr(fmt::format("\r[{:<{}}] {:3.0f} %",
+                              std::string(static_cast<std::size_t>(share * kBarWidth), '#'), kBarWidth,
+                              100.0 * share));
 }
 
 void Console::clear() {
   if (!bar_shown_) return;
   bar_shown_ = false;
-  fmt::print(stderr, "\r\x1b[K");  // to the line's start, and erase it
-  std::fflush(stderr);
+  print_to_stderr("\r\x1b[K");  // to the line's start, and erase it
 }
 
 void try_output_file(const std::string& path, const std::vector<std::filesystem::path>& inputs) {
@@ -94,14 +99,33 @@ void try_output_file(const std::string& path, const std::vector<std::filesystem:
   }
 }
 
-LoadedMap load(const std::string& path, double resolution, Console& console) {
-  LoadOptions options;
-  options.resolution = resolution;
-  LoadedMap map = load_map(path, options);
-  for (const std::string& warning : map.warnings) console.warn(path + ": " + warning);
-  console.remark(fmt::format("read {}: {} x {} cells of {} m", path, map.grid.width, map.grid.height,
-                             map.grid.resolution));
+LoadedMap MapReader::read(const std::string& path) {
+  LoadedMap map = load_map(path, options_);
+  for (const MapWarning& warning : map.warnings) warned_.push_back({path, warning});
+  console_.remark(fmt::format("read {}: {} x {} cells of {} m", path, map.grid.width, map.grid.height,
+                              map.grid.resolution));
   return map;
+}
+
+void MapReader::tell_warnings() {
+  constexpr std::size_t kNamed = 3;
+  while (!warned_.empty()) {
+    const Warned first = warned_.front();
+    std::vector<std::string> others;
+    std::erase_if(warned_, [&](const Warned& one) {
+      if (one.warning.kind != first.warning.kind) return false;
+      if (one.path != first.path) others.push_back(one.path);
+      return true;
+    });
+    std::string also;
+    if (!others.empty()) {
+      const std::size_t named = std::min(others.size(), kNamed);
+      also = fmt::format(" (also {}{}: 'gridmerge info' tells of each)",
+                         fmt::join(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+                         others.size() > named ? fmt::format(" and {} more", others.size() - named) : "");
+    }
+    console_.warn(first.path + ": " + first.warning.text + also);
+  }
 }
 
 }  // namespace gridmerge::cli

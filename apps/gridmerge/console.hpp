@@ -53,7 +53,27 @@ class Console {
 /// would take the place of one of the `inputs`.
 void try_output_file(const std::string& path, const std::vector<std::filesystem::path>& inputs);
 
-/// load_map() that passes its warnings on to `console`.
-LoadedMap load(const std::string& path, double resolution, Console& console);
+/// Reads the maps of a command, and tells what is odd about their files once a kind, not once a map.
+class MapReader {
+ public:
+  /// `console` must outlive this.
+  MapReader(LoadOptions options, Console& console) : options_(options), console_(console) {}
+
+  /// load_map().
+  LoadedMap read(const std::string& path);
+
+  /// Tells the warnings of all maps that were read since it was called last.
+  void tell_warnings();
+
+ private:
+  struct Warned {
+    std::string path;
+    MapWarning warning;
+  };
+
+  LoadOptions options_;
+  Console& console_;
+  std::vector<Warned> warned_;
+};
 
 }  // namespace gridmerge::cli

@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 struct InfoOptions {
   CommonOptions common;
   std::vector<std::string> maps;
-  double resolution = 0.0;
+  LoadOptions load;
   bool json = false;
 };
 
@@ -59,7 +59,7 @@ std::string describe(const std::string& path, const LoadedMap& map) {
   line("free", share(counts.free));
   line("unknown", share(counts.unknown));
   line("known area", fmt::format("{:.2f} m x {:.2f} m", known.width, known.height));
-  for (const std::string& warning : map.warnings) line("warning", escape_controls(warning));
+  for (const MapWarning& warning : map.warnings) line("warning", escape_controls(warning.text));
   return text;
 }
 
@@ -67,6 +67,8 @@ Json describe_json(const std::string& path, const LoadedMap& map) {
   const OccupancyGrid& grid = map.grid;
   const CellCounts counts = count_cells(grid);
   const Size known = known_size(grid);
+  Json warnings = Json::array();
+  for (const MapWarning& warning : map.warnings) warnings.push_back(warning.text);
   return {{"source", path},
           {"width", grid.width},
           {"height", grid.height},
@@ -76,22 +78,20 @@ Json describe_json(const std::string& path, const LoadedMap& map) {
           {"free", counts.free},
           {"unknown", counts.unknown},
           {"known_size", {{"width", known.width}, {"height", known.height}}},
-          {"warnings", map.warnings}};
+          {"warnings", warnings}};
 }
 
 int info(const InfoOptions& options) {
-  LoadOptions load_options;
-  load_options.resolution = options.resolution;
   Json maps = Json::array();
   for (const std::string& path : options.maps) {
-    const LoadedMap map = load_map(path, load_options);
+    const LoadedMap map = load_map(path, options.load);
     if (options.json) {
       maps.push_back(describe_json(path, map));
     } else {
       print(describe(path, map));
     }
   }
-  if (options.json) print(Json{{"maps", maps}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  if (options.json) print(Json{{"maps", maps}}.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
   return kDone;
 }
 
@@ -104,8 +104,8 @@ void add_info(CLI::App& app, Action& action) {
   command->add_option("MAP", options->maps, "map_server YAML, or an image with --resolution")
       ->type_name("FILE")
       ->required();
-  command->add_flag("--json", options->json, "Print JSON");
-  add_resolution_option(*command, options->resolution);
+  command->add_flag("--json", options->json, "Print JSON, on one line");
+  add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
   command->footer("Example:\n  gridmerge info robot1.yaml robot2.yaml");
   command->callback([options, &action] { action = [options] { return info(*options); }; });

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -26,6 +28,12 @@ std::optional<std::size_t> find_map(const std::vector<std::string>& maps, const 
   const auto found = std::find(maps.begin(), maps.end(), name);
   if (found == maps.end()) return std::nullopt;
   return static_cast<std::size_t>(found - maps.begin());
+}
+
+/// What to write in place of so many degrees.
+std::string in_radians(double degrees) {
+  return fmt::format(" ({} degrees are {:.4f})", degrees,
+                     normalize_angle(degrees * std::numbers::pi / 180.0));
 }
 
 void fix(const KnownPoseOptions& options, const std::vector<std::string>& maps,
@@ -52,31 +60,86 @@ void add_known_pose_options(CLI::App& command, KnownPoseOptions& options) {
   command
       .add_option(
           "--init", options.init,
-          "Table of poses of some or all maps (TSV: map x y theta, and optionally sd sd_theta: standard "
-          "deviations, 1 m and 0.1 rad if not given)")
+          "Table of poses of some or all maps (TSV: map x y theta, in metres and radians, and optionally\n"
+          "sd sd_theta: standard deviations, 1 m and 0.1 rad if not given). Poses that are surer join maps "
+          "by\n"
+          "themselves; of what is not believed, or not sure enough for that, the result says so")
       ->type_name("FILE");
   command
       .add_option(
           "--fix", options.fix,
-          "Take this map's pose for the truth: it is not changed, and the merged map is in its frame, or "
-          "in that of --init")
-      ->type_name("MAP")
+          "Take this map's pose for the truth: it is not changed, and the merged map is in its frame, or\n"
+          "in that of --init. One map each: give it again for another, which then needs a pose in --init")
+      ->option_text("MAP")
       ->allow_extra_args(false);  // or it would take the maps behind it
 }
 
-std::vector<std::optional<KnownPose>> load_known_poses(const KnownPoseOptions& options,
-                                                       const std::vector<std::string>& maps) {
-  std::vector<std::optional<KnownPose>> known(maps.size());
+KnownPoses::KnownPoses(const KnownPoseOptions& options, const std::vector<std::string>& maps,
+                       Console& console)
+    : table_(options.init), names_(maps), poses_(maps.size()) {
   if (!options.init.empty()) {
     for (const InitialPose& pose : read_initial_poses(options.init)) {
       const std::optional<std::size_t> map = find_map(maps, pose.name, pose.path);
       if (!map) throw FileError(options.init, "'" + pose.name + "' is none of the maps to be merged");
-      if (known[*map]) throw FileError(options.init, "'" + pose.name + "' is a map that it named before");
-      known[*map] = KnownPose{pose.T_world_map, pose.sd, pose.sd_theta, false};
+      if (poses_[*map]) throw FileError(options.init, "'" + pose.name + "' is a map that it named before");
+      poses_[*map] = KnownPose{pose.T_world_map, pose.sd, pose.sd_theta, false};
+      written_[*map] = pose.theta_as_written;
+      if (std::abs(pose.theta_as_written) > 2.0 * std::numbers::pi)
+        console.warn(fmt::format("{}: theta of {} is {}, more than a turn: it must be in radians{}",
+                                 options.init, pose.name, pose.theta_as_written,
+                                 in_radians(pose.theta_as_written)));
     }
   }
-  fix(options, maps, known);
-  return known;
+  fix(options, maps, poses_);
+}
+
+std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps,
+                                        const MergeResult& result) const {
+  std::string text;
+  const std::vector<UnusedPose> all = find_unused_poses(maps, poses_, result);
+  for (const UnusedPose& unused : all) text += describe(unused) + "\n";
+  if (!all.empty() && would_do_in_degrees(maps, result, all.size()))
+    text += fmt::format(
+        "{}: its theta look like degrees, with which more of its poses are true: it must be in "
+        "radians\n",
+        escape_controls(table_));
+  return text;
+}
+
+std::string KnownPoses::describe(const UnusedPose& unused) const {
+  const std::string name = escape_controls(names_[unused.map]);
+  const std::string other = escape_controls(names_[unused.other]);
+  const KnownPose& pose = *poses_[unused.map];
+  const auto remedy = [&] { return fmt::format("--fix {} --fix {} takes them for the truth", other, name); };
+  switch (unused.why) {
+    case UnusedPose::Why::overruled:
+      return fmt::format("{}: the given pose is not believed: {:.3g} m from where the maps fit", name,
+                         unused.distance);
+    case UnusedPose::Why::not_sure_enough:
+      return fmt::format(
+          "{}: the given pose is not sure enough to be used alone: with sd {} m, sd_theta {} rad and the "
+          "pose of "
+          "{} it may be off by {:.2g} m, and {:.2g} m are allowed. Give sd and sd_theta in {} that are at "
+          "most "
+          "{:.2g} times these for both, or {}",
+          name, pose.sd_position, pose.sd_theta, other, unused.sd, unused.sd_allowed, escape_controls(table_),
+          unused.sd_allowed / unused.sd, remedy());
+    case UnusedPose::Why::contradicted:
+      break;
+  }
+  return fmt::format(
+      "{}: the given pose is not used: what the maps say contradicts it, or more is asked of a "
+      "join than poses give. {}",
+      name, remedy());
+}
+
+/// Whether fewer poses would be unused were the table's angles degrees.
+bool KnownPoses::would_do_in_degrees(const std::vector<OccupancyGrid>& maps, const MergeResult& result,
+                                     std::size_t unused) const {
+  std::vector<std::optional<KnownPose>> in_degrees = poses_;
+  for (const auto& [map, theta] : written_)
+    in_degrees[map]->T_world_map.theta = normalize_angle(theta * std::numbers::pi / 180.0);
+  return find_unused_poses(maps, in_degrees, result).size() < unused;
 }
 
 }  // namespace gridmerge::cli

@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "gridmerge/report/json.hpp"
+#include "scale_hint.hpp"
 #include "search_options.hpp"
 
 namespace gridmerge::cli {
@@ -25,7 +26,7 @@ struct MatchCommandOptions {
   CommonOptions common;
   std::string fixed;
   std::string moving;
-  double resolution = 0.0;
+  LoadOptions load;
   SearchOptions search;
   bool json = false;
 };
@@ -88,10 +89,18 @@ std::string describe(const MatchResult& result, const MatchCommandOptions& optio
   return text;
 }
 
-MatchResult match_files(const MatchCommandOptions& options) {
+/// A match, and what to say beside it.
+struct Answer {
+  MatchResult result;
+  std::string hint;
+};
+
+Answer match_files(const MatchCommandOptions& options) {
   Console console(options.common);
-  const LoadedMap fixed = load(options.fixed, options.resolution, console);
-  const LoadedMap moving = load(options.moving, options.resolution, console);
+  MapReader reader(options.load, console);
+  const LoadedMap fixed = reader.read(options.fixed);
+  const LoadedMap moving = reader.read(options.moving);
+  reader.tell_warnings();
   if (!options.search.trace.empty()) {
     std::vector<std::filesystem::path> inputs = fixed.files;
     inputs.insert(inputs.end(), moving.files.begin(), moving.files.end());
@@ -99,17 +108,22 @@ MatchResult match_files(const MatchCommandOptions& options) {
   }
   PairMatcher matcher(options.common, options.search, [&](double share) { console.progress(share); });
   try {
-    MatchResult result = matcher(fixed.grid, moving.grid);
+    Answer answer{matcher(fixed.grid, moving.grid), {}};
     matcher.write_trace();
-    return result;
+    const bool is_for_people = !options.json && !options.search.random_walk();
+    if (is_for_people && answer.result.verdict == Verdict::refused) {
+      answer.hint = scale_hint({options.fixed, fixed.grid}, {options.moving, moving.grid},
+                               match_options(options.common, options.search));
+    }
+    return answer;
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(options.fixed + " and " + options.moving + ": " + error.what());
   }
 }
 
 int run_match(const MatchCommandOptions& options) {
-  const MatchResult result = match_files(options);
-  print(options.json ? match_json(options.fixed, options.moving, result) : describe(result, options));
+  const auto [result, hint] = match_files(options);
+  print(options.json ? match_json(options.fixed, options.moving, result) : describe(result, options) + hint);
   return result.verdict == Verdict::accepted ? kDone : kRefused;
 }
 
@@ -123,10 +137,10 @@ void add_match(CLI::App& app, Action& action) {
       ->type_name("FILE")
       ->required();
   command->add_option("MOVING", options->moving, "The map to lay on it")->type_name("FILE")->required();
-  command->add_flag("--json", options->json, "Print JSON");
+  command->add_flag("--json", options->json, "Print JSON, on one line");
   add_search_options(*command, options->search);
   add_trace_option(*command, options->search);
-  add_resolution_option(*command, options->resolution);
+  add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
   command->footer(
       "The transform takes points of MOVING to FIXED, in metres and radians of the map frames.\n"

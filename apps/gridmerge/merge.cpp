@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/wording.hpp"
 #include "known_poses.hpp"
+#include "scale_hint.hpp"
 #include "search_options.hpp"
 
 namespace gridmerge::cli {
@@ -29,7 +31,7 @@ struct MergeCommandOptions {
   CommonOptions common;
   std::vector<std::string> maps;
   std::string output;
-  double resolution = 0.0;
+  LoadOptions load;
   double output_resolution = 0.0;
   double max_false_joins = MergeOptions{}.max_false_joins;
   SearchOptions search;
@@ -41,13 +43,34 @@ struct Inputs {
   std::vector<std::filesystem::path> files;  // that all of it was read from
 };
 
+/// A map that is given twice is no second opinion; the merge takes it for one.
+void tell_of_copies(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
+                    Console& console) {
+  for (std::size_t i = 1; i < maps.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const bool is_same = maps[i].width == maps[j].width && maps[i].resolution == maps[j].resolution &&
+                           maps[i].cells == maps[j].cells;
+      std::error_code absent;
+      if (!is_same && !std::filesystem::equivalent(options.maps[i], options.maps[j], absent)) continue;
+      if (count_cells(maps[i]).known() == 0) continue;
+      console.warn(
+          fmt::format("{}: is {} once more, and counts once{}", options.maps[i], options.maps[j],
+                      options.known.fix.empty() ? "" : " (--fix takes one map: give it again for another)"));
+      break;
+    }
+  }
+}
+
 Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
   Inputs inputs;
+  MapReader reader(options.load, console);
   for (const std::string& path : options.maps) {
-    LoadedMap map = load(path, options.resolution, console);
+    LoadedMap map = reader.read(path);
     inputs.maps.push_back(std::move(map.grid));
     inputs.files.insert(inputs.files.end(), map.files.begin(), map.files.end());
   }
+  reader.tell_warnings();
+  tell_of_copies(options, inputs.maps, console);
   return inputs;
 }
 
@@ -127,6 +150,26 @@ std::string describe(const std::vector<std::string>& names, const MergeResult& r
   return text;
 }
 
+/// Of the first maps that were left out: whether they fit the largest merged map, or where there is none
+/// another map, at another scale.
+std::string scale_hints(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
+                        const MergeResult& result) {
+  constexpr std::size_t kMostHints = 2;  // each takes as long as ten matches
+  if (options.search.up_the_tree() || result.left_out.empty()) return {};
+  const bool has_merged = !result.components.empty();
+  const std::size_t first = result.left_out.front();
+  const NamedMap fixed = has_merged ? NamedMap{component_file(0), result.components.front().fused.grid}
+                                    : NamedMap{options.maps[first], maps[first]};
+  std::string text;
+  std::size_t asked = 0;
+  for (const std::size_t map : result.left_out) {
+    if ((!has_merged && map == first) || count_cells(maps[map]).known() == 0 || asked == kMostHints) continue;
+    ++asked;
+    text += scale_hint(fixed, {options.maps[map], maps[map]}, match_options(options.common, options.search));
+  }
+  return text;
+}
+
 /// The trace may lie beside the other outputs, whose directory need not be there yet.
 void try_trace(const MergeCommandOptions& options, const std::vector<std::filesystem::path>& inputs) {
   const std::filesystem::path trace = options.search.trace;
@@ -141,18 +184,19 @@ void try_trace(const MergeCommandOptions& options, const std::vector<std::filesy
 
 int run_merge(const MergeCommandOptions& options) {
   Console console(options.common);
-  const std::vector<std::optional<KnownPose>> known_poses = load_known_poses(options.known, options.maps);
+  const KnownPoses known_poses(options.known, options.maps, console);
   Inputs inputs = load_inputs(options, console);
   if (!options.known.init.empty()) inputs.files.emplace_back(options.known.init);
   prepare_merge_output(options.output, inputs.files);
   PairMatcher matcher(options.common, options.search);
   if (!options.search.trace.empty()) try_trace(options, inputs.files);
-  const MergeResult result = merge_maps(inputs.maps, known_poses, options, matcher, console);
+  const MergeResult result = merge_maps(inputs.maps, known_poses.poses(), options, matcher, console);
   console.clear();
   write_merge_output(options.output, inputs.files, options.maps, inputs.maps, result);
   matcher.write_trace();
   if (options.common.verbose) print(describe_joins(options, result));
-  print(describe(options.maps, result));
+  print(describe(options.maps, result) + known_poses.describe_unused(inputs.maps, result) +
+        scale_hints(options, inputs.maps, result));
   const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
   print("look at it: " + escape_controls(page.string()) + "\n");
   return result.components.size() == 1 && result.left_out.empty() ? kDone : kRefused;
@@ -187,7 +231,7 @@ void add_merge(CLI::App& app, Action& action) {
           ->check(CLI::Range(0.0, 1e6))
           ->capture_default_str();
   add_trace_option(*command, options->search);
-  add_resolution_option(*command, options->resolution);
+  add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
   command->footer(
       "Writes merged.yaml and merged.pgm for map_server, transforms.json, preview.png and report.html. Maps\n"
@@ -195,7 +239,9 @@ void add_merge(CLI::App& app, Action& action) {
       "Every pair is matched, and what all pairs say together decides: a weak pair that agrees with the\n"
       "others is used (rescued), a strong one that contradicts them is not (rejected).\n\n"
       "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged\n"
-      "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged");
+      "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged\n"
+      "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml --fix robot2.yaml -o "
+      "merged");
   command->callback([options, budget, &action] {
     if (budget->count() > 0 && options->search.up_the_tree())
       throw CLI::ValidationError("--max-false-joins", "needs --strategy joint");

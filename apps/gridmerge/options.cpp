@@ -12,8 +12,6 @@
 #include <system_error>
 #include <vector>
 
-#include "gridmerge/io/map_file.hpp"
-
 namespace gridmerge::cli {
 
 namespace {
@@ -93,10 +91,14 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
       ->capture_default_str();
 }
 
-void add_resolution_option(CLI::App& command, double& resolution) {
-  command.add_option("--resolution", resolution, "Metres a cell of maps that are images without a YAML")
+void add_map_file_options(CLI::App& command, LoadOptions& options) {
+  command
+      .add_option("--resolution", options.resolution, "Metres a cell of maps that are images without a YAML")
       ->type_name("METRES")
       ->check(kMetresPerCell);
+  command.add_flag("--literal-thresholds", options.literal_thresholds,
+                   "Read a YAML's thresholds to the letter. Without it the gray that map savers write for\n"
+                   "unknown (205) is unknown, also where free_thresh would make it free");
 }
 
 }  // namespace gridmerge::cli

@@ -6,6 +6,8 @@
 
 #include "gridmerge/grid/se2.hpp"
 
+#include "gridmerge/io/map_file.hpp"
+
 namespace gridmerge::cli {
 
 /// Options that every subcommand has.
@@ -17,8 +19,8 @@ struct CommonOptions {
 
 void add_common_options(CLI::App& command, CommonOptions& options);
 
-/// --resolution: of maps that are bare images.
-void add_resolution_option(CLI::App& command, double& resolution);
+/// --resolution and --literal-thresholds: how files become maps.
+void add_map_file_options(CLI::App& command, LoadOptions& options);
 
 /// A number in [0, 1].
 extern const CLI::Validator kProbability;

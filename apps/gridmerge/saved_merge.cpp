@@ -11,14 +11,14 @@ namespace gridmerge::cli {
 
 namespace {
 
-LoadedMap load_map_of(const std::string& name, const SavedMergeOptions& options, Console& console) {
+LoadedMap load_map_of(const std::string& name, const SavedMergeOptions& options, MapReader& reader) {
   const std::filesystem::path path = std::filesystem::path(options.root) / name;
   std::error_code error;
   if (!std::filesystem::exists(path, error))
     throw FileError(path,
                     "is not there, and the report shows it: name the folder from which the maps were merged "
                     "with --root FOLDER");
-  return load(path.string(), options.resolution, console);
+  return reader.read(path.string());
 }
 
 }  // namespace
@@ -31,17 +31,19 @@ void add_saved_merge_options(CLI::App& command, SavedMergeOptions& options) {
       .add_option("--root", options.root,
                   "Folder from which the maps were merged, if it is not the current one")
       ->type_name("FOLDER");
-  add_resolution_option(command, options.resolution);
+  add_map_file_options(command, options.load);
 }
 
 SavedMerge load_saved_merge(const SavedMergeOptions& options, Console& console) {
   MergeRecord record = read_merge_record(options.directory);
   SavedMerge merge;
+  MapReader reader(options.load, console);
   for (const std::string& name : record.names) {
-    LoadedMap map = load_map_of(name, options, console);
+    LoadedMap map = load_map_of(name, options, reader);
     merge.maps.push_back(std::move(map.grid));
     merge.files.insert(merge.files.end(), map.files.begin(), map.files.end());
   }
+  reader.tell_warnings();
   for (const std::size_t component : fuse_again(record, merge.maps, options.directory)) {
     console.warn((std::filesystem::path(options.directory) / component_file(component)).string() +
                  ": is not what the maps give: it or they have been changed since");

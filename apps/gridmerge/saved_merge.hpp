@@ -14,11 +14,11 @@ namespace gridmerge::cli {
 /// Which merge that was written before, and where its maps are.
 struct SavedMergeOptions {
   std::string directory;
-  std::string root;         // folder that the maps' names start from; "" = the current one
-  double resolution = 0.0;  // of maps that are bare images
+  std::string root;  // folder that the maps' names start from; "" = the current one
+  LoadOptions load;
 };
 
-/// DIR, --root and --resolution.
+/// DIR, --root and the options of map files.
 void add_saved_merge_options(CLI::App& command, SavedMergeOptions& options);
 
 /// A merge as it was when its results were written.

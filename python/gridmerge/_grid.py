@@ -192,15 +192,19 @@ MapLike: TypeAlias = OccupancyGrid | OccupancyGridMessage | str | os.PathLike[st
 """A map, a message like nav_msgs/OccupancyGrid, or the path of a map file."""
 
 
-def load(path: str | os.PathLike[str], resolution: float | None = None) -> OccupancyGrid:
-    """Reads a map_server YAML with its image, or a bare image (PGM or PNG) with its `resolution` [m/cell].
+def load(
+    path: str | os.PathLike[str], resolution: float | None = None, *, literal_thresholds: bool = False
+) -> OccupancyGrid:
+    """Reads a map_server YAML with its image, or a bare image with its `resolution` [m/cell].
 
+    Images are PGM, PPM, PNG, BMP or JPEG. In trinary mode the gray 205, which map savers write for unknown, is unknown
+    whatever the thresholds say, unless `literal_thresholds`.
     What the file says that its author may not have meant is in the map's ``warnings``.
     Raises FileError, an OSError, for a file that cannot be read or is no map.
     """
     name = _arguments.path("path", path)
     cell = 0.0 if resolution is None else _checked_resolution("resolution", resolution)
-    return OccupancyGrid._of(_core.load(name, cell), os.fsdecode(name))
+    return OccupancyGrid._of(_core.load(name, cell, bool(literal_thresholds)), os.fsdecode(name))
 
 
 def save(grid: OccupancyGrid, path: str | os.PathLike[str], *, probabilities: bool = False) -> None:

@@ -66,10 +66,18 @@ class Join:
     used: bool
     """Whether the maps lie so in the result."""
     transform: Transform
-    """T_fixed_moving of the hypothesis that was used, or of the best one if none was."""
+    """T_fixed_moving of the pose that was used, or of the best hypothesis if none was."""
     probability: float
-    """Of that hypothesis, from these two maps alone."""
+    """Of that pose, from these two maps alone."""
+    reason: Reason | None
+    """Why the merge did not use it; None if it did."""
+    acceptance_index: float
+    """Of that pose, as the next three."""
+    agreement: int
+    disagreement: int
+    overlap: float
     match: MatchResult
+    """What the two maps say by themselves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,5 +264,10 @@ def _to_join(join: _core.Join) -> Join:
         used=join.used,
         transform=Transform(*join.transform),
         probability=join.probability,
+        reason=None if join.reason == "none" else cast(Reason, join.reason),
+        acceptance_index=join.acceptance_index,
+        agreement=join.agreement,
+        disagreement=join.disagreement,
+        overlap=join.overlap,
         match=to_match_result(join.match),
     )

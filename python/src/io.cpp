@@ -10,15 +10,18 @@ namespace gridmerge::python {
 
 namespace {
 
-Map load(const nb::bytes& path, double resolution) {
+Map load(const nb::bytes& path, double resolution, bool literal_thresholds) {
   const std::filesystem::path file = to_string(path);
   LoadOptions options;
   options.resolution = resolution;
+  options.literal_thresholds = literal_thresholds;
   const OthersRun meanwhile;
   LoadedMap loaded = load_map(file, options);
   // The program may go to another directory.
   for (std::filesystem::path& one : loaded.files) one = std::filesystem::absolute(one);
-  return {std::make_shared<const OccupancyGrid>(std::move(loaded.grid)), std::move(loaded.warnings),
+  std::vector<std::string> warnings;
+  for (MapWarning& warning : loaded.warnings) warnings.push_back(std::move(warning.text));
+  return {std::make_shared<const OccupancyGrid>(std::move(loaded.grid)), std::move(warnings),
           std::move(loaded.files)};
 }
 
@@ -35,7 +38,7 @@ void save(const Map& map, const nb::bytes& path, bool probabilities) {
 void bind_io(nb::module_& module) {
   module.attr("MIN_RESOLUTION") = kMinResolution;
   module.attr("MAX_RESOLUTION") = kMaxResolution;
-  module.def("load", &load, nb::arg("path"), nb::arg("resolution"));
+  module.def("load", &load, nb::arg("path"), nb::arg("resolution"), nb::arg("literal_thresholds"));
   module.def("save", &save, nb::arg("grid"), nb::arg("path"), nb::arg("probabilities"));
   nb::class_<InitialPose>(module, "InitialPose")
       .def_prop_ro("name", [](const InitialPose& pose) { return to_str(pose.name); })

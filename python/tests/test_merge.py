@@ -13,6 +13,14 @@ import pytest
 from conftest import Cli, pose_of, to_bits
 
 
+def kept_hypotheses(join: gridmerge.Join) -> list[gridmerge.Hypothesis]:
+    """Of a refused join the file has the best one, and two more that may be true."""
+    best, rest = join.match.hypotheses[:1], join.match.hypotheses[1:]
+    if join.outcome != "refused":
+        return [*best, *rest]
+    return [*best, *[one for one in rest if one.probability >= 0.01][:2]]
+
+
 def as_json(result: gridmerge.MergeResult) -> dict[str, Any]:
     """transforms.json, made of the typed result."""
     components = []
@@ -28,7 +36,8 @@ def as_json(result: gridmerge.MergeResult) -> dict[str, Any]:
             }
             for one in component.members
         ]
-        frame = None if component.in_world_frame else component.members[0].name
+        held = [one.name for one in component.members if tuple(one.transform) == (0.0, 0.0, 0.0)]
+        frame = next(iter(held), None) if component.in_world_frame else component.members[0].name
         name = "merged.yaml" if i == 0 else f"merged_{i + 1}.yaml"
         components.append({"map": name, "frame": frame, "members": members})
     joins = [
@@ -39,14 +48,18 @@ def as_json(result: gridmerge.MergeResult) -> dict[str, Any]:
             "verdict": "accepted" if join.used else "refused",
             "probability": join.probability,
             "outcome": join.outcome,
-            "reason": None if join.match.accepted else join.match.reason,
-            "acceptance_index": join.match.acceptance_index,
-            "agreement": join.match.agreement,
-            "disagreement": join.match.disagreement,
-            "overlap": join.match.overlap,
+            "reason": join.reason,
+            "by_themselves": {
+                "verdict": "accepted" if join.match.accepted else "refused",
+                "reason": None if join.match.accepted else join.match.reason,
+            },
+            "acceptance_index": join.acceptance_index,
+            "agreement": join.agreement,
+            "disagreement": join.disagreement,
+            "overlap": join.overlap,
             "hypotheses": [
                 {"transform": pose_of(one.transform), "score": one.score, "probability": one.probability}
-                for one in join.match.hypotheses
+                for one in kept_hypotheses(join)
             ],
         }
         for join in result.joins
@@ -56,7 +69,7 @@ def as_json(result: gridmerge.MergeResult) -> dict[str, Any]:
         "components": components,
         "joins": joins,
         "left_out": [one.name for one in result.left_out],
-        "left_out_reasons": [one.reason for one in result.left_out],
+        "left_out_maps": [{"source": one.name, "reason": one.reason} for one in result.left_out],
         "expected_false_joins": result.expected_false_joins,
     }
 

@@ -37,7 +37,7 @@ std::shared_ptr<const EvaluatedMap> MapCache::get(const std::filesystem::path& p
 EvaluatedMap MapCache::read(const std::filesystem::path& path) {
   LoadedMap loaded = load_map(path);
   if (warn_ && !loaded.warnings.empty() && warned_.insert(path).second) {
-    for (const std::string& warning : loaded.warnings) warn_(path.string() + ": " + warning);
+    for (const MapWarning& warning : loaded.warnings) warn_(path.string() + ": " + warning.text);
   }
   const KnownMoments moments = known_moments(loaded.grid);
   return {std::move(loaded.grid), moments};

@@ -3,16 +3,21 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <limits>
 #include <stdexcept>
 
+#include "bmp.hpp"
 #include "gridmerge/io/png.hpp"
+#include "jpeg.hpp"
 #include "parse_error.hpp"
-#include "pgm.hpp"
+#include "pnm.hpp"
 
 namespace gridmerge {
 
 namespace {
+
+constexpr const char* kImagesRead = "PGM, PPM, PNG, BMP or JPEG";
 
 bool looks_like_png(std::string_view bytes) {
   return bytes.starts_with("\x89PNG\r\n\x1a\n");
@@ -62,14 +67,48 @@ MapImage convert_png(const PngImage& png) {
 }  // namespace
 
 bool looks_like_image(std::string_view bytes) {
-  return looks_like_png(bytes) || looks_like_pgm(bytes);
+  return looks_like_png(bytes) || looks_like_pnm(bytes) || looks_like_bmp(bytes) || looks_like_jpeg(bytes);
+}
+
+void refuse_other_kinds(std::string_view bytes) {
+  if (bytes.starts_with("version https://git-lfs.github.com/spec/"))
+    throw ParseError("a Git LFS pointer, not the file itself: fetch it with 'git lfs pull'");
+  struct Kind {
+    std::string_view beginning;
+    const char* name;
+  };
+  using namespace std::string_view_literals;  // some beginnings hold a NUL
+  constexpr std::array kKinds{
+      Kind{"GIF8"sv, "a GIF image"},
+      Kind{"II*\0"sv, "a TIFF image"},
+      Kind{"MM\0*"sv, "a TIFF image"},
+      Kind{"P1"sv, "a PBM image"},
+      Kind{"P4"sv, "a PBM image"},
+      Kind{"P7"sv, "a PAM image"},
+      Kind{"<svg"sv, "an SVG image"},
+      Kind{"<?xml"sv, "an XML file"},
+      Kind{"<!DOCTYPE"sv, "a web page"},
+      Kind{"<!doctype"sv, "a web page"},
+      Kind{"<html"sv, "a web page"},
+      Kind{"%PDF"sv, "a PDF document"},
+      Kind{"\x1f\x8b"sv, "a gzip archive"},
+      Kind{"PK\x03\x04"sv, "a ZIP archive"},
+      Kind{"RIFF"sv, "a WebP or other RIFF file"},
+  };
+  for (const Kind& kind : kKinds) {
+    if (bytes.starts_with(kind.beginning))
+      throw ParseError(fmt::format("{}, which is not read: an image must be {}", kind.name, kImagesRead));
+  }
 }
 
 MapImage decode_image(std::string_view bytes, std::size_t max_pixels) {
   if (bytes.empty()) throw ParseError("the file is empty");
   if (looks_like_png(bytes)) return convert_png(decode_png(bytes, max_pixels));
-  if (looks_like_pgm(bytes)) return decode_pgm(bytes, max_pixels);
-  throw ParseError("neither a PGM (P2 or P5) nor a PNG image");
+  if (looks_like_pnm(bytes)) return decode_pnm(bytes, max_pixels);
+  if (looks_like_bmp(bytes)) return decode_bmp(bytes, max_pixels);
+  if (looks_like_jpeg(bytes)) return decode_jpeg(bytes, max_pixels);
+  refuse_other_kinds(bytes.substr(0, kTellingBytes));
+  throw ParseError(fmt::format("no image of a kind that is read: it must be {}", kImagesRead));
 }
 
 void check_image_size(std::uint64_t width, std::uint64_t height, std::size_t max_pixels) {

@@ -16,13 +16,21 @@ struct MapImage {
   std::uint16_t white = 255;             ///< 1..65535
   std::vector<std::uint16_t> lightness;  ///< width * height values up to `white`
   std::vector<std::uint8_t>
-      alpha;  ///< as many, 255 only where fully opaque; empty if the picture has no alpha
+      alpha;              ///< as many, 255 only where fully opaque; empty if the picture has no alpha
+  bool is_lossy = false;  ///< pixels may be a little lighter or darker than they were drawn
 };
 
-/// Whether the bytes begin as a PNG or PGM file does. Eight bytes suffice.
+/// So many first bytes of a file tell what it is.
+inline constexpr std::size_t kTellingBytes = 64;
+
+/// Whether the bytes begin as an image of a kind that decode_image() reads.
 bool looks_like_image(std::string_view bytes);
 
-/// Reads a PGM or PNG. Throws ParseError. O(pixels).
+/// Throws ParseError, saying what to do, for the beginning of a file that is known to be something else than
+/// a YAML or an image that can be read: another kind of image, an archive, a Git LFS pointer.
+void refuse_other_kinds(std::string_view bytes);
+
+/// Reads a PGM, PPM, PNG, BMP or JPEG. Throws ParseError. O(pixels).
 MapImage decode_image(std::string_view bytes, std::size_t max_pixels);
 
 /// Throws ParseError unless width and height are positive and width * height <= max_pixels.

@@ -42,8 +42,9 @@ std::vector<InitialPose> parse_initial_poses(const std::filesystem::path& path, 
     if (pose.name.find('\0') != std::string::npos) table.fail(row, "map holds a NUL character");
     if (!names.insert(pose.name).second) table.fail(row, "names '" + pose.name + "' a second time");
     pose.path = path.parent_path() / pose.name;
+    pose.theta_as_written = table.number(row, "theta");
     pose.T_world_map = {place(table, row, "x"), place(table, row, "y"),
-                        normalize_angle(table.number(row, "theta"))};
+                        normalize_angle(pose.theta_as_written)};
     pose.sd = deviation(table, row, "sd", pose.sd);
     pose.sd_theta = deviation(table, row, "sd_theta", pose.sd_theta);
     poses.push_back(std::move(pose));

@@ -8,7 +8,7 @@
 namespace gridmerge {
 
 /// The map that a picture is under the YAML's rules, which load_map documents, and what is odd about it.
-/// O(pixels).
-LoadedMap interpret(const MapYaml& yaml, const MapImage& image);
+/// `literal_thresholds` as in LoadOptions. O(pixels).
+LoadedMap interpret(const MapYaml& yaml, const MapImage& image, bool literal_thresholds = false);
 
 }  // namespace gridmerge

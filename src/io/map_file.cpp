@@ -8,6 +8,7 @@
 #include <limits>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "file_reader.hpp"
@@ -15,13 +16,12 @@
 #include "interpret.hpp"
 #include "map_yaml.hpp"
 #include "parse_error.hpp"
-#include "pgm.hpp"
+#include "pnm.hpp"
 
 namespace gridmerge {
 
 namespace {
 
-constexpr std::size_t kMagicBytes = 8;
 constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20;
 
 // No sensible image takes more: 8 bytes a pixel are RGBA of 16 bits, uncompressed.
@@ -46,7 +46,7 @@ auto blaming(const std::filesystem::path& path, const Parse& parse) {
 
 MapImage read_image(FileReader& file, const LoadOptions& options) {
   // What is no image, a device without end for one, is not worth reading further.
-  const std::string& head = file.read_up_to(kMagicBytes);
+  const std::string& head = file.read_up_to(kTellingBytes);
   return decode_image(looks_like_image(head) ? file.read_all(max_image_bytes(options)) : head,
                       options.max_cells);
 }
@@ -59,7 +59,7 @@ LoadedMap load_bare_image(const std::filesystem::path& path, FileReader& file, c
     MapYaml yaml;
     yaml.resolution = options.resolution;
     check_resolution(yaml.resolution);
-    LoadedMap map = interpret(yaml, read_image(file, options));
+    LoadedMap map = interpret(yaml, read_image(file, options), options.literal_thresholds);
     map.files = {path};
     return map;
   });
@@ -67,14 +67,38 @@ LoadedMap load_bare_image(const std::filesystem::path& path, FileReader& file, c
 
 MapYaml read_yaml(const std::filesystem::path& path, FileReader& file) {
   return blaming(path, [&] {
+    refuse_other_kinds(file.read_up_to(kTellingBytes));
     const std::string& text = file.read_all(kMaxYamlBytes);
     if (text.empty()) throw ParseError("the file is empty");
     return parse_map_yaml(text);
   });
 }
 
+bool is_there(const std::filesystem::path& path) {
+  std::error_code error;  // a folder that may not be looked into holds nothing for us
+  return std::filesystem::exists(path, error) && !error;
+}
+
+// The image's path, or, where nothing is there (it is another machine's), the file of its name beside the
+// YAML. Windows parts names by backslashes.
 std::filesystem::path image_of(const MapYaml& yaml, const std::filesystem::path& yaml_path) {
-  return yaml_path.parent_path() / yaml.image;
+  const std::filesystem::path there = yaml_path.parent_path() / yaml.image;
+  if (is_there(there)) return there;
+  const std::string name = yaml.image.substr(yaml.image.find_last_of("/\\") + 1);
+  const std::filesystem::path beside = yaml_path.parent_path() / name;
+  return !name.empty() && is_there(beside) ? beside : there;
+}
+
+// A picture that was renamed together with its YAML, which still has the old name. It may be any picture, so
+// it is named, not taken.
+std::string hint_of_image(const std::filesystem::path& yaml_path) {
+  for (const char* ending : {".pgm", ".png", ".ppm", ".bmp", ".jpg", ".jpeg"}) {
+    const std::filesystem::path candidate = std::filesystem::path(yaml_path).replace_extension(ending);
+    if (is_there(candidate))
+      return fmt::format("; {} lies beside it: if that is the image, name it in 'image'",
+                         candidate.filename().string());
+  }
+  return {};
 }
 
 LoadedMap load_image_of(const MapYaml& yaml, const std::filesystem::path& yaml_path,
@@ -82,11 +106,18 @@ LoadedMap load_image_of(const MapYaml& yaml, const std::filesystem::path& yaml_p
   const std::filesystem::path path = image_of(yaml, yaml_path);
   try {
     FileReader file(path);
-    LoadedMap map = blaming(path, [&] { return interpret(yaml, read_image(file, options)); });
+    LoadedMap map =
+        blaming(path, [&] { return interpret(yaml, read_image(file, options), options.literal_thresholds); });
     map.files = {yaml_path, path};
+    if (path != yaml_path.parent_path() / yaml.image) {
+      map.warnings.push_back(
+          {MapWarningKind::image_elsewhere,
+           fmt::format("the image is not at '{}': {} beside the YAML is taken", yaml.image, path.string())});
+    }
     return map;
   } catch (const FileError& error) {
-    throw FileError(fmt::format("{} (the image of {})", error.what(), yaml_path.string()));
+    throw FileError(fmt::format("{} (the image of {}{})", error.what(), yaml_path.string(),
+                                is_there(path) ? "" : hint_of_image(yaml_path)));
   }
 }
 
@@ -144,13 +175,13 @@ std::vector<StagedFile> stage_files(const OccupancyGrid& grid, MapMode mode,
 
 LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options) {
   FileReader file(path);
-  if (looks_like_image(file.read_up_to(kMagicBytes))) return load_bare_image(path, file, options);
+  if (looks_like_image(file.read_up_to(kTellingBytes))) return load_bare_image(path, file, options);
   return load_image_of(read_yaml(path, file), path, options);
 }
 
 std::vector<std::filesystem::path> map_files(const std::filesystem::path& path) {
   FileReader file(path);
-  if (looks_like_image(file.read_up_to(kMagicBytes))) return {path};
+  if (looks_like_image(file.read_up_to(kTellingBytes))) return {path};
   return {path, image_of(read_yaml(path, file), path)};
 }
 

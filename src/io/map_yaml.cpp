@@ -83,13 +83,35 @@ std::string read_image(const YAML::Node& map) {
   return image;
 }
 
-SE2 read_origin(const YAML::Node& map) {
+// As C, Python and YAML write it: nan, -nan, NaN, .nan.
+bool is_nan(const std::string& text) {
+  const std::string word = to_lower(text);
+  return word == "nan" || word == "-nan" || word == "+nan" || word == ".nan";
+}
+
+// Of a quaternion of four zeros, which some writers leave as it was made, the yaw is no number.
+double read_yaw(const YAML::Node& node, std::vector<MapWarning>& warnings) {
+  if (!node.IsScalar() || !is_nan(node.Scalar())) return to_number(node, "origin");
+  warnings.push_back(
+      {MapWarningKind::yaw_not_a_number,
+       fmt::format("the origin's yaw is {}, no number: it is read as 0", in_quotes(node.Scalar()))});
+  return 0.0;
+}
+
+SE2 read_origin(const YAML::Node& map, std::vector<MapWarning>& warnings) {
   const YAML::Node node = required(map, "origin");
-  if (!node.IsSequence() || node.size() != 3)
+  if (!node.IsSequence() || (node.size() != 3 && node.size() != 4))
     throw ParseError("'origin' is not a list of three numbers [x, y, yaw]");
   const double x = to_number(node[0], "origin");
   const double y = to_number(node[1], "origin");
-  const double yaw = to_number(node[2], "origin");
+  const double yaw = read_yaw(node[2], warnings);
+  if (node.size() == 4) {
+    warnings.push_back(
+        {MapWarningKind::long_origin,
+         fmt::format("the origin has four numbers: x, y and yaw are the first three, as in ROS 1, "
+                     "and {} is passed over",
+                     in_quotes(scalar(node[3], "origin")))});
+  }
   if (std::max(std::abs(x), std::abs(y)) > kMaxOrigin) {
     throw ParseError(fmt::format("'origin' is further than {} m from zero", kMaxOrigin));
   }
@@ -142,7 +164,7 @@ MapYaml parse_map_yaml(std::string_view text) {
   map.image = read_image(document);
   map.resolution = to_number(required(document, "resolution"), "resolution");
   check_resolution(map.resolution);
-  map.origin = read_origin(document);
+  map.origin = read_origin(document, map.warnings);
   map.occupied_thresh = read_threshold(document, "occupied_thresh");
   map.free_thresh = read_threshold(document, "free_thresh");
   if (map.free_thresh > map.occupied_thresh) {

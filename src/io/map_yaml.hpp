@@ -3,8 +3,10 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gridmerge/grid/se2.hpp"
+#include "gridmerge/io/map_file.hpp"
 
 namespace gridmerge {
 
@@ -20,6 +22,7 @@ struct MapYaml {
   double free_thresh = 0.196;
   bool negate = false;
   MapMode mode = MapMode::trinary;
+  std::vector<MapWarning> warnings;  ///< of what was not read to the letter
 };
 
 /// Reads the text of a map_server YAML. Throws ParseError for what load_map says is refused, naming the key.

@@ -54,6 +54,10 @@ Join make_join(std::size_t fixed, std::size_t moving, MatchResult match) {
   join.outcome = join.match.verdict == Verdict::accepted ? JoinOutcome::accepted : JoinOutcome::refused;
   join.T_fixed_moving = join.match.T_fixed_moving;
   join.probability = join.match.probability;
+  join.acceptance_index = join.match.acceptance_index;
+  join.agreement = join.match.agreement;
+  join.disagreement = join.match.disagreement;
+  join.overlap = join.match.overlap;
   return join;
 }
 
@@ -91,10 +95,7 @@ Reason why_left_out(const std::vector<Join>& joins, std::size_t map) {
     if (join.fixed != map && join.moving != map) continue;
     if (nearest == nullptr || join.match.probability > nearest->match.probability) nearest = &join;
   }
-  if (nearest == nullptr) return Reason::nothing_to_compare;
-  if (nearest->outcome == JoinOutcome::rejected) return Reason::contradicts_others;
-  // Believed by itself, but so is another way to lie.
-  return nearest->match.verdict == Verdict::accepted ? Reason::ambiguous : nearest->match.reason;
+  return nearest == nullptr ? Reason::nothing_to_compare : nearest->reason();
 }
 
 }  // namespace gridmerge

@@ -18,6 +18,7 @@
 #include "gridmerge/match/prepared_map.hpp"
 #include "gridmerge/merge/arrangement.hpp"
 #include "gridmerge/merge/coverage.hpp"
+#include "gridmerge/similarity/agreement.hpp"
 #include "joins.hpp"
 #include "prior.hpp"
 
@@ -37,6 +38,20 @@ struct Input {
   PreparedMap prepared;
   Coverage coverage;
 };
+
+/// The figures of a join whose pose is not the pair's best hypothesis.
+void count_common(const PreparedMap& fixed, const PreparedMap& moving, Join& join) {
+  // As match() does it, so that they do not depend on which map is called fixed.
+  const bool swapped = is_smaller(fixed, moving);
+  const OccupancyGrid &larger = (swapped ? moving : fixed).known(),
+                      &smaller = (swapped ? fixed : moving).known();
+  const AgreementCounts counts =
+      count_agreement(larger, smaller, swapped ? inverse(join.T_fixed_moving) : join.T_fixed_moving);
+  join.acceptance_index = counts.acceptance_index();
+  join.agreement = counts.agreement;
+  join.disagreement = counts.disagreement;
+  join.overlap = measure_overlap(larger, smaller, counts);
+}
 
 }  // namespace
 
@@ -236,6 +251,8 @@ class Merger::State {
       const CandidateJoin* candidate = used.contains(i) ? &pair.candidates[used.at(i)] : nullptr;
       const bool is_in_company = is_placed[pair.fixed] || is_placed[pair.moving];
       Join join = make_join(index[pair.fixed], index[pair.moving], match, {candidate, is_in_company});
+      if (join.T_fixed_moving != match.T_fixed_moving || match.hypotheses.empty())
+        count_common(inputs_.at(maps[pair.fixed])->prepared, inputs_.at(maps[pair.moving])->prepared, join);
       joins.push_back(join.fixed < join.moving ? std::move(join) : inverted(join));
     }
     std::sort(joins.begin(), joins.end(), [](const Join& a, const Join& b) {

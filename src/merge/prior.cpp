@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 namespace gridmerge {
 
@@ -12,12 +13,45 @@ namespace {
 /// What it is worth to lie where it is known to, if that is known as well as a match tells a pose: as much as
 /// the most that two maps say by themselves.
 constexpr double kKnownNats = 6.0;
-constexpr double kDeviations = 3.0;  // a true pose lies within so many of what is known
-constexpr double kFarthest = 1e7;    // [m]
+constexpr double kFarthest = 1e7;  // [m]
 constexpr double kLeastDeviation = 1e-6;
 
-/// The standard deviation with which two known poses tell how their maps lie to each other, as a displacement
-/// of the maps' cells [m].
+/// The odds of each candidate after those at known places have become likelier by so much, and the others
+/// less likely: with "none of these", which it leaves as it was, their probabilities are one whole. So the
+/// most probable candidate at a known place is never doubted more than before.
+void weigh_again(std::vector<CandidateJoin>& candidates, const std::vector<bool>& is_near, double nats) {
+  constexpr double kLeastDoubt = 1e-9;
+  std::vector<double> weights;
+  double none = 1.0, sum = 0.0;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const double probability = 1.0 / (1.0 + std::exp(-candidates[i].log_odds));
+    none -= probability;
+    weights.push_back(probability * std::exp(is_near[i] ? nats : -nats));
+    sum += weights.back();
+  }
+  sum += std::max(none, 0.0);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    // Not as a difference of nearly equal numbers.
+    double others = std::max(none, 0.0);
+    for (std::size_t j = 0; j < candidates.size(); ++j) others += j == i ? 0.0 : weights[j];
+    candidates[i].log_odds =
+        std::log(std::max(weights[i], kLeastDoubt * sum) / std::max(others, kLeastDoubt * sum));
+  }
+}
+
+}  // namespace
+
+void validate(const KnownPose& known) {
+  const SE2& T = known.T_world_map;
+  if (!(std::abs(T.x) <= kFarthest && std::abs(T.y) <= kFarthest && std::isfinite(T.theta)))
+    throw std::invalid_argument("a known pose must be finite, and within 10000 km");
+  if (known.fixed) return;
+  const auto is_deviation = [](double sd) { return std::isfinite(sd) && sd >= kLeastDeviation; };
+  if (!is_deviation(known.sd_position) || !is_deviation(known.sd_theta))
+    throw std::invalid_argument(
+        "the standard deviations of a known pose must be at least 0.000001, unless it is fixed");
+}
+
 double sd_between(const KnownPose& fixed, const KnownPose& moving, const MapExtent& fixed_extent,
                   const MapExtent& moving_extent) {
   const Point2 there = moving.T_world_map * moving_extent.centre;
@@ -34,19 +68,6 @@ double sd_between(const KnownPose& fixed, const KnownPose& moving, const MapExte
   return std::sqrt(squares);
 }
 
-}  // namespace
-
-void validate(const KnownPose& known) {
-  const SE2& T = known.T_world_map;
-  if (!(std::abs(T.x) <= kFarthest && std::abs(T.y) <= kFarthest && std::isfinite(T.theta)))
-    throw std::invalid_argument("a known pose must be finite, and within 10000 km");
-  if (known.fixed) return;
-  const auto is_deviation = [](double sd) { return std::isfinite(sd) && sd >= kLeastDeviation; };
-  if (!is_deviation(known.sd_position) || !is_deviation(known.sd_theta))
-    throw std::invalid_argument(
-        "the standard deviations of a known pose must be at least 0.000001, unless it is fixed");
-}
-
 void apply_known_poses(const KnownPose& fixed, const KnownPose& moving, const MapExtent& fixed_extent,
                        const MapExtent& moving_extent, PairCandidates& pair) {
   const SE2 T_fixed_moving = inverse(fixed.T_world_map) * moving.T_world_map;
@@ -54,12 +75,12 @@ void apply_known_poses(const KnownPose& fixed, const KnownPose& moving, const Ma
   const double tolerance = agreement_tolerance(fixed_extent, moving_extent);
   // In x, y and theta each, what is known singles out so much less than a match does.
   const double nats = std::clamp(kKnownNats - 3.0 * std::log(sd / tolerance), 0.0, kKnownNats);
-  const double near = tolerance + kDeviations * sd;
-  for (CandidateJoin& candidate : pair.candidates) {
-    const bool is_near =
-        difference(fixed_extent, moving_extent, candidate.T_fixed_moving, T_fixed_moving) <= near;
-    candidate.log_odds += is_near ? nats : -nats;
-  }
+  const double near = tolerance + kDeviationsOfKnown * sd;
+  std::vector<bool> is_near;
+  for (const CandidateJoin& candidate : pair.candidates)
+    is_near.push_back(difference(fixed_extent, moving_extent, candidate.T_fixed_moving, T_fixed_moving) <=
+                      near);
+  weigh_again(pair.candidates, is_near, nats);
   if (sd > tolerance) return;
   // What the maps themselves propose there is the same way to lie, not a rival of it.
   CandidateJoin* there = nullptr;

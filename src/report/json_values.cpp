@@ -27,8 +27,28 @@ Json hypotheses_json(const std::vector<Hypothesis>& hypotheses) {
   return list;
 }
 
-Json reason_json(const MatchResult& match) {
-  return match.verdict == Verdict::accepted ? Json() : Json(name_of(match.reason));
+Json hypotheses_json(const Join& join) {
+  constexpr std::size_t kMost = 3;
+  constexpr double kLeastProbability = 0.01;
+  if (join.outcome != JoinOutcome::refused) return hypotheses_json(join.match.hypotheses);
+  std::vector<Hypothesis> kept;
+  for (const Hypothesis& hypothesis : join.match.hypotheses) {
+    if (kept.empty() || (kept.size() < kMost && hypothesis.probability >= kLeastProbability))
+      kept.push_back(hypothesis);
+  }
+  return hypotheses_json(kept);
+}
+
+Json reason_json(Reason reason) {
+  return reason == Reason::none ? Json() : Json(name_of(reason));
+}
+
+std::optional<std::size_t> frame_of(const Component& component) {
+  if (!component.in_world_frame) return component.members.front().map;
+  for (const Member& member : component.members) {
+    if (member.T_component_map == SE2{}) return member.map;  // such as a fixed map of which no pose is known
+  }
+  return std::nullopt;
 }
 
 Json probability_json(const std::optional<double>& probability) {

@@ -19,8 +19,15 @@ Json number_json(double value);
 Json transform_json(const SE2& T);
 Json hypotheses_json(const std::vector<Hypothesis>& hypotheses);
 
-/// Why a pair is not believed by itself; null of one that is.
-Json reason_json(const MatchResult& match);
+/// null of none.
+Json reason_json(Reason reason);
+
+/// What outputs keep of the hypotheses of a join: all where it was used or contradicts the others, and of a
+/// refused one the best and those that may well be true. Teams of many maps have mostly refused joins.
+Json hypotheses_json(const Join& join);
+
+/// The map whose frame the component's is, null if none's is: the world's.
+std::optional<std::size_t> frame_of(const Component& component);
 
 /// null where nothing is known.
 Json probability_json(const std::optional<double>& probability);

@@ -12,6 +12,7 @@
 #include "gridmerge/report/json.hpp"
 #include "io/file_reader.hpp"
 #include "json_reader.hpp"
+#include "json_values.hpp"
 
 namespace gridmerge {
 
@@ -49,7 +50,7 @@ class RecordReader {
     read_names(json.at("maps"));
     read_components(json.at("components"));
     read_joins(json.at("joins"));
-    read_left_out(json.at("left_out"), json.at("left_out_reasons"));
+    read_left_out(json);
     // Not in what earlier versions wrote, nor where the tree was asked for.
     if (json.has("expected_false_joins") && !json.at("expected_false_joins").is_null())
       record_.result.expected_false_joins = json.at("expected_false_joins").number_in(0.0, kInfinity);
@@ -105,8 +106,11 @@ class RecordReader {
     if (component.members.size() < 2) members.fail("holds fewer than two maps");
     if (json.has("omega")) component.fused.omega = read_omega(json);  // not in what earlier versions wrote
     component.in_world_frame = json.at("frame").is_null();
-    if (!component.in_world_frame && map_at(json.at("frame")) != component.members.front().map)
-      json.at("frame").fail("is not the first member");
+    if (component.in_world_frame) return component;
+    // That of the first member, or of one that was fixed where its own frame has it.
+    const std::size_t frame = map_at(json.at("frame"));
+    component.in_world_frame = frame != component.members.front().map;
+    if (frame_of(component) != frame) json.at("frame").fail("is not the frame of its members");
     return component;
   }
 
@@ -142,19 +146,30 @@ class RecordReader {
     join.outcome = one_of(json.at("outcome"),
                           std::array{JoinOutcome::refused, JoinOutcome::accepted, JoinOutcome::rescued,
                                      JoinOutcome::rejected, JoinOutcome::known});
-    if (json.at("verdict").text() != name_of(join.used() ? Verdict::accepted : Verdict::refused))
+    if (json.at("verdict").text() != name_of(join.verdict()))
       json.at("verdict").fail("does not go with the outcome");
     join.T_fixed_moving = json.at("transform").transform(kFarthest);
     join.probability = share(json.at("probability"));
     join.match = read_match(json);
+    const JsonReader reason = json.at("reason");
+    const Reason told = reason.is_null() ? Reason::none : read_reason(reason);
+    if (told != join.reason() && json.has("by_themselves")) reason.fail("does not go with the outcome");
+    join.acceptance_index = join.match.acceptance_index;
+    join.agreement = join.match.agreement;
+    join.disagreement = join.match.disagreement;
+    join.overlap = join.match.overlap;
     return join;
   }
 
   static MatchResult read_match(const JsonReader& json) {
     MatchResult match;
-    const JsonReader reason = json.at("reason");
+    // Earlier versions told the reason of the two alone as that of the join.
+    const JsonReader own = json.has("by_themselves") ? json.at("by_themselves") : json;
+    const JsonReader reason = own.at("reason");
     match.verdict = reason.is_null() ? Verdict::accepted : Verdict::refused;
     match.reason = reason.is_null() ? Reason::none : read_reason(reason);
+    if (json.has("by_themselves") && own.at("verdict").text() != name_of(match.verdict))
+      own.at("verdict").fail("does not go with the reason");
     match.acceptance_index = share(json.at("acceptance_index"));
     match.agreement = json.at("agreement").count();
     match.disagreement = json.at("disagreement").count();
@@ -173,13 +188,22 @@ class RecordReader {
     return match;
   }
 
-  void read_left_out(const JsonReader& maps, const JsonReader& reasons) {
+  void read_left_out(const JsonReader& json) {
+    const JsonReader maps = json.at("left_out");
+    // Earlier versions wrote the reasons alone, in the same order.
+    const bool has_objects = json.has("left_out_maps");
+    const JsonReader reasons = json.at(has_objects ? "left_out_maps" : "left_out_reasons");
     if (maps.size() != reasons.size()) reasons.fail("does not go with left_out");
     std::vector<std::size_t>& left_out = record_.result.left_out;
     for (std::size_t i = 0; i < maps.size(); ++i) {
       left_out.push_back(place(maps.at(i)));
       if (i > 0 && left_out[i - 1] > left_out[i]) maps.at(i).fail("is not in the order of the maps");
-      record_.result.left_out_reasons.push_back(read_reason(reasons.at(i)));
+    }
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      const JsonReader reason = reasons.at(i);
+      if (has_objects && map_at(reason.at("source")) != left_out[i])
+        reason.at("source").fail("does not go with left_out");
+      record_.result.left_out_reasons.push_back(read_reason(has_objects ? reason.at("reason") : reason));
     }
   }
 

@@ -41,8 +41,9 @@ Json component_json(std::size_t index, const Component& component, const ShownMa
                        {"probability", probability_json(member.probability)},
                        {"sd", deviation_json(member.sd)}});
   }
+  const std::optional<std::size_t> frame = frame_of(component);
   Json json{{"file", component_file(index)},
-            {"frame", component.in_world_frame ? Json() : Json(component.members.front().map)},
+            {"frame", frame ? Json(*frame) : Json()},
             {"agreeing", component.fused.agreeing},
             {"conflicting", component.fused.conflicting},
             {"members", std::move(members)}};
@@ -54,14 +55,14 @@ Json join_json(const Join& join) {
   return {{"fixed", join.fixed},
           {"moving", join.moving},
           {"outcome", name_of(join.outcome)},
-          {"reason", reason_json(join.match)},
+          {"reason", reason_json(join.reason())},
           {"transform", transform_json(join.T_fixed_moving)},
           {"probability", number_json(join.probability)},
-          {"acceptance_index", number_json(join.match.acceptance_index)},
-          {"agreement", join.match.agreement},
-          {"disagreement", join.match.disagreement},
-          {"overlap", number_json(join.match.overlap)},
-          {"hypotheses", hypotheses_json(join.match.hypotheses)}};
+          {"acceptance_index", number_json(join.acceptance_index)},
+          {"agreement", join.agreement},
+          {"disagreement", join.disagreement},
+          {"overlap", number_json(join.overlap)},
+          {"hypotheses", hypotheses_json(join)}};
 }
 
 /// All maps, then all fused ones: what takes time is done for several at once.

@@ -34,6 +34,7 @@ TEST_F(Info, TellsPrograms) {
   const std::string small = write_small_map();
   const Outcome outcome = run({"info", "--json", small, left});
   EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(count_lines(outcome.out), 1u) << "as match --json";
   const Json json = Json::parse(outcome.out);
   expect_keys(json, {"maps"});
   ASSERT_EQ(json.at("maps").size(), 2u);

@@ -29,7 +29,7 @@ TEST_F(Merge, WritesTheFilesOfTheContract) {
   EXPECT_EQ(files_in(output), all_files);
 
   const Json json = Json::parse(read_file(output + "/transforms.json"));
-  expect_keys(json, {"maps", "components", "joins", "left_out", "left_out_reasons", "expected_false_joins"});
+  expect_keys(json, {"maps", "components", "joins", "left_out", "left_out_maps", "expected_false_joins"});
   EXPECT_EQ(json.at("left_out"), Json::array());
   ASSERT_EQ(json.at("components").size(), 1u);
   expect_keys(json.at("components").at(0), {"map", "frame", "members", "omega", "cells", "omega_share"});
@@ -48,7 +48,7 @@ TEST_F(Merge, WritesTheFilesOfTheContract) {
   expect_near(members.at(1).at("transform"), T_left_right, 0.1, 0.007);
   ASSERT_EQ(json.at("joins").size(), 1u);
   expect_keys(json.at("joins").at(0),
-              {"fixed", "moving", "transform", "verdict", "probability", "outcome", "reason",
+              {"fixed", "moving", "transform", "verdict", "probability", "outcome", "reason", "by_themselves",
                "acceptance_index", "agreement", "disagreement", "overlap", "hypotheses"});
   EXPECT_EQ(json.at("joins").at(0).at("fixed"), left);
   EXPECT_EQ(json.at("joins").at(0).at("moving"), right);
@@ -75,6 +75,8 @@ TEST_F(Merge, LeavesOutWhatDoesNotFit) {
   EXPECT_EQ(files_in(output), all_files);
   const Json json = Json::parse(read_file(output + "/transforms.json"));
   EXPECT_EQ(json.at("left_out"), Json::array({other}));
+  expect_keys(json.at("left_out_maps").at(0), {"source", "reason"});
+  EXPECT_EQ(json.at("left_out_maps").at(0).at("source"), other);
   EXPECT_EQ(json.at("components").at(0).at("members").size(), 2u);
 }
 
@@ -90,8 +92,22 @@ TEST_F(Merge, OfMapsThatAllDifferSaysSo) {
 TEST_F(Merge, OfOneMapTwiceIsThatMap) {
   const Outcome outcome = run({"merge", left, left, "-o", output});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("left.yaml once more, and counts once"), std::string::npos) << outcome.err;
   const Json json = Json::parse(read_file(output + "/transforms.json"));
   expect_near(json.at("components").at(0).at("members").at(1).at("transform"), {}, 0.05, 0.0035);
+}
+
+TEST_F(Merge, FixTakesOneMapAndNoticesACopy) {
+  // The second name after --fix is one more input.
+  const Outcome outcome = run({"merge", left, right, "--fix", left, right, "-o", output});
+  EXPECT_NE(outcome.err.find(right + ": is " + right + " once more"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("--fix takes one map"), std::string::npos) << outcome.err;
+  const std::string copy = directory.write("copy.yaml", read_file(left));
+  EXPECT_NE(run({"merge", left, right, copy, "-o", output}).err.find(copy + ": is " + left + " once more"),
+            std::string::npos);
+  const std::string help = run({"merge", "--help"}).out;
+  EXPECT_NE(help.find("--fix MAP "), std::string::npos) << help;
+  EXPECT_EQ(help.find("--fix MAP ..."), std::string::npos) << help;
 }
 
 TEST_F(Merge, LeavesOutMapsWithNothingToGoBy) {
@@ -182,8 +198,87 @@ TEST_F(Merge, InitialPosesJoinWhatTheMapsAloneDoNot) {
   const Outcome outcome = run({"merge", left, other, "-o", output, "--init", poses});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const Json json = Json::parse(read_file(output + "/transforms.json"));
-  EXPECT_EQ(json.at("joins").at(0).at("outcome"), "known");
+  const Json& join = json.at("joins").at(0);
+  EXPECT_EQ(join.at("outcome"), "known");
+  EXPECT_EQ(join.at("verdict"), "accepted");
+  EXPECT_TRUE(join.at("reason").is_null());
+  EXPECT_EQ(join.at("by_themselves").at("verdict"), "refused");
+  // Of the pose that was used: 30 m apart the maps have nothing in common.
+  EXPECT_EQ(join.at("agreement"), 0);
+  EXPECT_EQ(join.at("overlap"), 0.0);
   expect_near(json.at("components").at(0).at("members").at(1).at("transform"), {30.0, 0.0, 0.0}, 0.5, 0.05);
+}
+
+TEST_F(Merge, PosesFarApartThatAreNotSureEnoughNameTheRemedy) {
+  const std::string table = "map\tx\ty\ttheta\nleft.yaml\t0\t0\t0\nother.yaml\t60\t0\t0\n";
+  const std::string poses = directory.write("poses.tsv", table);
+  const std::vector<std::string> arguments = {"merge", left, other, "--init", poses, "-o", output};
+  const Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.exit_code, 3);
+  const std::string line =
+      other + ": the given pose is not sure enough to be used alone: with sd 1 m, sd_theta 0.1";
+  EXPECT_NE(outcome.out.find(line), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("--fix " + left + " --fix " + other), std::string::npos) << outcome.out;
+
+  // Both remedies are good ones: the factor that it names, and --fix.
+  const std::size_t at = outcome.out.find("at most ") + 8;
+  const double factor = std::stod(outcome.out.substr(at));
+  ASSERT_GT(factor, 0.01);
+  ASSERT_LT(factor, 0.5);
+  const std::string sd = "\t" + std::to_string(0.95 * factor) + "\t" + std::to_string(0.095 * factor) + "\n";
+  directory.write("poses.tsv",
+                  "map\tx\ty\ttheta\tsd\tsd_theta\nleft.yaml\t0\t0\t0" + sd + "other.yaml\t60\t0\t0" + sd);
+  EXPECT_EQ(run(arguments).exit_code, 0);
+  directory.write("poses.tsv", table);
+  std::vector<std::string> fixed = arguments;
+  fixed.insert(fixed.end(), {"--fix", left, "--fix", other});
+  EXPECT_EQ(run(fixed).exit_code, 0);
+  const Json json = Json::parse(read_file(output + "/transforms.json"));
+  expect_near(json.at("components").at(0).at("members").at(1).at("transform"), {60.0, 0.0, 0.0}, 1e-12,
+              1e-12);
+}
+
+TEST_F(Merge, APoseThatIsNotBelievedIsNamedWithTheDistance) {
+  const auto table = [&](const SE2& T, double theta) {
+    return directory.write("poses.tsv", "map\tx\ty\ttheta\nleft.yaml\t0\t0\t0\nright.yaml\t" +
+                                            std::to_string(T.x) + "\t" + std::to_string(T.y) + "\t" +
+                                            std::to_string(theta) + "\n");
+  };
+  const std::string right_one = table(T_left_right, T_left_right.theta);
+  EXPECT_EQ(run({"merge", left, right, "--init", right_one, "-o", output}).out.find("believed"),
+            std::string::npos);
+
+  const Outcome far =
+      run({"merge", left, right, "--init",
+           table({T_left_right.x + 60.0, T_left_right.y, 0.0}, T_left_right.theta), "-o", output});
+  EXPECT_EQ(far.exit_code, 0) << far.out;
+  EXPECT_NE(far.out.find(right + ": the given pose is not believed: 60 m from where the maps fit"),
+            std::string::npos)
+      << far.out;
+
+  const double degrees = T_left_right.theta * 180.0 / 3.14159265358979;
+  const Outcome turned = run({"merge", left, right, "--init", table(T_left_right, degrees), "-o", output});
+  EXPECT_NE(turned.err.find("more than a turn: it must be in radians"), std::string::npos) << turned.err;
+  EXPECT_NE(turned.out.find("the given pose is not believed"), std::string::npos) << turned.out;
+  EXPECT_NE(turned.out.find("look like degrees"), std::string::npos) << turned.out;
+}
+
+TEST_F(Merge, CorrectPosesNeverMakeAMergeWorse) {
+  const std::string poses = directory.write(
+      "poses.tsv", "map\tx\ty\ttheta\nleft.yaml\t0\t0\t0\nright.yaml\t" + std::to_string(T_left_right.x) +
+                       "\t" + std::to_string(T_left_right.y) + "\t" + std::to_string(T_left_right.theta) +
+                       "\n");
+  for (const std::string accept : {"0.95", "0.99", "0.999", "0.9999", "0.99995"}) {
+    const int without = run({"merge", left, right, "--accept", accept, "-o", output}).exit_code;
+    const int with = run({"merge", left, right, "--accept", accept, "--init", poses, "-o", output}).exit_code;
+    EXPECT_LE(with, without) << "--accept " << accept;
+  }
+}
+
+TEST_F(Merge, OneFixedMapHoldsTheFrameByName) {
+  ASSERT_EQ(run({"merge", left, right, "-o", output, "--fix", right}).exit_code, 0);
+  EXPECT_EQ(Json::parse(read_file(output + "/transforms.json")).at("components").at(0).at("frame"), right);
+  EXPECT_EQ(run({"report", output}).exit_code, 0);
 }
 
 TEST_F(Merge, SaysWhatIsWrongWithInitialPoses) {

@@ -78,7 +78,13 @@ pid_t start(const std::vector<std::string>& arguments, const RunOptions& options
   } else {
     posix_spawn_file_actions_adddup2(&actions, out.write_end, STDOUT_FILENO);
   }
-  posix_spawn_file_actions_adddup2(&actions, err.write_end, STDERR_FILENO);
+  if (options.close_stderr) {
+    posix_spawn_file_actions_addclose(&actions, STDERR_FILENO);
+  } else if (!options.stderr_to.empty()) {
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, options.stderr_to.c_str(), O_WRONLY, 0);
+  } else {
+    posix_spawn_file_actions_adddup2(&actions, err.write_end, STDERR_FILENO);
+  }
 
   std::vector<std::string> words = {GRIDMERGE_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());

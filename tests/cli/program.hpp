@@ -20,6 +20,8 @@ struct RunOptions {
   bool close_stdout = false;        ///< start it with no stdout at all
   bool break_stdout = false;        ///< nobody reads stdout, as when `head` has left
   std::string stdout_to;            ///< a file for stdout instead of a pipe
+  bool close_stderr = false;        ///< start it with no stderr at all
+  std::string stderr_to;            ///< a file for stderr instead of a pipe
 };
 
 /// Runs the built program with these arguments and waits for it.

@@ -39,6 +39,28 @@ TEST_F(Streams, AClosedStdoutDoesNotEndUpInAFile) {
   EXPECT_FALSE(std::filesystem::exists(directory.file("result.json"))) << "written after stdout failed";
 }
 
+TEST_F(Streams, AMessageThatCannotBePrintedEndsNoWork) {
+  std::string yaml = read_file(left);
+  const std::size_t at = yaml.find("free_thresh:");
+  yaml.replace(at, yaml.find('\n', at) - at, "free_thresh: 0.25");
+  const std::string warned =
+      directory.write("warned.yaml", "image: left.pgm\n" + yaml.substr(yaml.find('\n') + 1));
+  RunOptions closed, full;
+  closed.close_stderr = true;
+  full.stderr_to = "/dev/full";
+  for (const RunOptions& options : {closed, full}) {
+    EXPECT_EQ(run({"info", directory.file("nope.yaml")}, options).exit_code, 1);
+    EXPECT_EQ(run({"frobnicate"}, options).exit_code, 2);
+    const std::string output = directory.file("out");
+    EXPECT_EQ(run({"merge", warned, right, "-o", output}, options).exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(output + "/merged.yaml"));
+    std::filesystem::remove_all(output);
+  }
+  RunOptions neither = closed;
+  neither.close_stdout = true;
+  EXPECT_EQ(run({"info", left}, neither).exit_code, 1);
+}
+
 TEST_F(Streams, AMessageIsOneLineWhateverTheFileIsCalled) {
   expect_error(run({"info", directory.file("two\nlines\x1b[31m")}), "two\\nlines\\x1b[31m", "No such file");
 }

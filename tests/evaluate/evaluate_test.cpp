@@ -90,8 +90,8 @@ TEST_F(Evaluate, ItsInputsAreEveryMapAndItsImageOnce) {
 }
 
 TEST_F(Evaluate, WarnsOnceOfAMap) {
-  // 205 is what unknown looks like, but loads as free under this threshold.
-  directory_.write("odd.pgm", std::string("P5\n2 1\n255\n\x00\xcd", 13));
+  // 205 is what unknown looks like, and this threshold calls it free.
+  directory_.write("odd.pgm", std::string("P5\n3 1\n255\n\x00\xcd\xfe", 14));
   directory_.write("odd.yaml",
                    "image: odd.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\n"
                    "occupied_thresh: 0.65\nfree_thresh: 0.25\n");

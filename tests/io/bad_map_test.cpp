@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "gridmerge/io/map_file.hpp"
 #include "io/support.hpp"
@@ -69,7 +70,7 @@ TEST_F(BadMap, EmptyFile) {
 
 TEST_F(BadMap, NeitherYamlNorImage) {
   EXPECT_EQ(yaml_error("hello"), "not a YAML map of keys and values");
-  EXPECT_TRUE(contains(yaml_error("\xff\xd8\xff\xe0{JFIF"), "not"));
+  EXPECT_TRUE(contains(yaml_error("\xff\xd8{JFIF"), "not"));
 }
 
 TEST_F(BadMap, MissingKey) {
@@ -100,23 +101,53 @@ TEST_F(BadMap, ImageIsADirectory) {
 
 TEST_F(BadMap, ImageIsADeviceWithoutEnd) {
   std::filesystem::create_symlink("/dev/zero", directory_.file("a.pgm"));
-  EXPECT_TRUE(
-      contains(error_of(directory_.write("a.yaml", kYaml)), "neither a PGM (P2 or P5) nor a PNG image"));
+  EXPECT_TRUE(contains(error_of(directory_.write("a.yaml", kYaml)),
+                       "no image of a kind that is read: it must be PGM, PPM, PNG, BMP or JPEG"));
 }
 
 TEST_F(BadMap, ImageIsTheYamlItself) {
   const std::string message =
       error_of(directory_.write("a.yaml", "image: a.yaml\n" + kYaml.substr(kYaml.find('\n') + 1)));
-  EXPECT_TRUE(contains(message, "neither a PGM (P2 or P5) nor a PNG image"));
+  EXPECT_TRUE(contains(message, "no image of a kind that is read"));
 }
 
 TEST_F(BadMap, BadImages) {
   EXPECT_TRUE(contains(image_error(""), "the file is empty"));
-  EXPECT_TRUE(contains(image_error("GIF89a"), "neither a PGM (P2 or P5) nor a PNG image"));
+  EXPECT_TRUE(contains(image_error("hello"), "no image of a kind that is read"));
   EXPECT_TRUE(
       contains(image_error("P5\n65536 65536\n255\n"), "65536 x 65536 pixels exceed the limit of 268435456"));
   EXPECT_TRUE(contains(image_error("P5\n3 2\n255\nabcde"), "the image data end early"));
   EXPECT_TRUE(contains(image_error("\x89PNG\r\n\x1a\n"), "the file ends early"));
+}
+
+TEST_F(BadMap, OtherKindsAreNamed) {
+  const std::string nul(1, '\0');
+  const std::pair<std::string, std::string> kinds[] = {
+      {"GIF89a", "a GIF image"},          {"II*" + nul, "a TIFF image"},  {"MM" + nul + "*", "a TIFF image"},
+      {"P4\n8 1\n\xff", "a PBM image"},   {"P7\n", "a PAM image"},        {"RIFF....WEBP", "a WebP"},
+      {"<!DOCTYPE html>", "a web page"},  {"<svg>", "an SVG image"},      {"%PDF-1.4", "a PDF document"},
+      {"\x1f\x8b\x08", "a gzip archive"}, {"PK\x03\x04", "a ZIP archive"}};
+  for (const auto& [bytes, name] : kinds) {
+    for (const std::string& message : {image_error(bytes), error_of(directory_.write("bare", bytes))}) {
+      EXPECT_TRUE(contains(message, name));
+      EXPECT_TRUE(contains(message, "must be PGM, PPM, PNG, BMP or JPEG"));
+    }
+  }
+}
+
+TEST_F(BadMap, GitLfsPointers) {
+  const std::string pointer =
+      "version https://git-lfs.github.com/spec/v1\noid sha256:0123456789abcdef\nsize 12345\n";
+  const std::string expected = "a Git LFS pointer, not the file itself: fetch it with 'git lfs pull'";
+  EXPECT_TRUE(contains(image_error(pointer), expected));
+  EXPECT_EQ(yaml_error(pointer), expected);
+}
+
+TEST_F(BadMap, ImageThatWasRenamedWithItsYaml) {
+  directory_.write("b.pgm", "P2 1 1 255 0");
+  const std::string message = error_of(directory_.write("b.yaml", kYaml));
+  EXPECT_TRUE(contains(message, directory_.file("a.pgm") + ": No such file or directory"));
+  EXPECT_TRUE(contains(message, "b.pgm lies beside it: if that is the image, name it in 'image'"));
 }
 
 TEST_F(BadMap, ImageFileFarLargerThanAllowedCells) {

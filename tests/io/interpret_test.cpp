@@ -25,6 +25,12 @@ MapYaml yaml_of(MapMode mode = MapMode::trinary) {
   return yaml;
 }
 
+Warnings texts_of(const LoadedMap& map) {
+  Warnings texts;
+  for (const MapWarning& warning : map.warnings) texts.push_back(warning.text);
+  return texts;
+}
+
 // One row of pixels.
 MapImage row_of(std::vector<std::uint16_t> lightness, std::vector<std::uint8_t> alpha = {}) {
   const int width = static_cast<int>(lightness.size());
@@ -32,7 +38,8 @@ MapImage row_of(std::vector<std::uint16_t> lightness, std::vector<std::uint8_t> 
           .height = 1,
           .white = 255,
           .lightness = std::move(lightness),
-          .alpha = std::move(alpha)};
+          .alpha = std::move(alpha),
+          .is_lossy = false};
 }
 
 TEST(Interpret, TakesResolutionAndOriginFromTheYaml) {
@@ -45,11 +52,15 @@ TEST(Interpret, TakesResolutionAndOriginFromTheYaml) {
 }
 
 TEST(Interpret, PutsTheLastRowOfThePictureAtTheBottom) {
-  const MapImage image{
-      .width = 2, .height = 3, .white = 255, .lightness = {0, 0, 205, 205, 254, 0}, .alpha = {}};
+  const MapImage image{.width = 2,
+                       .height = 3,
+                       .white = 255,
+                       .lightness = {0, 0, 205, 205, 254, 0},
+                       .alpha = {},
+                       .is_lossy = false};
   EXPECT_EQ(interpret(yaml_of(), image).grid.cells,
             (Cells{kFree, kOccupied, kUnknown, kUnknown, kOccupied, kOccupied}));
-  const OccupancyGrid raw = interpret(yaml_of(MapMode::raw), {2, 2, 255, {1, 2, 3, 4}, {}}).grid;
+  const OccupancyGrid raw = interpret(yaml_of(MapMode::raw), {2, 2, 255, {1, 2, 3, 4}, {}, false}).grid;
   EXPECT_EQ(raw.probability, (std::vector<float>{0.03f, 0.04f, 0.01f, 0.02f}));
 }
 
@@ -58,8 +69,12 @@ TEST(Trinary, ComparesStrictlyWithTheThresholds) {
   yaml.occupied_thresh = 0.75;
   yaml.free_thresh = 0.25;
   // Of 100: occupancies 0.76, 0.75, 0.74 and 0.26, 0.25, 0.24 (0.75 and 0.25 are exact).
-  const MapImage image{
-      .width = 6, .height = 1, .white = 100, .lightness = {24, 25, 26, 74, 75, 76}, .alpha = {}};
+  const MapImage image{.width = 6,
+                       .height = 1,
+                       .white = 100,
+                       .lightness = {24, 25, 26, 74, 75, 76},
+                       .alpha = {},
+                       .is_lossy = false};
   EXPECT_EQ(interpret(yaml, image).grid.cells,
             (Cells{kOccupied, kUnknown, kUnknown, kUnknown, kUnknown, kFree}));
   EXPECT_TRUE(interpret(yaml, image).grid.probability.empty());
@@ -68,7 +83,7 @@ TEST(Trinary, ComparesStrictlyWithTheThresholds) {
 TEST(Trinary, ReadsWhatMapSaverWrites) {
   const LoadedMap map = interpret(yaml_of(), row_of({0, 205, 254, 255}));
   EXPECT_EQ(map.grid.cells, (Cells{kOccupied, kUnknown, kFree, kFree}));
-  EXPECT_EQ(map.warnings, Warnings{});
+  EXPECT_EQ(texts_of(map), Warnings{});
 }
 
 TEST(Trinary, NegateSwapsBlackAndWhite) {
@@ -77,21 +92,72 @@ TEST(Trinary, NegateSwapsBlackAndWhite) {
   EXPECT_EQ(interpret(yaml, row_of({0, 128, 255})).grid.cells, (Cells{kFree, kUnknown, kOccupied}));
 }
 
-TEST(Trinary, WarnsOfUnknownThatLoadsAsFree) {
+TEST(Trinary, TheGrayOfMapSaversIsUnknownWhateverTheThresholds) {
   MapYaml yaml = yaml_of();
   yaml.free_thresh = 0.25;
-  const LoadedMap map = interpret(yaml, row_of({0, 205, 254, 205}));
+  const LoadedMap map = interpret(yaml, row_of({0, 205, 254, 205, 204, 206}));
+  EXPECT_EQ(map.grid.cells, (Cells{kOccupied, kUnknown, kFree, kUnknown, kFree, kFree}));
+  ASSERT_EQ(map.warnings.size(), 1u);
+  EXPECT_EQ(map.warnings[0].kind, MapWarningKind::unknown_gray);
+  EXPECT_TRUE(contains(map.warnings[0].text, "2 pixels of lightness 205"));
+  EXPECT_TRUE(contains(map.warnings[0].text, "free_thresh 0.25 would make them free"));
+  EXPECT_TRUE(contains(map.warnings[0].text, "--literal-thresholds"));
+  EXPECT_EQ(texts_of(interpret(yaml, row_of({0, 204, 254}))), Warnings{});
+
+  yaml.free_thresh = 0.05;
+  yaml.occupied_thresh = 0.1;
+  const LoadedMap other = interpret(yaml, row_of({0, 205, 254}));
+  EXPECT_EQ(other.grid.cells, (Cells{kOccupied, kUnknown, kFree}));
+  ASSERT_EQ(other.warnings.size(), 1u);
+  EXPECT_TRUE(contains(other.warnings[0].text, "occupied_thresh 0.1 would make them occupied"));
+}
+
+TEST(Trinary, OfANegatedMapItIsTheGrayThatWasNegated) {
+  MapYaml yaml = yaml_of();
+  yaml.free_thresh = 0.25;
+  yaml.negate = true;
+  const LoadedMap map = interpret(yaml, row_of({255, 50, 1, 49}));
+  EXPECT_EQ(map.grid.cells, (Cells{kOccupied, kUnknown, kFree, kFree}));
+  ASSERT_EQ(map.warnings.size(), 1u);
+  EXPECT_TRUE(contains(map.warnings[0].text, "1 pixels of lightness 50"));
+}
+
+TEST(Trinary, LiteralThresholdsAreReadToTheLetter) {
+  MapYaml yaml = yaml_of();
+  yaml.free_thresh = 0.25;
+  const LoadedMap map = interpret(yaml, row_of({0, 205, 254, 205}), true);
   EXPECT_EQ(map.grid.cells, (Cells{kOccupied, kFree, kFree, kFree}));  // as nav2 does
   ASSERT_EQ(map.warnings.size(), 1u);
-  EXPECT_TRUE(contains(map.warnings[0], "2 pixels of lightness 205"));
-  EXPECT_TRUE(contains(map.warnings[0], "load as free with free_thresh 0.25"));
-  EXPECT_EQ(interpret(yaml, row_of({0, 204, 254})).warnings, Warnings{});
+  EXPECT_EQ(map.warnings[0].kind, MapWarningKind::gray_is_known);
+  EXPECT_TRUE(contains(map.warnings[0].text, "2 pixels of lightness 205"));
+  EXPECT_TRUE(contains(map.warnings[0].text, "load as free with free_thresh 0.25"));
+}
+
+TEST(Trinary, OfALossyPictureWhatIsNearerToUnknownThanToFreeIsUnknown) {
+  MapImage image = row_of({0, 180, 199, 205, 211, 229, 230, 254});
+  const Cells literal{kOccupied, kUnknown, kUnknown, kUnknown, kFree, kFree, kFree, kFree};
+  EXPECT_EQ(interpret(yaml_of(), image).grid.cells, literal);
+  image.is_lossy = true;
+  const LoadedMap map = interpret(yaml_of(), image);
+  EXPECT_EQ(map.grid.cells,
+            (Cells{kOccupied, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kFree, kFree}));
+  ASSERT_EQ(map.warnings.size(), 1u);
+  EXPECT_TRUE(contains(map.warnings[0].text, "2 pixels of lightness about 205"));
+  EXPECT_EQ(interpret(yaml_of(), image, true).grid.cells, literal);
+}
+
+TEST(Trinary, TheGrayOfMapSaversIsNotCountedAsAlphaToo) {
+  MapYaml yaml = yaml_of();
+  yaml.free_thresh = 0.25;
+  const LoadedMap map = interpret(yaml, row_of({0, 205, 254}, {255, 255, 255}));
+  ASSERT_EQ(map.warnings.size(), 1u);
+  EXPECT_EQ(map.warnings[0].kind, MapWarningKind::unknown_gray);
 }
 
 TEST(Trinary, UnknownGrayThatIsTransparentIsUnknownIndeed) {
   MapYaml yaml = yaml_of();
   yaml.free_thresh = 0.25;
-  EXPECT_EQ(interpret(yaml, row_of({0, 205, 254}, {255, 0, 255})).warnings, Warnings{});
+  EXPECT_EQ(texts_of(interpret(yaml, row_of({0, 205, 254}, {255, 0, 255}))), Warnings{});
 }
 
 TEST(Trinary, WarnsOfUnknownThatLoadsAsOccupied) {
@@ -99,19 +165,25 @@ TEST(Trinary, WarnsOfUnknownThatLoadsAsOccupied) {
   yaml.negate = true;
   const LoadedMap map = interpret(yaml, row_of({0, 205, 254}));
   ASSERT_EQ(map.warnings.size(), 1u);
-  EXPECT_TRUE(contains(map.warnings[0], "load as occupied"));
-  EXPECT_TRUE(contains(map.warnings[0], "negate 1"));
+  EXPECT_TRUE(contains(map.warnings[0].text, "load as occupied"));
+  EXPECT_TRUE(contains(map.warnings[0].text, "negate 1"));
 }
 
 TEST(Trinary, FindsUnknownGrayOnOtherScalesToo) {
   MapYaml yaml = yaml_of();
   yaml.free_thresh = 0.25;
-  const MapImage deep{
-      .width = 3, .height = 1, .white = 65535, .lightness = {0, 205 * 257, 65535}, .alpha = {}};
+  const MapImage deep{.width = 3,
+                      .height = 1,
+                      .white = 65535,
+                      .lightness = {0, 205 * 257, 65535},
+                      .alpha = {},
+                      .is_lossy = false};
   EXPECT_EQ(interpret(yaml, deep).warnings.size(), 1u);
-  const MapImage color{.width = 3, .height = 1, .white = 765, .lightness = {0, 615, 765}, .alpha = {}};
+  const MapImage color{
+      .width = 3, .height = 1, .white = 765, .lightness = {0, 615, 765}, .alpha = {}, .is_lossy = false};
   EXPECT_EQ(interpret(yaml, color).warnings.size(), 1u);
-  const MapImage percent{.width = 3, .height = 1, .white = 100, .lightness = {0, 80, 100}, .alpha = {}};
+  const MapImage percent{
+      .width = 3, .height = 1, .white = 100, .lightness = {0, 80, 100}, .alpha = {}, .is_lossy = false};
   EXPECT_EQ(interpret(yaml, percent).warnings.size(), 0u);
 }
 
@@ -125,17 +197,22 @@ TEST(Trinary, WarnsWhereNav2WouldAverageAlpha) {
   const LoadedMap map = interpret(yaml_of(), row_of({0, 254, 205, 0, 205}, {255, 255, 255, 0, 0}));
   EXPECT_EQ(map.grid.cells, (Cells{kOccupied, kFree, kUnknown, kUnknown, kUnknown}));
   ASSERT_EQ(map.warnings.size(), 1u);
-  EXPECT_TRUE(contains(map.warnings[0], "2 pixels load otherwise in nav2"));
-  const MapImage two_rows{.width = 1, .height = 2, .white = 255, .lightness = {0, 254}, .alpha = {255, 255}};
-  EXPECT_EQ(interpret(yaml_of(), two_rows).warnings, Warnings{});
+  EXPECT_TRUE(contains(map.warnings[0].text, "2 pixels load otherwise in nav2"));
+  const MapImage two_rows{
+      .width = 1, .height = 2, .white = 255, .lightness = {0, 254}, .alpha = {255, 255}, .is_lossy = false};
+  EXPECT_EQ(texts_of(interpret(yaml_of(), two_rows)), Warnings{});
 }
 
 TEST(Scale, StretchesOccupancyBetweenTheThresholds) {
   MapYaml yaml = yaml_of(MapMode::scale);
   yaml.occupied_thresh = 0.75;
   yaml.free_thresh = 0.25;
-  const MapImage image{
-      .width = 6, .height = 1, .white = 100, .lightness = {0, 24, 25, 50, 75, 76}, .alpha = {}};
+  const MapImage image{.width = 6,
+                       .height = 1,
+                       .white = 100,
+                       .lightness = {0, 24, 25, 50, 75, 76},
+                       .alpha = {},
+                       .is_lossy = false};
   const OccupancyGrid grid = interpret(yaml, image).grid;
   EXPECT_EQ(grid.cells, (Cells{kOccupied, kOccupied, kUnknown, kUnknown, kUnknown, kFree}));
   EXPECT_EQ(grid.probability, (std::vector<float>{1.0f, 1.0f, 1.0f, 0.5f, 0.0f, 0.0f}));
@@ -145,24 +222,25 @@ TEST(Scale, WhatIsNotOpaqueIsUnknown) {
   const LoadedMap map = interpret(yaml_of(MapMode::scale), row_of({0, 0, 254}, {255, 254, 255}));
   EXPECT_EQ(map.grid.cells, (Cells{kOccupied, kUnknown, kFree}));
   EXPECT_TRUE(std::isnan(map.grid.probability[1]));
-  EXPECT_EQ(map.warnings, Warnings{});  // nav2 does the same
+  EXPECT_EQ(texts_of(map), Warnings{});  // nav2 does the same
 }
 
 TEST(Scale, EqualThresholdsLeaveAHalf) {
   MapYaml yaml = yaml_of(MapMode::scale);
   yaml.occupied_thresh = yaml.free_thresh = 0.5;
-  const MapImage image{.width = 3, .height = 1, .white = 2, .lightness = {0, 1, 2}, .alpha = {}};
+  const MapImage image{
+      .width = 3, .height = 1, .white = 2, .lightness = {0, 1, 2}, .alpha = {}, .is_lossy = false};
   EXPECT_EQ(interpret(yaml, image).grid.probability, (std::vector<float>{1.0f, 0.5f, 0.0f}));
 }
 
 TEST(Scale, WarnsOfUnknownThatLoadsAsFree) {
   MapYaml yaml = yaml_of(MapMode::scale);
-  EXPECT_EQ(interpret(yaml, row_of({0, 205, 254})).warnings, Warnings{});
+  EXPECT_EQ(texts_of(interpret(yaml, row_of({0, 205, 254}))), Warnings{});
   yaml.free_thresh = 0.25;
   const LoadedMap map = interpret(yaml, row_of({0, 205, 254}));
   ASSERT_EQ(map.warnings.size(), 1u);
-  EXPECT_TRUE(contains(map.warnings[0], "1 pixels of lightness 205"));
-  EXPECT_TRUE(contains(map.warnings[0], "load as free with free_thresh 0.25"));
+  EXPECT_TRUE(contains(map.warnings[0].text, "1 pixels of lightness 205"));
+  EXPECT_TRUE(contains(map.warnings[0].text, "load as free with free_thresh 0.25"));
 }
 
 TEST(Raw, ValuesArePercents) {
@@ -188,19 +266,19 @@ TEST(Raw, TakesNoHeedOfNegateAndAlpha) {
   yaml.negate = true;
   const LoadedMap map = interpret(yaml, row_of({0, 100}, {0, 0}));
   EXPECT_EQ(map.grid.cells, (Cells{kFree, kOccupied}));
-  EXPECT_EQ(map.warnings, Warnings{"negate has no effect in raw mode"});
+  EXPECT_EQ(texts_of(map), Warnings{"negate has no effect in raw mode"});
 }
 
 TEST(Interpret, WarnsOfMissingCells) {
-  EXPECT_EQ(interpret(yaml_of(), row_of({205, 205})).warnings, Warnings{"the map has no known cell"});
-  EXPECT_EQ(interpret(yaml_of(), row_of({205, 254})).warnings, Warnings{"the map has no occupied cell"});
-  EXPECT_EQ(interpret(yaml_of(), row_of({205, 0})).warnings, Warnings{"the map has no free cell"});
+  EXPECT_EQ(texts_of(interpret(yaml_of(), row_of({205, 205}))), Warnings{"the map has no known cell"});
+  EXPECT_EQ(texts_of(interpret(yaml_of(), row_of({205, 254}))), Warnings{"the map has no occupied cell"});
+  EXPECT_EQ(texts_of(interpret(yaml_of(), row_of({205, 0}))), Warnings{"the map has no free cell"});
 }
 
 TEST(Interpret, WarnsWhereWhatWasNotSeenIsPaintedBlack) {
   std::vector<std::uint16_t> pixels(100, 0);
   pixels[50] = 254;
-  const std::vector<std::string> warnings = interpret(yaml_of(), row_of(pixels)).warnings;
+  const Warnings warnings = texts_of(interpret(yaml_of(), row_of(pixels)));
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("99 of 100 known cells are occupied"), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[0].find("painted black"), std::string::npos) << warnings[0];

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "gridmerge/io/map_file.hpp"
+#include "io/image_builder.hpp"
 #include "io/png_builder.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -93,6 +94,57 @@ TEST(LoadMap, TakesAbsoluteImagePathsAndSpaces) {
   EXPECT_EQ(
       load_map(directory.write("a.yaml", yaml_with_image("\"my maps/ground floor #1.pgm\""))).grid.cells,
       kCells);
+}
+
+TEST(LoadMap, OfAnImagePathOfAnotherMachineTakesTheFileBesideTheYaml) {
+  const TemporaryDirectory directory;
+  const std::string beside = directory.write("a.pgm", kPgm);
+  for (const char* path : {"/nowhere/home/robot/maps/a.pgm", "~/maps/a.pgm", "maps/a.pgm", "C:\\maps\\a.pgm",
+                           "/dev/null/a.pgm"}) {
+    const std::string yaml = directory.write("a.yaml", yaml_with_image(path));
+    const LoadedMap map = load_map(yaml);
+    EXPECT_EQ(map.grid.cells, kCells) << path;
+    ASSERT_EQ(map.warnings.size(), 1u) << path;
+    EXPECT_EQ(map.warnings[0].kind, MapWarningKind::image_elsewhere);
+    EXPECT_NE(map.warnings[0].text.find(path), std::string::npos) << map.warnings[0].text;
+    EXPECT_EQ(map.files, (std::vector<std::filesystem::path>{yaml, beside}));
+    EXPECT_EQ(map_files(yaml), map.files);
+  }
+}
+
+TEST(LoadMap, TheImageAtItsPathComesFirst) {
+  const TemporaryDirectory directory;
+  directory.write("a.pgm", "P2 1 1 255 0");
+  directory.write("maps/a.pgm", kPgm);
+  const LoadedMap map = load_map(directory.write("a.yaml", yaml_with_image("maps/a.pgm")));
+  EXPECT_EQ(map.grid.cells, kCells);
+  EXPECT_TRUE(map.warnings.empty());
+}
+
+TEST(LoadMap, ReadsPpmBmpAndJpeg) {
+  const TemporaryDirectory directory;
+  const std::string yaml = directory.write("a.yaml", yaml_with_image("a.img"));
+  directory.write("a.img", "P3 2 2 255  0 0 0  205 205 205  254 254 254  254 254 254");
+  EXPECT_EQ(load_map(yaml).grid.cells, kCells);
+  directory.write("a.img", test::gray_bmp(2, 2, {0, 205, 254, 254}));
+  EXPECT_EQ(load_map(yaml).grid.cells, kCells);
+  std::vector<std::uint8_t> halves(32 * 16, 254);  // a block and more of each: JPEG blurs what is smaller
+  for (std::size_t i = 0; i < halves.size(); ++i) halves[i] = i % 32 < 16 ? 0 : 205;
+  directory.write("a.img", test::gray_jpeg(32, 16, halves));
+  const OccupancyGrid grid = load_map(yaml).grid;
+  EXPECT_EQ(grid.width, 32);
+  EXPECT_EQ(grid.at(3, 3), kOccupied);
+  EXPECT_EQ(grid.at(28, 3), kUnknown);
+}
+
+TEST(LoadMap, ReadsThresholdsToTheLetterOnRequest) {
+  const TemporaryDirectory directory;
+  directory.write("a.pgm", kPgm);
+  std::string text = yaml_with_image("a.pgm");
+  text.replace(text.find("0.196"), 5, "0.25");
+  const std::string yaml = directory.write("a.yaml", text);
+  EXPECT_EQ(load_map(yaml).grid.cells, kCells);
+  EXPECT_EQ(load_map(yaml, {.literal_thresholds = true}).grid.cells, (Cells{kFree, kFree, kOccupied, kFree}));
 }
 
 TEST(LoadMap, TakesABareImageWithAResolution) {

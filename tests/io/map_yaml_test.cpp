@@ -81,6 +81,25 @@ TEST(MapYaml, YawIsTakenIntoRange) {
               1e-12);
 }
 
+TEST(MapYaml, AYawThatIsNoNumberIsZero) {
+  for (const char* nan : {"nan", "-nan", "NaN", ".nan", ".NaN", "'nan'"}) {
+    const MapYaml map = parse_map_yaml(with("origin", std::string("origin: [1, 2, ") + nan + "]"));
+    EXPECT_EQ(map.origin, (SE2{1.0, 2.0, 0.0})) << nan;
+    ASSERT_EQ(map.warnings.size(), 1u) << nan;
+    EXPECT_EQ(map.warnings[0].kind, MapWarningKind::yaw_not_a_number);
+    EXPECT_TRUE(contains(map.warnings[0].text, "it is read as 0"));
+  }
+}
+
+TEST(MapYaml, OfAnOriginOfFourNumbersTheFirstThreeCount) {
+  const MapYaml map = parse_map_yaml(with("origin", "origin: [1, 2, 0.5, 7]"));
+  EXPECT_EQ(map.origin, (SE2{1.0, 2.0, 0.5}));
+  ASSERT_EQ(map.warnings.size(), 1u);
+  EXPECT_EQ(map.warnings[0].kind, MapWarningKind::long_origin);
+  EXPECT_TRUE(contains(map.warnings[0].text, "'7' is passed over"));
+  EXPECT_TRUE(parse_map_yaml(kGood).warnings.empty());
+}
+
 TEST(MapYaml, LimitsThemselvesAreFine) {
   EXPECT_NO_THROW(parse_map_yaml(with("resolution", "resolution: 1e-6")));
   EXPECT_NO_THROW(parse_map_yaml(with("resolution", "resolution: 1000")));
@@ -152,8 +171,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadYaml{"MapForResolution", with("resolution", "resolution: {a: 1}"),
                 "'resolution' is not a single value"},
         BadYaml{"TwoNumberOrigin", with("origin", "origin: [1, 2]"), "'origin' is not a list of three"},
-        BadYaml{"FourNumberOrigin", with("origin", "origin: [1, 2, 3, 4]"),
+        BadYaml{"FiveNumberOrigin", with("origin", "origin: [1, 2, 3, 4, 5]"),
                 "'origin' is not a list of three"},
+        BadYaml{"WordForYaw", with("origin", "origin: [0, 0, none]"),
+                "'origin' is 'none', not a finite number"},
         BadYaml{"NumberForOrigin", with("origin", "origin: 0"), "'origin' is not a list of three"},
         BadYaml{"NanOrigin", with("origin", "origin: [0, .nan, 0]"),
                 "'origin' is '.nan', not a finite number"},

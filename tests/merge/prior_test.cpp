@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace gridmerge {
 namespace {
 
@@ -41,6 +44,24 @@ TEST(Prior, WhatIsKnownVaguelyIsNoCandidate) {
   PairCandidates pair = candidates({});
   apply_known_poses(kOrigin, {kThere, 30.0, 1.0}, kExtent, kExtent, pair);
   EXPECT_TRUE(pair.candidates.empty());
+}
+
+TEST(Prior, ACorrectPoseNeverMakesTheMapsOwnCandidateLessSure) {
+  // A rival lies so near that a vague pose speaks for it as well: what is left of the whole must not shrink.
+  const auto sure = [](const PairCandidates& pair) {
+    double sum = 0.0;
+    for (const CandidateJoin& candidate : pair.candidates) sum += 1.0 / (1.0 + std::exp(-candidate.log_odds));
+    return 1.0 / (1.0 + std::exp(-pair.candidates[0].log_odds)) / std::max(1.0, sum);
+  };
+  for (const double sd : {0.05, 0.3, 1.0, 3.0}) {
+    for (const double own : {-2.0, 1.0, 4.0, 11.5}) {
+      PairCandidates pair = candidates({kThere, kThere * SE2{1.5, 0.0, 0.0}, {-20.0, 3.0, 1.0}});
+      pair.candidates[0].log_odds = own;
+      const double before = sure(pair);
+      apply_known_poses({{}, sd, 0.1 * sd}, {kThere, sd, 0.1 * sd}, kExtent, kExtent, pair);
+      EXPECT_GE(sure(pair), before - 1e-6) << "sd " << sd << ", log odds " << own;
+    }
+  }
 }
 
 }  // namespace

@@ -133,12 +133,14 @@ TEST(TransformsJson, IsTheDocumentedText) {
   refused.T_fixed_moving = {0.5, 0.25, 3.0};
   refused.probability = 0.125;
   refused.match.reason = Reason::ambiguous;
-  refused.match.acceptance_index = 0.75;
-  refused.match.agreement = 12;
-  refused.match.disagreement = 4;
-  refused.match.overlap = 0.25;
+  refused.acceptance_index = 0.75;
+  refused.agreement = 12;
+  refused.disagreement = 4;
+  refused.overlap = 0.25;
   refused.match.hypotheses = {{{0.5, 0.25, 3.0}, 10.5, 0.125}};
   result.joins.front().outcome = JoinOutcome::rescued;
+  result.joins.front().match.verdict = Verdict::refused;
+  result.joins.front().match.reason = Reason::too_little_overlap;
   result.joins.insert(result.joins.begin(), refused);
   result.components[0].members[1].probability = 0.875;
   result.components[0].members[1].sd = PoseDeviation{0.125, 0.0625};
@@ -186,34 +188,7 @@ TEST(TransformsJson, IsTheDocumentedText) {
     }
   ],
   "joins": [
-    {
-      "fixed": "a.yaml",
-      "moving": "b.yaml",
-      "transform": {
-        "x": 0.5,
-        "y": 0.25,
-        "theta": 3.0
-      },
-      "verdict": "refused",
-      "probability": 0.125,
-      "outcome": "refused",
-      "reason": "ambiguous",
-      "acceptance_index": 0.75,
-      "agreement": 12,
-      "disagreement": 4,
-      "overlap": 0.25,
-      "hypotheses": [
-        {
-          "transform": {
-            "x": 0.5,
-            "y": 0.25,
-            "theta": 3.0
-          },
-          "score": 10.5,
-          "probability": 0.125
-        }
-      ]
-    },
+    {"fixed":"a.yaml","moving":"b.yaml","transform":{"x":0.5,"y":0.25,"theta":3.0},"verdict":"refused","probability":0.125,"outcome":"refused","reason":"ambiguous","by_themselves":{"verdict":"refused","reason":"ambiguous"},"acceptance_index":0.75,"agreement":12,"disagreement":4,"overlap":0.25,"hypotheses":[{"transform":{"x":0.5,"y":0.25,"theta":3.0},"score":10.5,"probability":0.125}]},
     {
       "fixed": "a.yaml",
       "moving": "c.yaml",
@@ -226,6 +201,10 @@ TEST(TransformsJson, IsTheDocumentedText) {
       "probability": 0.75,
       "outcome": "rescued",
       "reason": null,
+      "by_themselves": {
+        "verdict": "refused",
+        "reason": "too_little_overlap"
+      },
       "acceptance_index": 0.0,
       "agreement": 0,
       "disagreement": 0,
@@ -237,9 +216,15 @@ TEST(TransformsJson, IsTheDocumentedText) {
     "b.yaml",
     "d.yaml"
   ],
-  "left_out_reasons": [
-    "ambiguous",
-    "nothing_to_compare"
+  "left_out_maps": [
+    {
+      "source": "b.yaml",
+      "reason": "ambiguous"
+    },
+    {
+      "source": "d.yaml",
+      "reason": "nothing_to_compare"
+    }
   ],
   "expected_false_joins": null
 }
@@ -258,7 +243,7 @@ TEST(TransformsJson, NamesTheMapOfEveryComponent) {
 TEST(TransformsJson, OfNothing) {
   EXPECT_EQ(transforms_json({}, {}),
             "{\n  \"maps\": [],\n  \"components\": [],\n  \"joins\": [],\n  \"left_out\": [],\n  "
-            "\"left_out_reasons\": [],\n  \"expected_false_joins\": null\n}\n");
+            "\"left_out_maps\": [],\n  \"expected_false_joins\": null\n}\n");
 }
 
 TEST(TransformsJson, EveryMapNeedsAName) {

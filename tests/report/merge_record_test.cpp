@@ -37,15 +37,16 @@ MergeResult any_result() {
   refused.T_fixed_moving = {1e-7, 0.1, 3.0};
   refused.probability = 0.0625;
   refused.match.reason = Reason::too_little_overlap;
-  refused.match.acceptance_index = 0.8125;
-  refused.match.agreement = 13;
-  refused.match.disagreement = 3;
-  refused.match.overlap = 0.1;
+  refused.acceptance_index = 0.8125;
+  refused.agreement = 13;
+  refused.disagreement = 3;
+  refused.overlap = 0.1;
   refused.match.hypotheses = {{{1e-7, 0.1, 3.0}, 10.0, 0.0625}, {{7.0, 8.0, -1.0}, -9.5, 0.0}};
   result.joins.push_back(refused);
   for (const JoinOutcome outcome : {JoinOutcome::known, JoinOutcome::rescued, JoinOutcome::rejected}) {
     refused.moving += 1;
     refused.outcome = outcome;
+    if (outcome == JoinOutcome::rejected) refused.match.verdict = Verdict::accepted;
     result.joins.push_back(refused);
   }
   result.left_out_reasons.back() = Reason::contradicts_others;
@@ -70,6 +71,48 @@ TEST(MergeRecord, HoldsWhatWasWritten) {
             written.components[0].members[1].T_component_map);
   EXPECT_EQ(read.result.joins[2].match.hypotheses[0].T_fixed_moving, (SE2{1e-7, 0.1, 3.0}));
   EXPECT_TRUE(read.result.components[0].fused.grid.cells.empty());
+}
+
+TEST(MergeRecord, KeepsOfARefusedJoinOnlyWhatMayBeTrue) {
+  MergeResult result = any_result();
+  Join& refused = result.joins[2];
+  ASSERT_EQ(refused.outcome, JoinOutcome::refused);
+  refused.match.hypotheses.clear();
+  for (int i = 0; i < 8; ++i) refused.match.hypotheses.push_back({{1.0 * i, 0.0, 0.0}, 1.0, 0.25});
+  refused.match.hypotheses[1].probability = 0.0099;
+  const MergeRecord read = parse(transforms_json(kNames, result));
+  const auto& kept = read.result.joins[2].match.hypotheses;
+  ASSERT_EQ(kept.size(), 3u);
+  EXPECT_EQ(kept[0].T_fixed_moving.x, 0.0);
+  EXPECT_EQ(kept[1].T_fixed_moving.x, 2.0);
+  EXPECT_EQ(read.result.joins[3].match.hypotheses.size(), 2u) << "of a join that was used all are kept";
+}
+
+TEST(MergeRecord, ReadsWhatEarlierVersionsWrote) {
+  Json json = any_json();
+  json["left_out_reasons"] = Json::array();
+  for (const Json& one : json["left_out_maps"]) json["left_out_reasons"].push_back(one["reason"]);
+  json.erase("left_out_maps");
+  for (Json& join : json["joins"]) {
+    join["reason"] = join["by_themselves"]["reason"];
+    join.erase("by_themselves");
+  }
+  const MergeRecord read = parse(json.dump());
+  EXPECT_EQ(read.result.left_out_reasons, any_result().left_out_reasons);
+  EXPECT_EQ(read.result.joins[4].match.reason, Reason::too_little_overlap);
+}
+
+TEST(MergeRecord, TheFrameIsThatOfAMapWhereOneHoldsIt) {
+  MergeResult result = any_result();
+  EXPECT_TRUE(any_json()["components"][1]["frame"].is_null());
+  result.components[1].members[1].T_component_map = {};
+  const Json json = Json::parse(transforms_json(kNames, result));
+  EXPECT_EQ(json["components"][1]["frame"], "f.yaml");
+  EXPECT_TRUE(parse(json.dump()).result.components[1].in_world_frame);
+  Json wrong = json;
+  wrong["components"][1]["members"][1]["transform"]["x"] = 1.0;
+  EXPECT_TRUE(
+      contains(message_of<FileError>([&] { parse(wrong.dump()); }), "is not the frame of its members"));
 }
 
 TEST(MergeRecord, OfNothing) {
@@ -126,13 +169,13 @@ TEST(MergeRecord, SaysWhatIsWrongAndWhere) {
   EXPECT_TRUE(contains(complaint("/joins/0/transform/theta", 3.2), "outside"));
   EXPECT_TRUE(contains(complaint("/left_out/0", "a.yaml"), "in two places: 'a.yaml'"));
   EXPECT_TRUE(contains(complaint("/left_out", {"e.yaml", "b \"<&>\n.yaml"}), "order of the maps"));
-  EXPECT_TRUE(contains(complaint("/left_out_reasons", {"ambiguous"}), "does not go with left_out"));
+  EXPECT_TRUE(contains(complaint("/left_out_maps", Json::array()), "does not go with left_out"));
   EXPECT_TRUE(contains(complaint("/maps/1", "a.yaml"), "once more"));
   EXPECT_TRUE(contains(complaint("/maps/1", ""), "no name"));
   EXPECT_TRUE(contains(complaint("/maps/1", std::string("a\0b", 3)), "no name"));
   EXPECT_TRUE(contains(complaint("/maps/6", "g.yaml"), "'g.yaml' is in no component"));
   EXPECT_TRUE(contains(complaint("/components/0/map", "../merged.yaml"), "is not 'merged.yaml'"));
-  EXPECT_TRUE(contains(complaint("/components/0/frame", "c.yaml"), "not the first member"));
+  EXPECT_TRUE(contains(complaint("/components/0/frame", "c.yaml"), "not the frame of its members"));
   EXPECT_TRUE(contains(complaint("/components/0/members", Json::array()), "fewer than two"));
 }
 

@@ -32,10 +32,10 @@ MergeResult two_of_four() {
   refused.probability = 0.0625;
   refused.T_fixed_moving = {0.5, 0.25, 3.0};
   refused.match.reason = Reason::ambiguous;
-  refused.match.acceptance_index = 0.8125;
-  refused.match.agreement = 13;
-  refused.match.disagreement = 3;
-  refused.match.overlap = 0.375;
+  refused.acceptance_index = 0.8125;
+  refused.agreement = 13;
+  refused.disagreement = 3;
+  refused.overlap = 0.375;
   refused.match.hypotheses = {{{0.5, 0.25, 3.0}, 10.0, 0.0625}, {{7.0, 8.0, -1.0}, 9.5, 0.03125}};
   result.joins.push_back(refused);
   result.left_out_reasons.front() = Reason::ambiguous;
@@ -111,6 +111,8 @@ TEST(ReportPage, HoldsTheComponents) {
 TEST(ReportPage, AComponentInTheWorldsFrameHasNoMapsFrame) {
   MergeResult result = two_of_four();
   result.components[0].in_world_frame = true;
+  for (Member& member : result.components[0].members)
+    member.T_component_map = SE2{100.0, 0.0, 0.0} * member.T_component_map;
   EXPECT_TRUE(data_of(report_page(kNames, kMaps, result)).at("components").at(0).at("frame").is_null());
 }
 

@@ -13,11 +13,12 @@ namespace gridmerge {
 
 /// What a file of initial poses says of one map.
 struct InitialPose {
-  std::string name;            ///< of the map, as the file writes it
-  std::filesystem::path path;  ///< the same, relative to the file's folder
-  SE2 T_world_map;             ///< takes the map's frame, its YAML's origin applied, to the world's
-  double sd = 1.0;             ///< standard deviation of the map's position [m]
-  double sd_theta = 0.1;       ///< standard deviation of theta [rad]
+  std::string name;               ///< of the map, as the file writes it
+  std::filesystem::path path;     ///< the same, relative to the file's folder
+  double theta_as_written = 0.0;  ///< [rad], not normalized: what is more than a turn may be degrees
+  SE2 T_world_map;                ///< takes the map's frame, its YAML's origin applied, to the world's
+  double sd = 1.0;                ///< standard deviation of the map's position [m]
+  double sd_theta = 0.1;          ///< standard deviation of theta [rad]
 };
 
 /// Reads a tab-separated table whose first line names the columns: `map x y theta`, and optionally `sd` and

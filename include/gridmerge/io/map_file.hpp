@@ -19,17 +19,39 @@ inline constexpr double kMaxResolution = 1e3;
 struct LoadOptions {
   double resolution = 0.0;           ///< [m/cell] of a bare image; 0 = a bare image is an error
   std::size_t max_cells = 1u << 28;  ///< larger maps are refused before memory is taken for them
+  /// Read thresholds to the letter: in trinary mode the gray that map savers write for unknown is then
+  /// whatever the thresholds make of it.
+  bool literal_thresholds = false;
+};
+
+/// What a warning about a map's file is about. Warnings of one kind differ in their figures only.
+enum class MapWarningKind {
+  unknown_gray,     ///< the gray that map savers write for unknown is unknown, whatever the thresholds say
+  gray_is_known,    ///< that gray is loaded as free or occupied
+  alpha,            ///< nav2 would read the picture's transparent pixels otherwise
+  image_elsewhere,  ///< the image is not where the YAML says, but beside it
+  yaw_not_a_number,
+  long_origin,  ///< the origin has a fourth number
+  negate_in_raw_mode,
+  no_known_cell,
+  no_occupied_cell,
+  no_free_cell,
+  painted_black,  ///< most of the map is occupied, far from any free cell
+};
+
+struct MapWarning {
+  MapWarningKind kind;
+  std::string text;  ///< a sentence, without the file's name
 };
 
 struct LoadedMap {
   OccupancyGrid grid;
-  std::vector<std::string>
-      warnings;  ///< what the file says that its author may not have meant, a sentence each
+  std::vector<MapWarning> warnings;          ///< what the file says that its author may not have meant
   std::vector<std::filesystem::path> files;  ///< what it was read from, as map_files() tells
 };
 
-/// Reads a map_server YAML with its image (PGM or PNG, told apart by content), or a bare image with
-/// `options.resolution`, origin 0 and nav2's usual thresholds (0.65 and 0.196).
+/// Reads a map_server YAML with its image (PGM, PPM, PNG, BMP or JPEG, told apart by content), or a bare
+/// image with `options.resolution`, origin 0 and nav2's usual thresholds (0.65 and 0.196).
 ///
 /// A pixel's occupancy p is 1 - lightness (lightness with `negate`), lightness the mean of its colour
 /// channels.
@@ -43,6 +65,13 @@ struct LoadedMap {
 /// This is nav2's map_io but for alpha: a pixel that is not opaque is unknown in `trinary` and `scale`, and
 /// alpha never counts as colour. (nav2 averages it into the lightness in `trinary`; a warning says where that
 /// makes a difference.)
+///
+/// What files hold that were not made for the letter of these rules is read as it was meant, with a warning:
+/// - in `trinary`, lightness 205 of 255 (50 with `negate`) is unknown whatever the thresholds: map savers
+///   write it for unknown, many beside a free_thresh of 0.25. Of a JPEG, whose pixels are a little off, so is
+///   all that is nearer to 205 than to the 254 of free cells. `options.literal_thresholds` turns this off;
+/// - an image that is not at its path (that of another machine) is looked for by its name beside the YAML;
+/// - a yaw that is not a number is 0; a fourth number of the origin is passed over, as ROS 1 does.
 ///
 /// Refused: resolutions outside [kMinResolution, kMaxResolution], origins that are not finite or beyond 1e9
 /// m, thresholds outside [0, 1] or crossed, YAML above 1 MiB, images with less data than their header

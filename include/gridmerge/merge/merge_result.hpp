@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -27,13 +28,27 @@ const char* name_of(JoinOutcome outcome);
 struct Join {
   std::size_t fixed = 0;   ///< index of the input map
   std::size_t moving = 0;  ///< index of the input map
-  MatchResult match;       ///< T_fixed_moving between the frames of these two input maps
+  MatchResult match;       ///< what the two say by themselves, between the frames of these two input maps
   JoinOutcome outcome = JoinOutcome::refused;
-  SE2 T_fixed_moving;        ///< the hypothesis that was used, or the best one of a join that was not
-  double probability = 0.0;  ///< of that hypothesis, from these two maps alone
+  SE2 T_fixed_moving;        ///< the pose that was used, or the best hypothesis of a join that was not
+  double probability = 0.0;  ///< of that pose, from these two maps alone
+  // Of that pose, as MatchResult has them of the best hypothesis.
+  double acceptance_index = 0.0;
+  std::int64_t agreement = 0;
+  std::int64_t disagreement = 0;
+  double overlap = 0.0;
 
   /// Whether the maps lie so in the result.
   bool used() const { return outcome != JoinOutcome::refused && outcome != JoinOutcome::rejected; }
+  /// What became of it in the merge, whatever the two say by themselves.
+  Verdict verdict() const { return used() ? Verdict::accepted : Verdict::refused; }
+  /// Why it was not used; none if it was.
+  Reason reason() const {
+    if (used()) return Reason::none;
+    if (outcome == JoinOutcome::rejected) return Reason::contradicts_others;
+    // Believed by itself, but so is another way to lie.
+    return match.verdict == Verdict::accepted ? Reason::ambiguous : match.reason;
+  }
 };
 
 /// How well a pose is known.

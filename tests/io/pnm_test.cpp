@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/pgm.hpp"
+#include "io/pnm.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -22,10 +22,10 @@ using Values = std::vector<std::uint16_t>;
 constexpr std::size_t kLimit = 1000;
 
 MapImage decode(const std::string& text) {
-  return decode_pgm(text, kLimit);
+  return decode_pnm(text, kLimit);
 }
 std::string error_of(const std::string& text) {
-  return test::message_of<ParseError>([&] { decode_pgm(text, kLimit); });
+  return test::message_of<ParseError>([&] { decode_pnm(text, kLimit); });
 }
 
 TEST(Pgm, ReadsPlain) {
@@ -86,11 +86,30 @@ TEST(Pgm, IgnoresWhatFollowsTheLastPixel) {
   EXPECT_EQ(decode("P2 1 1 255\n7\nP2 1 1 255 8").lightness, Values{7});
 }
 
+TEST(Ppm, LightnessIsTheSumOfTheColors) {
+  const MapImage raw = decode("P6 2 1 255\n" + bytes({1, 2, 4, 255, 255, 255}));
+  EXPECT_EQ(raw.white, 765);
+  EXPECT_EQ(raw.lightness, (Values{7, 765}));
+  const MapImage plain = decode("P3 2 1 9  1 2 3  9 9 9");
+  EXPECT_EQ(plain.white, 27);
+  EXPECT_EQ(plain.lightness, (Values{6, 27}));
+}
+
+TEST(Ppm, OfDeepColorsItIsTheirMean) {
+  const MapImage raw = decode("P6 2 1 65535\n" + bytes({0, 1, 0, 2, 0, 5, 255, 255, 255, 255, 255, 255}));
+  EXPECT_EQ(raw.white, 65535);
+  EXPECT_EQ(raw.lightness, (Values{3, 65535}));              // 8 / 3, rounded
+  EXPECT_EQ(decode("P3 1 1 21845 21845 0 0").white, 65535);  // three of them fit
+  EXPECT_EQ(decode("P3 1 1 21846 21846 0 0").white, 21846);
+}
+
 TEST(Pgm, IsToldByItsFirstBytes) {
-  EXPECT_TRUE(looks_like_pgm("P2\n"));
-  EXPECT_TRUE(looks_like_pgm("P5#"));
-  for (const char* other : {"", "P", "P5", "P6\n", "P1\n", "P55 ", "P5: key", "image: a.pgm"}) {
-    EXPECT_FALSE(looks_like_pgm(other)) << other;
+  EXPECT_TRUE(looks_like_pnm("P2\n"));
+  EXPECT_TRUE(looks_like_pnm("P5#"));
+  EXPECT_TRUE(looks_like_pnm("P3\n"));
+  EXPECT_TRUE(looks_like_pnm("P6 "));
+  for (const char* other : {"", "P", "P5", "P4\n", "P1\n", "P55 ", "P5: key", "image: a.pgm"}) {
+    EXPECT_FALSE(looks_like_pnm(other)) << other;
   }
 }
 
@@ -111,7 +130,7 @@ TEST_P(PgmRefuses, AndSaysWhy) {
 INSTANTIATE_TEST_SUITE_P(
     BadFiles, PgmRefuses,
     testing::Values(
-        BadPgm{"OtherFormats", "P6 1 1 255\nabc", "not a PGM"},
+        BadPgm{"OtherFormats", "P4 1 1 255\nabc", "not a PGM"},
         BadPgm{"HugeSizes", "P5\n65536 65536\n255\n", "65536 x 65536 pixels exceed the limit of 1000"},
         BadPgm{"SizesThatOverflow", "P5 4294967295 4294967295 255\n", "exceed the limit"},
         BadPgm{"SizesBeyond32Bits", "P5 4294967296 1 255\n", "width is too large"},
@@ -133,17 +152,20 @@ INSTANTIATE_TEST_SUITE_P(
         BadPgm{"PlainWithWords", "P2 2 1 255\n1 x", "image data is not a whole number"},
         BadPgm{"PlainWithNegatives", "P2 2 1 255\n1 -2", "image data is not a whole number"},
         BadPgm{"PlainAboveMaximum", "P2 2 1 100\n1 101", "value 101 exceeds the header's maximum 100"},
+        BadPgm{"ColorsCutShort", "P6 1 2 255\nabcde", "end early: 5 bytes of 6"},
+        BadPgm{"PlainColorsFarTooShort", "P3 30 30 255\n1 2 3 4 5", "end early"},
+        BadPgm{"ColorAboveMaximum", "P6 1 1 100\n" + bytes({1, 2, 101}), "value 101 exceeds"},
         BadPgm{"RawAboveMaximum", "P5 2 1 100\n" + bytes({1, 101}), "value 101 exceeds"}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(Pgm, TakesAsManyPixelsAsTheLimitAllows) {
-  EXPECT_NO_THROW(decode_pgm("P2 2 2 9 1 2 3 4", 4));
-  EXPECT_THROW(decode_pgm("P2 2 2 9 1 2 3 4", 3), ParseError);
+  EXPECT_NO_THROW(decode_pnm("P2 2 2 9 1 2 3 4", 4));
+  EXPECT_THROW(decode_pnm("P2 2 2 9 1 2 3 4", 3), ParseError);
 }
 
 TEST(Pgm, TakesNoSideThatAnIntCannotHold) {
   const auto decode_unlimited = [] {
-    decode_pgm("P5 2147483648 1 255\n", std::numeric_limits<std::size_t>::max());
+    decode_pnm("P5 2147483648 1 255\n", std::numeric_limits<std::size_t>::max());
   };
   EXPECT_TRUE(contains(test::message_of<ParseError>(decode_unlimited), "exceed the limit"));
 }
@@ -152,7 +174,7 @@ RC_GTEST_PROP(Pgm, ReadsWhatItWrites, ()) {
   const int width = *rc::gen::inRange(1, 20), height = *rc::gen::inRange(1, 20);
   const auto values = *rc::gen::container<std::vector<std::uint8_t>>(static_cast<std::size_t>(width * height),
                                                                      rc::gen::arbitrary<std::uint8_t>());
-  const MapImage image = decode_pgm(encode_pgm(width, height, values), values.size());
+  const MapImage image = decode_pnm(encode_pgm(width, height, values), values.size());
   RC_ASSERT(image.width == width);
   RC_ASSERT(image.height == height);
   RC_ASSERT(image.white == 255);

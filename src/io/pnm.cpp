@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A reader of our own: the format is a few lines, while Debian's readers of it are either netpbm's library,
-// which ends the process on bad input, or image suites many times the size of this project.
-#include "pgm.hpp"
+// A reader of our own: the formats are a few lines, while Debian's readers of them are either netpbm's
+// library, which ends the process on bad input, or image suites many times the size of this project.
+#include "pnm.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "parse_error.hpp"
 
@@ -73,42 +74,54 @@ class Scanner {
   std::string_view rest_;
 };
 
-[[noreturn]] void throw_above_maximum(std::uint32_t value, std::uint16_t maximum) {
-  throw ParseError(fmt::format("a pixel's value {} exceeds the header's maximum {}", value, maximum));
-}
-
-void read_plain(Scanner& scanner, MapImage& image, std::size_t size) {
-  // A value takes a digit and a space at least: a small file cannot make us take memory for a large image.
-  if (scanner.remaining() / 2 + 1 < size) throw ParseError("the image data end early");
-  image.lightness.reserve(size);
-  while (image.lightness.size() < size) {
-    const std::uint32_t value = scanner.number("image data");
-    if (value > image.white) throw_above_maximum(value, image.white);
-    image.lightness.push_back(static_cast<std::uint16_t>(value));
+// A pixel's lightness is the sum of its colours, or, where that does not fit, their mean.
+class Pixels {
+ public:
+  Pixels(MapImage& image, std::uint16_t maximum, std::size_t channels)
+      : image_(image), maximum_(maximum), channels_(channels), is_mean_(maximum * channels > UINT16_MAX) {
+    image.white = static_cast<std::uint16_t>(is_mean_ ? maximum : maximum * channels);
   }
+
+  void add(std::uint32_t value) {
+    if (value > maximum_)
+      throw ParseError(fmt::format("a pixel's value {} exceeds the header's maximum {}", value, maximum_));
+    sum_ += value;
+    if (++channel_ < channels_) return;
+    image_.lightness.push_back(
+        static_cast<std::uint16_t>(is_mean_ ? (sum_ + channels_ / 2) / channels_ : sum_));
+    sum_ = channel_ = 0;
+  }
+
+ private:
+  MapImage& image_;
+  std::uint32_t maximum_;
+  std::size_t channels_;
+  bool is_mean_;
+  std::size_t channel_ = 0;
+  std::size_t sum_ = 0;
+};
+
+void read_plain(Scanner& scanner, Pixels& pixels, std::size_t values) {
+  for (std::size_t i = 0; i < values; ++i) pixels.add(scanner.number("image data"));
 }
 
-void read_raw(Scanner& scanner, MapImage& image, std::size_t size) {
-  const bool wide = image.white > 255;
-  const std::string_view raster = scanner.raster(wide ? 2 * size : size);
+void read_raw(std::string_view raster, Pixels& pixels, bool is_wide) {
   const auto byte = [&](std::size_t index) { return static_cast<std::uint8_t>(raster[index]); };
-  image.lightness.resize(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    image.lightness[i] = wide ? static_cast<std::uint16_t>(byte(2 * i) << 8 | byte(2 * i + 1)) : byte(i);
-  }
-  const auto largest = *std::max_element(image.lightness.begin(), image.lightness.end());
-  if (largest > image.white) throw_above_maximum(largest, image.white);
+  for (std::size_t i = 0; i < raster.size(); i += is_wide ? 2 : 1)
+    pixels.add(is_wide ? static_cast<std::uint32_t>(byte(i) << 8 | byte(i + 1)) : byte(i));
 }
 
 }  // namespace
 
-bool looks_like_pgm(std::string_view bytes) {
-  return (bytes.starts_with("P2") || bytes.starts_with("P5")) && bytes.size() > 2 &&
+bool looks_like_pnm(std::string_view bytes) {
+  if (bytes.size() < 3 || bytes[0] != 'P') return false;
+  const char kind = bytes[1];
+  return (kind == '2' || kind == '3' || kind == '5' || kind == '6') &&
          (is_space(bytes[2]) || bytes[2] == '#');
 }
 
-MapImage decode_pgm(std::string_view bytes, std::size_t max_pixels) {
-  if (!looks_like_pgm(bytes)) throw ParseError("not a PGM image (P2 or P5)");
+MapImage decode_pnm(std::string_view bytes, std::size_t max_pixels) {
+  if (!looks_like_pnm(bytes)) throw ParseError("not a PGM (P2 or P5) or PPM (P3 or P6) image");
   Scanner scanner(bytes.substr(2));
   const std::uint32_t width = scanner.number("width");
   const std::uint32_t height = scanner.number("height");
@@ -118,12 +131,21 @@ MapImage decode_pgm(std::string_view bytes, std::size_t max_pixels) {
     throw ParseError(fmt::format("its maximum value {} is not in 1..65535", maximum));
   }
 
+  const bool is_plain = bytes[1] == '2' || bytes[1] == '3';
+  const std::size_t channels = bytes[1] == '3' || bytes[1] == '6' ? 3 : 1;
+  const std::size_t size = static_cast<std::size_t>(width) * height;
+  const bool is_wide = maximum > 255;
   MapImage image;
   image.width = static_cast<int>(width);
   image.height = static_cast<int>(height);
-  image.white = static_cast<std::uint16_t>(maximum);
-  const std::size_t size = static_cast<std::size_t>(width) * height;
-  bytes[1] == '2' ? read_plain(scanner, image, size) : read_raw(scanner, image, size);
+  Pixels pixels(image, static_cast<std::uint16_t>(maximum), channels);
+  // Before any memory is taken for pixels: a small file cannot stand for a large image. A plain value takes a
+  // digit and a space at least.
+  if (is_plain && scanner.remaining() / 2 + 1 < channels * size) throw ParseError("the image data end early");
+  const std::string_view raster =
+      is_plain ? std::string_view() : scanner.raster(channels * size * (is_wide ? 2 : 1));
+  image.lightness.reserve(size);
+  is_plain ? read_plain(scanner, pixels, channels * size) : read_raw(raster, pixels, is_wide);
   return image;
 }
 

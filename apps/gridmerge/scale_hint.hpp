@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "gridmerge/match/match.hpp"
+
+namespace gridmerge::cli {
+
+/// A map and what to call it.
+struct NamedMap {
+  std::string name;
+  const OccupancyGrid& grid;
+};
+
+/// A line for people if the maps, which do not fit, do at another scale; "" if not. As long as find_scale().
+std::string scale_hint(const NamedMap& fixed, const NamedMap& moving, const MatchOptions& options);
+
+}  // namespace gridmerge::cli

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/match/scale.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace gridmerge {
+
+namespace {
+
+constexpr double kLeastProbability = 0.99;
+
+/// A map that was scaled to this or that side [m] shows no place to compare.
+constexpr double kLeastSide = 2.0;
+constexpr double kMostSide = 1000.0;
+
+OccupancyGrid scaled(OccupancyGrid map, double factor) {
+  map.resolution *= factor;
+  map.origin.x *= factor;
+  map.origin.y *= factor;
+  return map;
+}
+
+}  // namespace
+
+std::optional<ScaleFound> find_scale(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                     const MatchOptions& options) {
+  MatchOptions asked = options;
+  asked.accept_probability = std::max(options.accept_probability, kLeastProbability);
+  asked.progress = nullptr;
+  const double side = std::max(moving.width, moving.height) * moving.resolution;
+  std::optional<ScaleFound> best;
+  for (const double factor : {2.0, 0.5, 2.5, 0.4, 4.0, 0.25, 5.0, 0.2, 10.0, 0.1}) {
+    if (factor * side < kLeastSide || factor * side > kMostSide) continue;
+    const MatchResult result = match(fixed, scaled(moving, factor), asked);
+    if (result.verdict != Verdict::accepted) continue;
+    if (!best || result.probability > best->probability) best = ScaleFound{factor, result.probability};
+  }
+  return best;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/jpeg.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "io/image_builder.hpp"
+#include "io/parse_error.hpp"
+#include "io/support.hpp"
+
+namespace gridmerge {
+namespace {
+
+using test::contains;
+
+constexpr std::size_t kLimit = 10000;
+
+// Left half and right half.
+std::vector<std::uint8_t> halves(int width, int height, std::size_t channels, std::uint8_t left,
+                                 std::uint8_t right) {
+  std::vector<std::uint8_t> values;
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column)
+      values.insert(values.end(), channels, column < width / 2 ? left : right);
+  }
+  return values;
+}
+
+std::string error_of(const std::string& bytes) {
+  return test::message_of<ParseError>([&] { decode_jpeg(bytes, kLimit); });
+}
+
+TEST(Jpeg, ReadsGray) {
+  const MapImage image = decode_jpeg(test::gray_jpeg(32, 17, halves(32, 17, 1, 0, 205)), kLimit);
+  EXPECT_EQ(image.width, 32);
+  EXPECT_EQ(image.height, 17);
+  EXPECT_EQ(image.white, 255);
+  EXPECT_TRUE(image.is_lossy);
+  ASSERT_EQ(image.lightness.size(), 32U * 17U);
+  for (std::size_t i = 0; i < image.lightness.size(); ++i)
+    EXPECT_LE(std::abs(image.lightness[i] - (i % 32 < 16 ? 0 : 205)), 4) << i;
+}
+
+TEST(Jpeg, ReadsColorsBaselineAndProgressive) {
+  for (const bool progressive : {false, true}) {
+    const MapImage image =
+        decode_jpeg(test::rgb_jpeg(32, 16, halves(32, 16, 3, 254, 0), progressive), kLimit);
+    EXPECT_EQ(image.white, 765);
+    ASSERT_EQ(image.lightness.size(), 32U * 16U);
+    EXPECT_LE(std::abs(image.lightness.front() - 762), 12);
+    EXPECT_LE(std::abs(image.lightness.back()), 12);
+  }
+}
+
+TEST(Jpeg, RefusesWhatIsCutShort) {
+  for (const bool progressive : {false, true}) {
+    const std::string whole = test::rgb_jpeg(64, 64, halves(64, 64, 3, 254, 0), progressive);
+    for (std::size_t size = 3; size + 2 < whole.size(); size += 7)
+      EXPECT_TRUE(contains(error_of(whole.substr(0, size)), "not a readable JPEG")) << size;
+  }
+}
+
+TEST(Jpeg, RefusesSizesThatItsDataCannotFill) {
+  std::string bytes = test::gray_jpeg(16, 16, halves(16, 16, 1, 0, 205));
+  const std::size_t frame = bytes.find("\xff\xc0");
+  ASSERT_NE(frame, std::string::npos);
+  const auto with_side = [&](int side) {
+    std::string changed = bytes;
+    for (const std::size_t at : {frame + 5, frame + 7}) {
+      changed[at] = static_cast<char>(side >> 8);
+      changed[at + 1] = static_cast<char>(side);
+    }
+    return changed;
+  };
+  EXPECT_TRUE(contains(error_of(with_side(65500)), "65500 x 65500 pixels exceed the limit"));
+  EXPECT_TRUE(
+      contains(test::message_of<ParseError>([&] { decode_jpeg(with_side(16000), 1U << 28); }), "end early"));
+  EXPECT_TRUE(contains(error_of(with_side(0)), "JPEG"));
+}
+
+TEST(Jpeg, RefusesAnEndlessRowOfScans) {
+  // The last scan of a progressive file, over and over: each costs a pass over the whole image.
+  const std::string whole = test::rgb_jpeg(64, 64, halves(64, 64, 3, 254, 0), true);
+  const std::size_t last = whole.rfind("\xff\xda");
+  ASSERT_NE(last, std::string::npos);
+  std::string bytes = whole.substr(0, last);
+  for (int i = 0; i < 200; ++i) bytes += whole.substr(last, whole.size() - 2 - last);
+  bytes += "\xff\xd9";
+  EXPECT_TRUE(contains(error_of(bytes), "not a readable JPEG"));
+}
+
+RC_GTEST_PROP(Jpeg, WhatIsChangedIsRefusedOrRead, ()) {
+  static const std::string whole = test::rgb_jpeg(24, 24, halves(24, 24, 3, 254, 0), true);
+  std::string bytes = whole;
+  for (int i = 0; i < 4; ++i)
+    bytes[*rc::gen::inRange<std::size_t>(0, bytes.size())] = *rc::gen::arbitrary<char>();
+  try {
+    const MapImage image = decode_jpeg(bytes, kLimit);
+    RC_ASSERT(image.lightness.size() ==
+              static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  } catch (const ParseError&) {
+  }
+}
+
+}  // namespace
+}  // namespace gridmerge
