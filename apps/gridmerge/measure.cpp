@@ -31,7 +31,7 @@ struct MeasureCommandOptions {
   std::vector<std::string> moving;
   std::vector<std::string> poses;  // of the moving maps
   double c_lock = 0.0;
-  double resolution = 0.0;
+  LoadOptions load;
   std::string dmap;
   int dmap_of = 0;
   std::string dmap_class = "occupied";
@@ -144,13 +144,15 @@ struct Inputs {
 
 Inputs load_inputs(const MeasureCommandOptions& options, Console& console) {
   Inputs inputs;
+  MapReader reader(options.load, console);
   std::vector<std::string> paths{options.fixed};
   paths.insert(paths.end(), options.moving.begin(), options.moving.end());
   for (const std::string& path : paths) {
-    LoadedMap map = load(path, options.resolution, console);
+    LoadedMap map = reader.read(path);
     inputs.maps.push_back(std::move(map.grid));
     inputs.files.insert(inputs.files.end(), map.files.begin(), map.files.end());
   }
+  reader.tell_warnings();
   return inputs;
 }
 
@@ -248,7 +250,7 @@ void add_measure(CLI::App& app, Action& action) {
       ->capture_default_str();
   add_distance_map_options(*command, *options);
   command->add_flag("--json", options->json, "Print JSON");
-  add_resolution_option(*command, options->resolution);
+  add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
   command->footer(
       "The measures of Birk & Carpin (2006) on FIXED's cells, and beside them what the engine says of the\n"
