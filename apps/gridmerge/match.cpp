@@ -125,6 +125,7 @@ void add_match(CLI::App& app, Action& action) {
   command->add_option("MOVING", options->moving, "The map to lay on it")->type_name("FILE")->required();
   command->add_flag("--json", options->json, "Print JSON");
   add_search_options(*command, options->search);
+  add_start_option(*command, options->search);
   add_trace_option(*command, options->search);
   add_resolution_option(*command, options->resolution);
   add_common_options(*command, options->common);
