@@ -139,6 +139,7 @@ void add_match(CLI::App& app, Action& action) {
   command->add_option("MOVING", options->moving, "The map to lay on it")->type_name("FILE")->required();
   command->add_flag("--json", options->json, "Print JSON, on one line");
   add_search_options(*command, options->search);
+  add_start_option(*command, options->search);
   add_trace_option(*command, options->search);
   add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);

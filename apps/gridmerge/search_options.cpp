@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <optional>
+#include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "gridmerge/io/atomic_file.hpp"
 
@@ -12,7 +15,8 @@ namespace gridmerge::cli {
 
 namespace {
 
-constexpr const char* kTraceHead = "match,walk,c_lock,step,delta,psi,agr,dis,x,y,theta\n";
+constexpr const char* kTraceHead =
+    "match,walk,c_lock,step,delta,psi,agr,dis,x,y,theta,omega,ai,accepted,wide\n";
 
 }  // namespace
 
@@ -21,6 +25,109 @@ double SearchOptions::accept_from() const {
       random_walk() ? RandomWalkMatchOptions{}.accept_acceptance_index : MatchOptions{}.accept_probability;
   return accept.value_or(usual);
 }
+
+namespace {
+
+/// RxOxOFFSET. None if the text is anything else.
+std::optional<StartPoseOptions> parse_starts(const std::string& text) {
+  const std::size_t first = text.find('x');
+  const std::size_t second = text.find('x', first + 1);
+  if (first == std::string::npos || second == std::string::npos) return std::nullopt;
+  StartPoseOptions starts;
+  if (!CLI::detail::lexical_cast(text.substr(0, first), starts.rotations) ||
+      !CLI::detail::lexical_cast(text.substr(first + 1, second - first - 1), starts.offsets) ||
+      !CLI::detail::lexical_cast(text.substr(second + 1), starts.offset))
+    return std::nullopt;
+  return starts;
+}
+
+const CLI::Validator kStarts(
+    [](std::string& text) {
+      const std::optional<StartPoseOptions> starts = parse_starts(text);
+      if (!starts) return "'" + text + "' is not RxOxOFFSET, as 72x1x100";
+      try {
+        validate(*starts);
+      } catch (const std::invalid_argument& error) {
+        return "'" + text + "': " + error.what();
+      }
+      return std::string();
+    },
+    "");
+
+/// The options that only the random walk has.
+std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& options) {
+  RandomWalkMatchOptions& match = options.walk;
+  RandomWalkOptions& walk = match.walk;
+  std::vector<CLI::Option*> added;
+  const auto add = [&](const std::string& name, auto& value, const std::string& help,
+                       const char* type) -> CLI::Option* {
+    added.push_back(command.add_option(name, value, "Random walk: " + help)->type_name(type));
+    return added.back();
+  };
+  add("--c-lock", match.c_locks,
+      "weight of disagreement less agreement, 0 if not given; several, with commas, are used in turn",
+      "C,...")
+      ->allow_extra_args(false)  // or it would take the maps behind it
+      ->delimiter(',')
+      ->check(kNotNegative);
+  add("--restarts", options.restarts, "how many walks, the best is kept; one for each c_lock if not given",
+      "N")
+      ->check(CLI::Range(1, 1000).description(""));
+  add("--starts", options.starts,
+      fmt::format("the lattice of poses whose best one starts a walk: R rotations, O shifts on each side of "
+                  "the centre in x and in y, OFFSET cells apart; {}x{}x{} if not given",
+                  match.start.rotations, match.start.offsets, match.start.offset),
+      "RxOxOFFSET")
+      ->check(kStarts);
+  add("--wide-share", walk.wide_share,
+      "share of proposals that are drawn from all poses: what lets the walk leave a wrong place", "SHARE")
+      ->check(kProbability)
+      ->capture_default_str();
+  add("--temperature", walk.temperature,
+      "a sample whose Delta is worse by d is accepted with probability exp(-d/T); 0 climbs", "T")
+      ->check(kNotNegative)
+      ->capture_default_str();
+  add("--cooling", walk.cooling, "the temperature is multiplied with this after every proposal, in (0, 1]",
+      "F")
+      ->capture_default_str();
+  add("--memory", walk.memory, "accepted steps that set mean and covariance of proposals, at least 4", "N")
+      ->check(kWholeNumber)
+      ->capture_default_str();
+  add("--first-step", walk.first_step,
+      fmt::format("standard deviation of proposals before anything is accepted, {} to {} cells",
+                  walk.smallest_step, walk.largest_step),
+      "CELLS")
+      ->capture_default_str();
+  add("--patience", walk.patience,
+      "stop after so many proposals without an improvement of the best sample, at any temperature", "N")
+      ->check(kWholeNumber)
+      ->capture_default_str();
+  add("--least-common-cells", match.least_common_cells,
+      "accept only where so many cells of FIXED are known in both maps", "N")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40).description(""))
+      ->capture_default_str();
+  add("--seed", walk.seed, "seed of the first walk; those of the others follow from it", "N")
+      ->check(kWholeNumber)
+      ->capture_default_str();
+  return added;
+}
+
+/// Throws CLI::ValidationError for what no option sees by itself.
+void check_walk(const SearchOptions& options) {
+  if (!options.up_the_tree())
+    throw CLI::ValidationError("--strategy", "joint needs several hypotheses a pair: --search exhaustive");
+  if (options.restarts && static_cast<std::size_t>(*options.restarts) < options.walk.c_locks.size())
+    throw CLI::ValidationError("--restarts", "is less than the number of --c-lock, which are used in turn");
+  if (!options.start.empty() && !options.starts.empty())
+    throw CLI::ValidationError("--start", "excludes --starts");
+  try {
+    validate(options.walk.walk);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("--search random-walk", error.what());
+  }
+}
+
+}  // namespace
 
 void add_search_options(CLI::App& command, SearchOptions& options) {
   command
@@ -37,55 +144,36 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
                       MatchOptions{}.accept_probability, RandomWalkMatchOptions{}.accept_acceptance_index))
       ->type_name("P")
       ->check(kProbability);
-  CLI::Option* c_lock = command
-                            .add_option("--c-lock", options.c_locks,
-                                        "Random walk: weight of disagreement less agreement, 0 if not given; "
-                                        "several, with commas, are used "
-                                        "in turn")
-                            ->type_name("C,...")
-                            ->allow_extra_args(false)  // or it would take the maps behind it
-                            ->delimiter(',')
-                            ->check(kNotNegative);
-  CLI::Option* restarts =
-      command
-          .add_option("--restarts", options.restarts,
-                      "Random walk: how many walks, the best is kept; one for each c_lock if not given")
-          ->type_name("N")
-          ->check(CLI::Range(1, 1000).description(""));
-  CLI::Option* temperature = command
-                                 .add_option("--temperature", options.temperature,
-                                             "Random walk: a sample whose Delta is worse by d is accepted "
-                                             "with probability exp(-d/T); 0 climbs")
-                                 ->type_name("T")
-                                 ->check(kNotNegative)
-                                 ->capture_default_str();
-  CLI::Option* seed =
-      command
-          .add_option("--seed", options.seed,
-                      "Random walk: seed of the first walk; those of the others follow from it")
-          ->type_name("N")
-          ->check(kWholeNumber)
-          ->capture_default_str();
-  command.parse_complete_callback([&options, c_lock, restarts, temperature, seed] {
+  const std::vector<CLI::Option*> of_walk = add_walk_options(command, options);
+  command.parse_complete_callback([&options, of_walk] {
     if (options.random_walk()) {
-      if (!options.up_the_tree())
-        throw CLI::ValidationError("--strategy",
-                                   "joint needs several hypotheses a pair: --search exhaustive");
-      if (options.restarts && static_cast<std::size_t>(*options.restarts) < options.c_locks.size())
-        throw CLI::ValidationError("--restarts",
-                                   "is less than the number of --c-lock, which are used in turn");
+      check_walk(options);
       return;
     }
-    for (const CLI::Option* option : {c_lock, restarts, temperature, seed}) {
+    for (const CLI::Option* option : of_walk) {
       if (option->count() > 0) throw CLI::ValidationError(option->get_name(), "needs --search random-walk");
     }
+    if (!options.start.empty()) throw CLI::ValidationError("--start", "needs --search random-walk");
     if (!options.trace.empty()) throw CLI::ValidationError("--trace", "needs --search random-walk");
   });
 }
 
+void add_start_option(CLI::App& command, SearchOptions& options) {
+  command
+      .add_option(
+          "--start", options.start,
+          "Random walk: start here, at this T_fixed_moving in metres and radians, and not at the best "
+          "poses of --starts")
+      ->type_name("X,Y,THETA")
+      ->check(kPose);
+}
+
 void add_trace_option(CLI::App& command, SearchOptions& options) {
-  command.add_option("--trace", options.trace, "Random walk: write every accepted sample to this CSV file")
-      ->type_name("FILE");
+  CLI::Option* trace =
+      command
+          .add_option("--trace", options.trace, "Random walk: write every accepted sample to this CSV file")
+          ->type_name("FILE");
+  command.add_flag("--trace-all", options.trace_all, "Random walk: and every refused one")->needs(trace);
 }
 
 void add_strategy_option(CLI::App& command, SearchOptions& options) {
@@ -115,16 +203,15 @@ MatchResult PairMatcher::operator()(const OccupancyGrid& fixed, const OccupancyG
     engine.progress = progress_;
     return match(fixed, moving, engine);
   }
-  RandomWalkMatchOptions engine;
-  engine.walk.seed = options_.seed;
-  engine.walk.record_trace = !options_.trace.empty();
-  engine.c_locks = options_.c_locks;
-  engine.restarts = options_.restarts.value_or(static_cast<int>(options_.c_locks.size()));
-  engine.walk.temperature = options_.temperature;
+  RandomWalkMatchOptions engine = options_.walk;
+  if (!options_.starts.empty()) engine.start = parse_starts(options_.starts).value();
+  if (!options_.start.empty()) engine.start_pose = to_pose(options_.start);
+  if (!options_.trace.empty()) engine.walk.trace = options_.trace_all ? WalkTrace::all : WalkTrace::accepted;
+  engine.restarts = options_.restarts.value_or(static_cast<int>(engine.c_locks.size()));
   engine.accept_acceptance_index = options_.accept_from();
   engine.threads = common_.threads;
   if (progress_) engine.progress = [&](int done, int all) { progress_(static_cast<double>(done) / all); };
-  if (engine.walk.record_trace) {
+  if (!options_.trace.empty()) {
     engine.on_walk = [&](int walk, double c_lock, const RandomWalkResult& result) {
       record(c_lock, walk, result);
     };
@@ -133,11 +220,24 @@ MatchResult PairMatcher::operator()(const OccupancyGrid& fixed, const OccupancyG
 }
 
 void PairMatcher::record(double c_lock, int walk, const RandomWalkResult& result) {
+  const auto out = std::back_inserter(trace_);
   for (const WalkSample& sample : result.trace) {
     const SE2& T = sample.T_fixed_moving;
-    fmt::format_to(std::back_inserter(trace_), "{},{},{},{},{},{},{},{},{},{},{}\n", matches_, walk + 1,
-                   c_lock, sample.step, sample.delta, sample.psi, sample.agreement, sample.disagreement, T.x,
-                   T.y, T.theta);
+    fmt::format_to(out, "{},{},{},{},", matches_, walk + 1, c_lock, sample.step);
+    const ImageSimilarity& similarity = sample.similarity;
+    if (sample.measured) {
+      fmt::format_to(out, "{},{},{},{},", sample.delta, similarity.psi(), similarity.agreement,
+                     similarity.disagreement);
+    } else {
+      fmt::format_to(out, ",,,,");
+    }
+    fmt::format_to(out, "{},{},{},", T.x, T.y, T.theta);
+    if (sample.measured) {
+      fmt::format_to(out, "{},{},", similarity.omega, similarity.acceptance_index());
+    } else {
+      fmt::format_to(out, ",,");
+    }
+    fmt::format_to(out, "{},{}\n", sample.accepted ? 1 : 0, sample.wide ? 1 : 0);
   }
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -19,11 +18,12 @@ namespace gridmerge::cli {
 struct SearchOptions {
   std::string method = "exhaustive";
   std::optional<double> accept;  // probability, or acceptance index of the random walk
-  std::vector<double> c_locks{0.0};
-  std::optional<int> restarts;  // one for each c_lock if not given
-  double temperature = 0.0;
-  std::uint64_t seed = 1;
+  RandomWalkMatchOptions walk;   // but for what is below
+  std::optional<int> restarts;   // one for each c_lock if not given
+  std::string starts;            // the lattice, as the command line says it; the usual one if empty
+  std::string start;             // a pose instead
   std::string trace;
+  bool trace_all = false;
   std::optional<std::string> strategy;  // how several maps are merged
 
   bool random_walk() const { return method == "random-walk"; }
@@ -35,7 +35,10 @@ struct SearchOptions {
 /// --search and what belongs to it. Options of the random walk without it are a usage error.
 void add_search_options(CLI::App& command, SearchOptions& options);
 
-/// --trace: needs add_search_options() of the same command.
+/// --start: needs add_search_options() of the same command.
+void add_start_option(CLI::App& command, SearchOptions& options);
+
+/// --trace and --trace-all: needs add_search_options() of the same command.
 void add_trace_option(CLI::App& command, SearchOptions& options);
 
 /// --strategy: needs add_search_options() of the same command.

@@ -29,9 +29,25 @@ from ._grid import MapLike, OccupancyGrid, load, save
 from ._inputs import MapWarning
 from ._known_poses import InitialPose
 from ._match import Hypothesis, MatchResult, Reason, Verdict, match
+from ._measure import (
+    CellClass,
+    CommonCells,
+    DistancePass,
+    JointMeasure,
+    PoseMeasure,
+    PsiTerms,
+    count_equal_cells,
+    distance_map,
+    draw_on_lattice,
+    measure,
+    measure_maps,
+    measure_poses,
+    poses_between,
+)
 from ._merge import Component, Join, JoinOutcome, LeftOut, Member, MergeResult, merge
 from ._merger import Merger
 from ._message import OccupancyGridMessage
+from ._random_walk import RandomWalkMatch, Trace, Walk, match_by_random_walk, plot_walk
 from ._simulate import BUILDING_KINDS, SimulatedMap, SimulatedPair, Simulation, simulate
 from ._transform import PoseLike, Transform
 
@@ -39,13 +55,17 @@ __version__ = version("gridmerge")
 
 __all__ = [
     "BUILDING_KINDS",
+    "CellClass",
+    "CommonCells",
     "Component",
+    "DistancePass",
     "Evaluation",
     "FileError",
     "Hypothesis",
     "InitialPose",
     "Join",
     "JoinOutcome",
+    "JointMeasure",
     "LeftOut",
     "MapLike",
     "MapWarning",
@@ -59,6 +79,9 @@ __all__ = [
     "OccupancyGridMessage",
     "PairCounts",
     "PoseLike",
+    "PoseMeasure",
+    "PsiTerms",
+    "RandomWalkMatch",
     "Reason",
     "SetCase",
     "SetCounts",
@@ -66,12 +89,23 @@ __all__ = [
     "SimulatedPair",
     "Simulation",
     "TimeSummary",
+    "Trace",
     "Transform",
     "Verdict",
+    "Walk",
+    "count_equal_cells",
+    "distance_map",
+    "draw_on_lattice",
     "evaluate",
     "load",
     "match",
+    "match_by_random_walk",
+    "measure",
+    "measure_maps",
+    "measure_poses",
     "merge",
+    "plot_walk",
+    "poses_between",
     "save",
     "simulate",
 ]

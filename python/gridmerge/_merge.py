@@ -50,6 +50,9 @@ class Component:
     """Cells known in two or more inputs, all equal."""
     conflicting: int
     """Cells that some input calls free and another occupied."""
+    omega: int | None
+    """Cells at which all inputs have the same value, unknown included (Birk & Carpin 2006); None where the inputs'
+    cells differ in size from the merged map's by more than 100 times."""
     in_world_frame: bool
     """Whether the frame is that of the initial poses, because a member's pose is fixed."""
 
@@ -235,12 +238,13 @@ def to_merge_result(
 
 
 def _to_component(merged: _core.Merged, index: int, names: Sequence[str]) -> Component:
-    agreeing, conflicting = merged.counts(index)
+    agreeing, conflicting, omega = merged.counts(index)
     return Component(
         members=tuple(_to_member(member, names) for member in merged.members(index)),
         grid=OccupancyGrid._of(merged.grid(index)),
         agreeing=agreeing,
         conflicting=conflicting,
+        omega=omega,
         in_world_frame=merged.is_in_world_frame(index),
     )
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -10,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from ._measure import measure_poses, poses_between
 from ._transform import Transform
 
 try:
     from matplotlib import pyplot as plt
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from matplotlib.patches import Patch
     from matplotlib.transforms import Affine2D
 except ImportError as error:
@@ -23,6 +26,7 @@ except ImportError as error:
 if TYPE_CHECKING:
     from ._grid import OccupancyGrid
     from ._merge import MergeResult
+    from ._random_walk import Walk
 
 _WALL = (32, 32, 36)
 _TINT = 0.25  # of a map's colour in its free space
@@ -57,6 +61,61 @@ def plot_component(result: MergeResult, component: int, ax: Axes | None) -> Axes
     )
     axes.set_title(f"{len(handles)} of {len(result.maps)} maps")
     return axes
+
+
+def plot_walk(
+    walk: Walk,
+    fixed: OccupancyGrid,
+    moving: OccupancyGrid,
+    centre: Transform,
+    direction: float,
+    reach: float,
+    count: int,
+) -> Figure:
+    figure = plt.figure(figsize=(11.0, 7.5), layout="constrained")
+    places = figure.subplot_mosaic([["walk"] * 4, ["delta", "psi", "lock", "omega"]])
+    _draw_walk(places["walk"], walk)
+
+    dx, dy = reach * math.cos(direction), reach * math.sin(direction)
+    first = Transform(centre.x - dx, centre.y - dy, centre.theta)
+    last = Transform(centre.x + dx, centre.y + dy, centre.theta)
+    landscape = measure_poses(fixed, moving, poses_between(moving, first, last, count))
+    way = np.linspace(-reach, reach, count)
+    lock = landscape["agreement"] - landscape["disagreement"]
+    curves = {
+        "delta": (f"Delta, c_lock {walk.c_lock:g}", landscape["psi"] - walk.c_lock * lock),
+        "psi": ("psi", landscape["psi"]),
+        "lock": ("agr - dis", lock),
+        "omega": ("omega", landscape["omega"]),
+    }
+    measured = landscape["undefined_terms"] < 4
+    for place, (title, values) in curves.items():
+        places[place].plot(way[measured], values[measured], color="black", linewidth=1.0)
+        places[place].axvline(0.0, color="tab:green", linewidth=0.8)
+        places[place].set_title(title)
+        places[place].set_xlabel("way along the cut [m]")
+    return figure
+
+
+def _draw_walk(axes: Axes, walk: Walk) -> None:
+    """Delta by step: refused samples, those that the walk went to, and the best one so far."""
+    trace = walk.trace[walk.trace["measured"]]
+    for accepted, wide, colour, label in (
+        (False, False, "lightgray", "refused"),
+        (False, True, "tab:orange", "refused, wide"),
+        (True, False, "tab:blue", "accepted"),
+        (True, True, "tab:red", "accepted, wide"),
+    ):
+        chosen = trace[(trace["accepted"] == accepted) & (trace["wide"] == wide)]
+        if chosen.size:
+            axes.plot(chosen["step"], chosen["delta"], ".", color=colour, markersize=3.0, label=label)
+    went = trace[trace["accepted"]]
+    steps = np.append(went["step"], walk.proposals)
+    best = np.minimum.accumulate(went["delta"])
+    axes.step(steps, np.append(best, best[-1]), where="post", color="black", label="best")
+    axes.set_xlabel("proposals")
+    axes.set_ylabel("Delta")
+    axes.legend(loc="upper right", fontsize="small")
 
 
 def _axes(ax: Axes | None) -> Axes:

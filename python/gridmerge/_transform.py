@@ -96,6 +96,12 @@ def to_transform(name: str, value: object) -> Transform:
     )
 
 
+def to_pose(name: str, value: object) -> tuple[float, float, float]:
+    """The same as the engine takes it."""
+    transform = to_transform(name, value)
+    return (transform.x, transform.y, transform.theta)
+
+
 def _normalized(theta: float) -> float:
     if -math.pi < theta <= math.pi:
         return theta

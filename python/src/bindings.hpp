@@ -53,8 +53,10 @@ void bind_worker(nb::module_& module);
 void bind_grid(nb::module_& module);
 void bind_io(nb::module_& module);
 void bind_match(nb::module_& module);
+void bind_measure(nb::module_& module);
 void bind_merge(nb::module_& module);
 void bind_merger(nb::module_& module);
+void bind_random_walk(nb::module_& module);
 void bind_simulate(nb::module_& module);
 void bind_evaluate(nb::module_& module);
 

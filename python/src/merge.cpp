@@ -109,7 +109,8 @@ void bind_results(nb::module_& module) {
           "counts",
           [](const Merged& merged, std::size_t i) {
             const FusedMap& fused = merged.result->components.at(i).fused;
-            return std::pair(fused.agreeing, fused.conflicting);
+            const auto omega = fused.omega ? std::optional(fused.omega->equal) : std::nullopt;
+            return std::tuple(fused.agreeing, fused.conflicting, omega);
           },
           nb::arg("component"))
       .def(

@@ -11,8 +11,10 @@ NB_MODULE(_core, module) {
   bind_grid(module);
   bind_io(module);
   bind_match(module);
+  bind_measure(module);
   bind_merge(module);
   bind_merger(module);
+  bind_random_walk(module);
   bind_simulate(module);
   bind_evaluate(module);
 }

@@ -39,7 +39,10 @@ def as_json(result: gridmerge.MergeResult) -> dict[str, Any]:
         held = [one.name for one in component.members if tuple(one.transform) == (0.0, 0.0, 0.0)]
         frame = next(iter(held), None) if component.in_world_frame else component.members[0].name
         name = "merged.yaml" if i == 0 else f"merged_{i + 1}.yaml"
-        components.append({"map": name, "frame": frame, "members": members})
+        assert component.omega is not None
+        cells = component.grid.width * component.grid.height
+        omega = {"omega": component.omega, "cells": cells, "omega_share": component.omega / cells}
+        components.append({"map": name, "frame": frame, "members": members, **omega})
     joins = [
         {
             "fixed": result.names[join.fixed],

@@ -13,6 +13,7 @@
 
 #include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/similarity/agreement.hpp"
+#include "gridmerge/similarity/lattice.hpp"
 
 namespace gridmerge {
 
@@ -59,7 +60,12 @@ SE2 choose_start(const std::vector<MeasuredPose>& starts, double c_lock, std::si
 
 std::vector<RandomWalkResult> run_walks(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                         const RandomWalkMatchOptions& options) {
-  const std::vector<MeasuredPose> starts = measure_start_poses(fixed, moving, options.start);
+  std::vector<MeasuredPose> starts;
+  if (options.start_pose) {
+    starts = measure_poses(fixed, moving, {&*options.start_pose, 1});
+  } else {
+    starts = measure_start_poses(fixed, moving, options.start);
+  }
   std::vector<RandomWalkResult> walks(static_cast<std::size_t>(options.restarts));
   std::mutex reporting;
   int done = 0;
@@ -116,6 +122,8 @@ MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid
   const auto start = std::chrono::steady_clock::now();
   MatchResult result;
   if (count_cells(fixed).known() == 0 || count_cells(moving).known() == 0) return result;
+  if (options.start_pose && !lie_on_each_other(fixed, moving, *options.start_pose))
+    throw std::invalid_argument("the start puts the maps apart: no cell of the one lies on the other");
 
   std::vector<RandomWalkResult> walks;
   with_threads(options.threads, [&] { walks = run_walks(fixed, moving, options); });

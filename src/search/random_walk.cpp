@@ -7,9 +7,13 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <stdexcept>
+#include <utility>
 
+#include "../similarity/lattice_frames.hpp"
+#include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
 
@@ -76,6 +80,15 @@ class Poses {
             normalize_angle(to.theta - from.theta) * moving_.radius / cell_};
   }
 
+  /// Any pose with gap() <= 0, all alike.
+  SE2 anywhere(std::mt19937_64& random) const {
+    std::uniform_real_distribution<double> share;
+    const double distance = (fixed_.reach() + moving_.reach()) * std::sqrt(share(random));
+    const double direction = 2.0 * std::numbers::pi * share(random);
+    const double theta = 2.0 * std::numbers::pi * share(random);
+    return at(distance * std::cos(direction), distance * std::sin(direction), theta);
+  }
+
   /// How far apart the circles around the known rectangles are [m]. Where they do not meet, and this is
   /// positive, no cells can.
   double gap(const SE2& T_fixed_moving) const {
@@ -106,14 +119,26 @@ class Proposals {
     return mean_ + axes_ * step;
   }
 
-  /// Samples that are refused again and again come from steps that are too large, or lead the wrong way; when
-  /// the steps cannot become smaller, they start again at their size.
-  void learn_refusal() {
+  /// Samples that are refused again and again come from steps that are too large, or lead the wrong way. True
+  /// when the steps cannot become smaller, and start again at their size.
+  bool learn_refusal() {
     constexpr int kPatience = 100;
-    if (++refused_ % kPatience != 0) return;
+    if (++refused_ % kPatience != 0) return false;
     scale_ *= 0.5;
     mean_.setZero();
-    if (scale_ * deviations_.maxCoeff() < options_.smallest_step) scale_ = 1.0;
+    if (scale_ * deviations_.maxCoeff() >= options_.smallest_step) return false;
+    scale_ = 1.0;
+    return true;
+  }
+
+  /// What was learnt elsewhere says nothing of here.
+  void start_anew() {
+    steps_.clear();
+    mean_.setZero();
+    axes_.setIdentity();
+    deviations_.setConstant(options_.first_step);
+    scale_ = 1.0;
+    refused_ = 0;
   }
 
   void learn(const Step& accepted) {
@@ -146,13 +171,6 @@ class Proposals {
   std::normal_distribution<double> normal_;
 };
 
-void validate(const StartPoseOptions& options) {
-  if (options.rotations < 1) throw std::invalid_argument("the walk needs at least one start rotation");
-  if (options.offsets < 0) throw std::invalid_argument("the number of start offsets must not be negative");
-  if (!(options.offset >= 0.0 && std::isfinite(options.offset)))
-    throw std::invalid_argument("the start offset must not be negative");
-}
-
 struct Sample {
   SE2 T_fixed_moving;
   ImageSimilarity similarity;
@@ -169,15 +187,6 @@ bool select(const Sample& proposed, const Sample& current, const RandomWalkOptio
   return std::uniform_real_distribution<double>()(random) < std::exp(-worse_by / temperature);
 }
 
-WalkSample describe(std::size_t step, const Sample& sample) {
-  return {step,
-          sample.T_fixed_moving,
-          sample.delta,
-          sample.similarity.psi(),
-          sample.similarity.agreement,
-          sample.similarity.disagreement};
-}
-
 std::vector<SE2> make_start_poses(const Poses& poses, double cell, const StartPoseOptions& options) {
   std::vector<SE2> starts;
   for (int rotation = 0; rotation < options.rotations; ++rotation) {
@@ -192,6 +201,16 @@ std::vector<SE2> make_start_poses(const Poses& poses, double cell, const StartPo
 
 }  // namespace
 
+void validate(const StartPoseOptions& options) {
+  if (options.rotations < 1) throw std::invalid_argument("the walk needs at least one start rotation");
+  if (options.offsets < 0) throw std::invalid_argument("the number of start offsets must not be negative");
+  if (!(options.offset >= 0.0 && std::isfinite(options.offset)))
+    throw std::invalid_argument("the start offset must not be negative");
+  constexpr double kMostPoses = 1e6;
+  if (options.rotations * std::pow(2.0 * options.offsets + 1.0, 2) > kMostPoses)
+    throw std::invalid_argument("the lattice of starts has more than a million poses");
+}
+
 void validate(const RandomWalkOptions& options) {
   const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
   if (!(options.c_lock >= 0.0 && std::isfinite(options.c_lock)))
@@ -202,6 +221,8 @@ void validate(const RandomWalkOptions& options) {
       !(options.first_step >= options.smallest_step && options.first_step <= options.largest_step))
     throw std::invalid_argument(
         "the walk's steps must be positive, and the first one between the smallest and the largest");
+  if (!(options.wide_share >= 0.0 && options.wide_share <= 1.0))
+    throw std::invalid_argument("the share of wide proposals must lie in [0, 1]");
   if (!(options.temperature >= 0.0 && std::isfinite(options.temperature)))
     throw std::invalid_argument("the temperature must not be negative");
   if (!(options.cooling > 0.0 && options.cooling <= 1.0))
@@ -210,65 +231,151 @@ void validate(const RandomWalkOptions& options) {
     throw std::invalid_argument("the walk must be allowed at least one proposal");
 }
 
-std::vector<MeasuredPose> measure_start_poses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                              const StartPoseOptions& options) {
-  validate(options);
+std::vector<MeasuredPose> measure_poses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                        std::span<const SE2> poses) {
   const SimilarityMeter meter(fixed, moving);
-  const std::vector<SE2> starts = make_start_poses(Poses(fixed, moving), fixed.resolution, options);
-  std::vector<MeasuredPose> measured(starts.size());
+  std::vector<MeasuredPose> measured(poses.size());
   constexpr std::size_t kPerTask = 9;  // poses for which one copy of the meter is made
-  parallel_for((starts.size() + kPerTask - 1) / kPerTask, [&](std::size_t task) {
+  parallel_for((poses.size() + kPerTask - 1) / kPerTask, [&](std::size_t task) {
     SimilarityMeter own(meter);
-    for (std::size_t i = task * kPerTask; i < std::min(starts.size(), (task + 1) * kPerTask); ++i)
-      measured[i] = {starts[i], own.can_measure(starts[i]) ? own(starts[i]) : ImageSimilarity{}};
+    for (std::size_t i = task * kPerTask; i < std::min(poses.size(), (task + 1) * kPerTask); ++i)
+      measured[i] = {poses[i], own.can_measure(poses[i]) ? own(poses[i]) : ImageSimilarity{}};
   });
   return measured;
 }
 
+std::vector<SE2> poses_between(const OccupancyGrid& moving, const SE2& from, const SE2& to, int count) {
+  validate(moving);
+  check_finite(from);
+  check_finite(to);
+  if (count < 2) throw std::invalid_argument("a cut has at least two poses");
+  const Poses poses(moving, moving);
+  const Step whole = poses.between(from, to);
+  std::vector<SE2> cut;
+  for (int i = 0; i + 1 < count; ++i) cut.push_back(poses.moved(from, whole * i / (count - 1)));
+  cut.push_back(to);
+  return cut;
+}
+
+std::vector<MeasuredPose> measure_start_poses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                              const StartPoseOptions& options) {
+  validate(options);
+  validate(fixed);
+  validate(moving);
+  return measure_poses(fixed, moving, make_start_poses(Poses(fixed, moving), fixed.resolution, options));
+}
+
+namespace {
+
+/// A walk under way.
+class Walk {
+ public:
+  Walk(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& start,
+       const RandomWalkOptions& options)
+      : options_(options),
+        meter_(fixed, moving),
+        poses_(fixed, moving),
+        proposals_(options),
+        random_(options.seed),
+        temperature_(options.temperature),
+        current_(measure(start)),
+        best_(current_) {
+    record(current_, true, false);
+  }
+
+  RandomWalkResult run() {
+    while (result_.proposals < options_.max_proposals &&
+           result_.proposals - last_improvement_ < options_.patience) {
+      throw_if_cancelled();
+      step();
+    }
+    result_.T_fixed_moving = best_.T_fixed_moving;
+    result_.similarity = best_.similarity;
+    result_.delta = best_.delta;
+    return std::move(result_);
+  }
+
+ private:
+  Sample measure(const SE2& T) {
+    const ImageSimilarity similarity = meter_(T);
+    return {T, similarity, similarity.delta(options_.c_lock)};
+  }
+
+  void step() {
+    const bool wide =
+        options_.wide_share > 0.0 && std::uniform_real_distribution<double>()(random_) < options_.wide_share;
+    const SE2 T =
+        wide ? poses_.anywhere(random_) : poses_.moved(current_.T_fixed_moving, proposals_.draw(random_));
+    ++result_.proposals;
+    temperature_ *= options_.cooling;
+    const double gap = poses_.gap(T);
+    if ((gap > 0.0 && gap > poses_.gap(current_.T_fixed_moving)) || !meter_.can_measure(T)) {
+      if (options_.trace == WalkTrace::all)
+        result_.trace.push_back({result_.proposals, T, false, wide, false, 0.0, {}});
+      if (!wide) refuse();
+      return;
+    }
+    const Sample proposed = measure(T);
+    if (select(proposed, current_, options_, temperature_, random_)) {
+      if (wide) {
+        proposals_.start_anew();
+      } else {
+        proposals_.learn(poses_.between(current_.T_fixed_moving, T));
+      }
+      go_to(proposed, wide);
+      return;
+    }
+    record(proposed, false, wide);
+    if (!wide) {
+      refuse();
+    } else if (!kept_ || is_better(proposed.similarity, kept_->similarity, options_.c_lock)) {
+      kept_ = proposed;
+    }
+  }
+
+  /// A learnt proposal was refused. At the end of a valley the walk goes to the wide sample that was kept.
+  void refuse() {
+    if (!proposals_.learn_refusal() || !kept_) return;
+    const Sample kept = *std::exchange(kept_, std::nullopt);
+    if (kept.similarity.undefined_terms() > current_.similarity.undefined_terms()) return;
+    proposals_.start_anew();
+    go_to(kept, true);
+  }
+
+  void go_to(const Sample& sample, bool wide) {
+    current_ = sample;
+    ++result_.accepted;
+    record(sample, true, wide);
+    if (!is_better(current_.similarity, best_.similarity, options_.c_lock)) return;
+    best_ = current_;
+    last_improvement_ = result_.proposals;
+  }
+
+  void record(const Sample& sample, bool accepted, bool wide) {
+    if (options_.trace == WalkTrace::none || (options_.trace == WalkTrace::accepted && !accepted)) return;
+    result_.trace.push_back(
+        {result_.proposals, sample.T_fixed_moving, accepted, wide, true, sample.delta, sample.similarity});
+  }
+
+  const RandomWalkOptions& options_;
+  SimilarityMeter meter_;
+  const Poses poses_;
+  Proposals proposals_;
+  std::mt19937_64 random_;
+  double temperature_;
+  RandomWalkResult result_;
+  std::size_t last_improvement_ = 0;  // the proposal that made it
+  Sample current_;
+  Sample best_;
+  std::optional<Sample> kept_;  // the best wide one that was refused since the walk last went to such a one
+};
+
+}  // namespace
+
 RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& start,
                              const RandomWalkOptions& options) {
   validate(options);
-  SimilarityMeter meter(fixed, moving);
-  const Poses poses(fixed, moving);
-  const auto measure = [&](const SE2& T) {
-    const ImageSimilarity similarity = meter(T);
-    return Sample{T, similarity, similarity.delta(options.c_lock)};
-  };
-  Sample current = measure(start);
-  Sample best = current;
-
-  RandomWalkResult result;
-  if (options.record_trace) result.trace.push_back(describe(0, current));
-  std::mt19937_64 random(options.seed);
-  Proposals proposals(options);
-  double temperature = options.temperature;
-  std::size_t last_improvement = 0;
-  while (result.proposals < options.max_proposals && result.proposals - last_improvement < options.patience) {
-    const SE2 T = poses.moved(current.T_fixed_moving, proposals.draw(random));
-    ++result.proposals;
-    temperature *= options.cooling;
-    const double gap = poses.gap(T);
-    if ((gap > 0.0 && gap > poses.gap(current.T_fixed_moving)) || !meter.can_measure(T)) {
-      proposals.learn_refusal();
-      continue;
-    }
-    const Sample proposed = measure(T);
-    if (!select(proposed, current, options, temperature, random)) {
-      proposals.learn_refusal();
-      continue;
-    }
-    proposals.learn(poses.between(current.T_fixed_moving, T));
-    current = proposed;
-    ++result.accepted;
-    if (options.record_trace) result.trace.push_back(describe(result.proposals, current));
-    if (!is_better(current.similarity, best.similarity, options.c_lock)) continue;
-    best = current;
-    last_improvement = result.proposals;
-  }
-  result.T_fixed_moving = best.T_fixed_moving;
-  result.similarity = best.similarity;
-  result.delta = best.delta;
-  return result;
+  return Walk(fixed, moving, start, options).run();
 }
 
 }  // namespace gridmerge

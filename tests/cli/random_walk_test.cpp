@@ -63,11 +63,65 @@ TEST_F(RandomWalk, WritesItsTrace) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::vector<std::string> lines = lines_of(trace);
   ASSERT_GT(lines.size(), 3U);
-  EXPECT_EQ(lines[0], "match,walk,c_lock,step,delta,psi,agr,dis,x,y,theta");
+  EXPECT_EQ(lines[0], "match,walk,c_lock,step,delta,psi,agr,dis,x,y,theta,omega,ai,accepted,wide");
   EXPECT_EQ(lines[1].rfind("1,1,0,0,", 0), 0U) << lines[1];
-  for (const std::string& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 10) << line;
+  for (const std::string& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 14) << line;
   EXPECT_TRUE(std::any_of(lines.begin(), lines.end(),
                           [](const auto& line) { return line.rfind("1,2,7.5,0,", 0) == 0; }));
+}
+
+TEST_F(RandomWalk, TheWholeTraceHasARowForEveryProposal) {
+  const std::string trace = (directory.path() / "all.csv").string();
+  run({"match", whole, seen_again, "--search", "random-walk", "--patience", "50", "--wide-share", "0.5",
+       "--trace", trace, "--trace-all", "--start", "1.9,0.9,0.4"});
+  const std::vector<std::string> lines = lines_of(trace);
+  ASSERT_GT(lines.size(), 51U);
+  EXPECT_EQ(lines[1].rfind("1,1,0,0,", 0), 0U) << lines[1];
+  EXPECT_NE(lines[1].find(",1.9,0.9,0.4,"), std::string::npos) << lines[1];
+  EXPECT_TRUE(
+      std::any_of(lines.begin(), lines.end(), [](const auto& line) { return line.ends_with(",0,1"); }));
+  EXPECT_TRUE(
+      std::any_of(lines.begin(), lines.end(), [](const auto& line) { return line.ends_with(",0,0"); }));
+}
+
+TEST_F(RandomWalk, StartsWhereItIsTold) {
+  const SE2 truth = inverse(T_again_building);
+  const std::string start = std::to_string(truth.x + 0.3) + "," + std::to_string(truth.y) + "," +
+                            std::to_string(truth.theta + 0.03);
+  const Outcome near = run({"match", whole, seen_again, "--search", "random-walk", "--start", start,
+                            "--wide-share", "0", "--accept", "0.95", "--json"});
+  EXPECT_EQ(near.exit_code, 0) << near.err;
+  expect_near(Json::parse(near.out).at("transform"), truth, 0.3, 0.02);
+  expect_error(run({"match", whole, seen_again, "--search", "random-walk", "--start", "500,0,0"}), seen_again,
+               "puts the maps apart");
+}
+
+TEST_F(RandomWalk, TakesEveryOptionOfTheWalk) {
+  const auto transform = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"match", whole, seen_again, "--search", "random-walk", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run(words);
+    EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 3) << outcome.err;
+    return Json::parse(outcome.out).at("transform");
+  };
+  const auto walked = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--start", "-1.9,0.5,-0.4", "--patience", "200"});
+    return transform(more);
+  };
+  const Json usual = walked({});
+  EXPECT_EQ(walked({"--wide-share", "0.05", "--cooling", "1", "--memory", "10", "--first-step", "10",
+                    "--least-common-cells", "400"}),
+            usual);
+  EXPECT_NE(walked({"--wide-share", "0.3"}), usual);
+  EXPECT_NE(walked({"--temperature", "5", "--memory", "4"}), walked({"--temperature", "5"}));
+  EXPECT_NE(walked({"--first-step", "5"}), usual);
+  EXPECT_NE(walked({"--temperature", "5", "--cooling", "0.5"}), walked({"--temperature", "5"}));
+  const Json from_lattice = transform({"--patience", "20"});
+  EXPECT_EQ(transform({"--patience", "20", "--starts", "72x1x100"}), from_lattice);
+  EXPECT_NE(transform({"--patience", "20", "--starts", "7x0x0"}), from_lattice);
+  EXPECT_EQ(
+      run({"match", whole, whole, "--search", "random-walk", "--least-common-cells", "1000000000"}).exit_code,
+      3);
 }
 
 TEST_F(RandomWalk, ATraceThatCannotBeWrittenFailsFirst) {
@@ -158,7 +212,27 @@ INSTANTIATE_TEST_SUITE_P(
                     Words{"--search", "random-walk", "--restarts", "1", "--c-lock", "0,1"},
                     Words{"--temperature", "1"}, Words{"--search", "random-walk", "--accept", "1.01"},
                     Words{"--c-lock", "7.5"}, Words{"--restarts", "2"}, Words{"--seed", "3"},
-                    Words{"--trace", "trace.csv"}));
+                    Words{"--trace", "trace.csv"}, Words{"--start", "0,0,0"}, Words{"--wide-share", "0.1"},
+                    Words{"--search", "random-walk", "--wide-share", "1.5"},
+                    Words{"--search", "random-walk", "--wide-share", "-0.1"},
+                    Words{"--search", "random-walk", "--cooling", "0"},
+                    Words{"--search", "random-walk", "--cooling", "1.1"},
+                    Words{"--search", "random-walk", "--memory", "3"},
+                    Words{"--search", "random-walk", "--first-step", "100"},
+                    Words{"--search", "random-walk", "--first-step", "nan"},
+                    Words{"--search", "random-walk", "--patience", "0"},
+                    Words{"--search", "random-walk", "--patience", "-5"},
+                    Words{"--search", "random-walk", "--least-common-cells", "-1"},
+                    Words{"--search", "random-walk", "--starts", "72x3"},
+                    Words{"--search", "random-walk", "--starts", "0x1x100"},
+                    Words{"--search", "random-walk", "--starts", "72x-1x100"},
+                    Words{"--search", "random-walk", "--starts", "72x1x-100"},
+                    Words{"--search", "random-walk", "--starts", "72x1xnan"},
+                    Words{"--search", "random-walk", "--starts", "9999x9999x1"},
+                    Words{"--search", "random-walk", "--starts", "7.5x1x100"},
+                    Words{"--search", "random-walk", "--start", "0,0"},
+                    Words{"--search", "random-walk", "--start", "0,0,0", "--starts", "72x1x100"},
+                    Words{"--search", "random-walk", "--trace-all"}));
 
 }  // namespace
 }  // namespace gridmerge::test

@@ -59,7 +59,7 @@ TEST(MatchByRandomWalk, AHandfulOfCellsIsNotEnough) {
   OccupancyGrid corner = make_grid(5, 3, 0.2, {}, Cell::free);
   for (int column = 0; column < 5; ++column) corner.at(column, 0) = Cell::occupied;
   RandomWalkMatchOptions options = quick();
-  options.restarts = 3;
+  options.restarts = 8;
   const MatchResult found = match_by_random_walk(building(), corner, options);
   EXPECT_GE(found.acceptance_index, 0.95);
   EXPECT_EQ(found.verdict, Verdict::refused);

@@ -58,6 +58,7 @@ TEST(StartPoses, RefuseOptionsThatMakeNoSense) {
   EXPECT_THROW(measure_start_poses(map, map, {0, 1, 100.0}), std::invalid_argument);
   EXPECT_THROW(measure_start_poses(map, map, {72, -1, 100.0}), std::invalid_argument);
   EXPECT_THROW(measure_start_poses(map, map, {72, 1, -1.0}), std::invalid_argument);
+  EXPECT_THROW(measure_start_poses(map, map, {1 << 30, 1 << 30, 1.0}), std::invalid_argument);
   EXPECT_THROW(measure_start_poses(map, map, {72, 1, std::nan("")}), std::invalid_argument);
 }
 
@@ -87,7 +88,7 @@ TEST(RandomWalk, ASeedReproducesItBitForBit) {
   RandomWalkOptions options;
   options.temperature = 0.3;
   options.patience = 300;
-  options.record_trace = true;
+  options.trace = WalkTrace::accepted;
   options.seed = 5;
   const RandomWalkResult one = random_walk(pair.fixed, pair.moving, pair.start, options);
   const RandomWalkResult again = random_walk(pair.fixed, pair.moving, pair.start, options);
@@ -110,7 +111,7 @@ TEST(RandomWalk, TheTraceTellsTheWalk) {
   options.temperature = 0.3;
   options.c_lock = 0.5;
   options.patience = 300;
-  options.record_trace = true;
+  options.trace = WalkTrace::accepted;
   const RandomWalkResult result = random_walk(pair.fixed, pair.moving, pair.start, options);
   ASSERT_EQ(result.trace.size(), result.accepted + 1);
   EXPECT_EQ(result.trace.front().step, 0U);
@@ -120,18 +121,121 @@ TEST(RandomWalk, TheTraceTellsTheWalk) {
     const WalkSample& sample = result.trace[i];
     EXPECT_TRUE(i == 0 || sample.step > result.trace[i - 1].step);
     EXPECT_DOUBLE_EQ(sample.delta,
-                     sample.psi + 0.5 * static_cast<double>(sample.disagreement - sample.agreement));
+                     measure_similarity(pair.fixed, pair.moving, sample.T_fixed_moving).delta(0.5));
+    EXPECT_EQ(sample.delta, sample.similarity.delta(0.5));
+    EXPECT_TRUE(sample.accepted && sample.measured);
     least = std::min(least, sample.delta);
   }
   EXPECT_EQ(least, result.delta);
   EXPECT_LE(result.trace.back().step, result.proposals);
 }
 
+TEST(RandomWalk, TheWholeTraceHoldsEveryProposal) {
+  const EasyPair pair;
+  RandomWalkOptions options;
+  options.patience = 1500;
+  options.trace = WalkTrace::all;
+  options.wide_share = 0.2;
+  const RandomWalkResult result = random_walk(pair.fixed, pair.moving, pair.start, options);
+  std::vector<std::size_t> entries(result.proposals + 1, 0);
+  std::size_t accepted = 0, wide = 0;
+  for (const WalkSample& sample : result.trace) {
+    ++entries[sample.step];
+    accepted += sample.accepted ? 1 : 0;
+    wide += sample.wide ? 1 : 0;
+    if (!sample.measured) continue;
+    EXPECT_EQ(sample.delta, sample.similarity.psi());
+  }
+  EXPECT_EQ(accepted, result.accepted + 1);
+  for (const std::size_t count : entries) EXPECT_TRUE(count == 1 || count == 2);  // 2: it went to a kept one
+  EXPECT_NEAR(static_cast<double>(wide) / static_cast<double>(result.proposals), 0.2, 0.05);
+  // What a walk does is not changed by what is told of it.
+  options.trace = WalkTrace::accepted;
+  const RandomWalkResult again = random_walk(pair.fixed, pair.moving, pair.start, options);
+  EXPECT_EQ(again.T_fixed_moving, result.T_fixed_moving);
+  EXPECT_EQ(again.trace.size(), accepted);
+}
+
+/// Of four wrong starts, from how many the walk reaches the truth.
+int count_arrivals(double c_lock, double wide_share, std::uint64_t seed) {
+  const EasyPair pair;
+  const SE2 truth = inverse(pair.T_moving_fixed);
+  const Point2 centre = pair.T_moving_fixed * Point2{9.0, 6.5};  // of the building, in the moving map
+  int arrived = 0;
+  for (const SE2& wrong :
+       {SE2{0.0, 0.0, 3.1}, SE2{6.0, 0.0, 1.6}, SE2{0.0, -6.0, -1.6}, SE2{-4.0, 4.0, 2.4}}) {
+    const SE2 turned{0.0, 0.0, truth.theta + wrong.theta};
+    const Point2 at = turned * centre;
+    RandomWalkOptions options;
+    options.c_lock = c_lock;
+    options.wide_share = wide_share;
+    options.seed = seed;
+    options.patience = 10000;
+    options.max_proposals = 40000;
+    const SE2 start{9.0 + wrong.x - at.x, 6.5 + wrong.y - at.y, turned.theta};
+    const RandomWalkResult result = random_walk(pair.fixed, pair.moving, start, options);
+    const bool right = error_at(centre, result.T_fixed_moving, truth) < 0.5 &&
+                       error_at({0.0, 0.0}, result.T_fixed_moving, truth) < 1.0;
+    arrived += right ? 1 : 0;
+  }
+  return arrived;
+}
+
+TEST(RandomWalk, WideProposalsLeadOutOfWrongPlaces) {
+  for (const double c_lock : {0.0, 7.5}) {
+    EXPECT_EQ(count_arrivals(c_lock, RandomWalkOptions{}.wide_share, 1), 4) << c_lock;
+    EXPECT_EQ(count_arrivals(c_lock, 0.0, 1), 0) << c_lock;
+  }
+}
+
+TEST(RandomWalk, WideProposalsReachAllPosesAlike) {
+  const OccupancyGrid map = test::random_grid(1, 30, 30);
+  RandomWalkOptions options;
+  options.wide_share = 1.0;
+  options.trace = WalkTrace::all;
+  options.patience = options.max_proposals = 4000;
+  const RandomWalkResult result = random_walk(map, map, {}, options);
+  const Point2 centre{1.5, 1.5};
+  int left = 0, turned = 0, inner = 0;
+  for (const WalkSample& sample : result.trace) {
+    const Point2 at = sample.T_fixed_moving * centre;
+    const double distance = std::hypot(at.x - centre.x, at.y - centre.y);
+    EXPECT_LE(distance, 2.0 * std::hypot(1.5, 1.5) + 1e-9);
+    left += at.x < centre.x ? 1 : 0;
+    turned += sample.T_fixed_moving.theta > 0.5 * std::numbers::pi ? 1 : 0;
+    inner += distance < std::hypot(1.5, 1.5) ? 1 : 0;
+  }
+  EXPECT_NEAR(left, 2000, 200);
+  EXPECT_NEAR(turned, 1000, 150);
+  EXPECT_NEAR(inner, 1000, 150);  // half the radius is a quarter of the disc
+}
+
+TEST(Landscape, ACutGoesStraightAndItsPosesAreMeasured) {
+  const EasyPair pair;
+  const SE2 truth = inverse(pair.T_moving_fixed);
+  const SE2 end{truth.x + 2.0, truth.y, truth.theta};
+  const std::vector<SE2> cut = poses_between(pair.moving, truth, end, 5);
+  ASSERT_EQ(cut.size(), 5U);
+  EXPECT_EQ(cut.back(), end);
+  EXPECT_NEAR(cut[2].x, truth.x + 1.0, 1e-9);
+  EXPECT_NEAR(cut[2].theta, truth.theta, 1e-12);
+  const std::vector<MeasuredPose> landscape = measure_poses(pair.fixed, pair.moving, cut);
+  for (std::size_t i = 0; i < cut.size(); ++i) {
+    const ImageSimilarity expected = measure_similarity(pair.fixed, pair.moving, cut[i]);
+    EXPECT_EQ(landscape[i].similarity.psi(), expected.psi());
+    EXPECT_EQ(landscape[i].similarity.omega, expected.omega);
+    EXPECT_TRUE(i == 0 || landscape[i].similarity.psi() > landscape[0].similarity.psi());
+  }
+  EXPECT_THROW(poses_between(pair.moving, truth, end, 1), std::invalid_argument);
+  EXPECT_THROW(poses_between(pair.moving, truth, {std::nan(""), 0.0, 0.0}, 3), std::invalid_argument);
+}
+
 TEST(RandomWalk, HillClimbingNeverGoesBack) {
   const EasyPair pair;
   RandomWalkOptions options;
+  options.wide_share = 0.0;
   options.patience = 300;
-  options.record_trace = true;
+  options.trace = WalkTrace::accepted;
   const RandomWalkResult result = random_walk(pair.fixed, pair.moving, pair.start, options);
   for (std::size_t i = 1; i < result.trace.size(); ++i)
     EXPECT_LT(result.trace[i].delta, result.trace[i - 1].delta);
@@ -141,8 +245,9 @@ TEST(RandomWalk, TemperatureAcceptsWorseSamplesAndCoolingEndsIt) {
   const EasyPair pair;
   RandomWalkOptions options;
   options.patience = 400;
-  options.record_trace = true;
+  options.trace = WalkTrace::accepted;
   options.temperature = 2.0;
+  options.wide_share = 0.0;
   const auto count_worse = [&](std::size_t from_step) {
     const RandomWalkResult result = random_walk(pair.fixed, pair.moving, pair.start, options);
     int worse = 0;
@@ -188,8 +293,9 @@ TEST(RandomWalk, ProposalsFollowTheAcceptedSteps) {
   fixed.at(0, 0) = Cell::free;
   RandomWalkOptions options;
   options.first_step = 1.0;
+  options.wide_share = 0.0;
   options.patience = 300;
-  options.record_trace = true;
+  options.trace = WalkTrace::accepted;
   const RandomWalkResult result = random_walk(fixed, moving, {1.0, 0.0, 0.0}, options);
   double longest = 0.0;
   for (std::size_t i = 1; i < result.trace.size(); ++i) {
@@ -245,6 +351,9 @@ TEST(RandomWalk, RefusesOptionsThatMakeNoSense) {
   refused([](auto& o) { o.smallest_step = 50.0; });
   refused([](auto& o) { o.temperature = -1.0; });
   refused([](auto& o) { o.cooling = 1.5; });
+  refused([](auto& o) { o.wide_share = -0.01; });
+  refused([](auto& o) { o.wide_share = 1.01; });
+  refused([](auto& o) { o.wide_share = std::nan(""); });
   refused([](auto& o) { o.patience = 0; });
   refused([](auto& o) { o.max_proposals = 0; });
   EXPECT_THROW(random_walk(map, map, {std::nan(""), 0.0, 0.0}), std::invalid_argument);

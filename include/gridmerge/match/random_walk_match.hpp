@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "gridmerge/match/match.hpp"
@@ -12,6 +13,8 @@ namespace gridmerge {
 
 struct RandomWalkMatchOptions {
   StartPoseOptions start;
+  /// T_fixed_moving from which all walks start, instead of the best poses of that lattice [m, rad].
+  std::optional<SE2> start_pose = {};
   /// Of each walk. Its seed is the first walk's, and those of the others are derived from it; its c_lock is
   /// replaced by those below.
   RandomWalkOptions walk;
@@ -37,7 +40,8 @@ struct RandomWalkMatchOptions {
 /// The result is that of match() with these differences: a hypothesis's score is its acceptance index; the
 /// acceptance index also stands for the probability, for want of one (it is not one: see docs/paper.md);
 /// agreement and disagreement are counted on the fixed map's lattice; walks that end within ten cells of each
-/// other are one hypothesis. Throws std::invalid_argument for invalid grids or options.
+/// other are one hypothesis. Throws std::invalid_argument for invalid grids or options, and for a start pose
+/// that puts the maps apart (lie_on_each_other()).
 MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                  const RandomWalkMatchOptions& options = {});
 
