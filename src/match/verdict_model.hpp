@@ -15,12 +15,18 @@ struct VerdictWeight {
 inline constexpr double kVerdictBias = -14.950;
 
 /// In the order of verdict_terms().
+// clang-format off: a line each
 inline constexpr std::array kVerdictWeights{
-    VerdictWeight{"tells apart", 3.000}, VerdictWeight{"held", 1.000},
-    VerdictWeight{"lead", 0.610},        VerdictWeight{"far ahead, bent", 12.000},
-    VerdictWeight{"met locally", 2.712}, VerdictWeight{"bend explains", 2.018},
-    VerdictWeight{"cells agree", 3.004}, VerdictWeight{"agrees better", 4.551},
+    VerdictWeight{"tells apart", 3.000},
+    VerdictWeight{"held", 1.000},
+    VerdictWeight{"lead", 0.610},
+    VerdictWeight{"far ahead, bent", 12.000},
+    VerdictWeight{"met locally", 2.712},
+    VerdictWeight{"bend explains", 2.018},
+    VerdictWeight{"cells agree", 3.004},
+    VerdictWeight{"agrees better", 4.551},
     VerdictWeight{"things met", 2.537},
 };
+// clang-format on
 
 }  // namespace gridmerge

@@ -37,12 +37,12 @@ class SeenFloor {
 /// Where a robot may go, and how it goes about it.
 struct Errand {
   int start = -1;  ///< cell of the plan
-  /// Which way it sets off [rad]: it goes to places ahead of its start only; anywhere, if not given.
-  std::optional<double> heading = std::nullopt;
   double reach = 0.0;        ///< it goes to places at most so far from the start, as a robot goes [m]
   double longest_way = 0.0;  ///< [m]
   RangeFinder sensor;
   double scan_every = 0.3;  ///< [m]
+  /// Which way it sets off [rad]: it goes to places ahead of its start only; anywhere, if not given.
+  std::optional<double> heading = std::nullopt;
 };
 
 struct Exploration {

@@ -181,12 +181,17 @@ int count_arrivals(double c_lock, double wide_share, std::uint64_t seed) {
   return arrived;
 }
 
-TEST(RandomWalk, WideProposalsLeadOutOfWrongPlaces) {
-  for (const double c_lock : {0.0, 7.5}) {
-    EXPECT_EQ(count_arrivals(c_lock, RandomWalkOptions{}.wide_share, 1), 4) << c_lock;
-    EXPECT_EQ(count_arrivals(c_lock, 0.0, 1), 0) << c_lock;
-  }
+class FromWrongPlaces : public testing::TestWithParam<double> {};
+
+TEST_P(FromWrongPlaces, WideProposalsLeadOut) {
+  EXPECT_EQ(count_arrivals(GetParam(), RandomWalkOptions{}.wide_share, 1), 4);
 }
+
+TEST_P(FromWrongPlaces, NothingElseDoes) {
+  EXPECT_EQ(count_arrivals(GetParam(), 0.0, 1), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(RandomWalk, FromWrongPlaces, testing::Values(0.0, 7.5));
 
 TEST(RandomWalk, WideProposalsReachAllPosesAlike) {
   const OccupancyGrid map = test::random_grid(1, 30, 30);
