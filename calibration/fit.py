@@ -195,7 +195,7 @@ def header(names: list[str], model: tuple[float, np.ndarray]) -> str:
              "#include <array>", "", "namespace gridmerge {", "", "/// A term of verdict_terms(), and what it weighs.",
              "struct VerdictWeight {", "  const char* term;", "  double weight;", "};", "",
              f"inline constexpr double kVerdictBias = {model[0]:.3f};", "",
-             "/// In the order of verdict_terms().", "// clang-format off: a line each", "inline constexpr std::array kVerdictWeights{"]
+             "/// In the order of verdict_terms().", "// clang-format off", "inline constexpr std::array kVerdictWeights{"]
     lines += [f'    VerdictWeight{{"{name}", {weight:.3f}}},' for name, weight in zip(names, model[1])]
     return "\n".join([*lines, "};", "// clang-format on", "", "}  // namespace gridmerge"]) + "\n"
 

@@ -2,53 +2,17 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
-#include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/simulate/building.hpp"
 
 namespace gridmerge::paper {
 
-/// Small, seeded, and the same on every machine.
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : state_(seed) {}
-  /// In [0, 1).
-  double roll();
-  double roll(double low, double high) { return low + (high - low) * roll(); }
+/// A floor plan as the paper describes its own: an entrance hall, from which three corridors lead to rooms;
+/// about 1,800 m^2. The hall and the corridors are always the same, so that ways fit every draw; rooms, doors
+/// and the boxes that stand in the hall follow the seed.
+Building make_entrance(std::uint64_t seed);
 
- private:
-  std::uint64_t state_;
-};
-
-/// A rectangle of floor [m].
-struct Floor {
-  double left, bottom, right, top;
-};
-
-/// A floor plan of 100 m x 100 m as the paper describes its own: an entrance hall, from which corridors lead
-/// to rooms. Whatever is no floor is wall.
-class Building {
- public:
-  explicit Building(std::uint64_t seed);
-
-  bool is_floor(const Point2& p) const;
-
- private:
-  void add_rooms(Dice& dice, bool along_x, double corridor_low, double corridor_high, double from, double to);
-
-  std::vector<Floor> floors_;
-  std::vector<Floor> obstacles_;
-};
-
-struct RobotMap {
-  OccupancyGrid map;
-  SE2 T_building_map;  ///< the truth
-};
-
-/// What a robot sees of `building` from every half metre of `path`, with a range finder of 360 rays and
-/// `range` metres, drawn on `side` x `side` cells of `resolution` metres in a frame of its own: about the
-/// middle of the path, turned at will.
-RobotMap explore(const Building& building, const std::vector<Point2>& path, double range, int side,
-                 double resolution, std::uint64_t seed);
+/// The hall [m]. Corridors leave it in the west, in the east and in the north.
+inline constexpr double kHallLeft = 36.0, kHallRight = 60.0, kHallBottom = 30.0, kHallTop = 46.0;
 
 }  // namespace gridmerge::paper

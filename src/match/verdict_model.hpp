@@ -15,7 +15,7 @@ struct VerdictWeight {
 inline constexpr double kVerdictBias = -14.950;
 
 /// In the order of verdict_terms().
-// clang-format off: a line each
+// clang-format off
 inline constexpr std::array kVerdictWeights{
     VerdictWeight{"tells apart", 3.000},
     VerdictWeight{"held", 1.000},

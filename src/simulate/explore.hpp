@@ -36,7 +36,7 @@ class SeenFloor {
 
 /// Where a robot may go, and how it goes about it.
 struct Errand {
-  int start = -1;  ///< cell of the plan
+  int start = -1;            ///< cell of the plan
   double reach = 0.0;        ///< it goes to places at most so far from the start, as a robot goes [m]
   double longest_way = 0.0;  ///< [m]
   RangeFinder sensor;
