@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <stdexcept>
@@ -19,7 +20,7 @@ namespace {
 // see.
 constexpr auto kFirstDraw = std::chrono::milliseconds(300);
 constexpr auto kDrawInterval = std::chrono::milliseconds(100);
-constexpr int kBarWidth = 40;
+constexpr int kBarWidth = 30;
 
 // There is nobody to tell that stderr cannot be written, and no reason to end the work for it.
 void print_to_stderr(const std::string& text) {
@@ -29,6 +30,15 @@ void print_to_stderr(const std::string& text) {
 
 void print_line_to_stderr(const std::string& line) {
   print_to_stderr(escape_controls(line) + "\n");
+}
+
+// Rounded up: what is said to take a second is not done in none.
+std::string describe_time_left(std::chrono::duration<double> left) {
+  const double seconds = std::ceil(left.count());
+  if (seconds < 60.0) return fmt::format("{:.0f} s left", seconds);
+  const double minutes = std::ceil(left.count() / 60.0);
+  if (minutes < 60.0) return fmt::format("{:.0f} min left", minutes);
+  return fmt::format("{:.1f} h left", left.count() / 3600.0);
 }
 
 }  // namespace
@@ -73,14 +83,32 @@ void Console::remark(const std::string& message) {
   print_line_to_stderr(message);
 }
 
-void Console::progress(double share) {
-  if (!bar_wanted_ || Clock::now() < next_draw_) return;
-  next_draw_ = Clock::now() + kDrawInterval;
-  bar_shown_ = true;
+void Console::progress(const std::string& phase, double share) {
   share = std::clamp(share, 0.0, 1.0);
-  print_to_stderr(fmt::format("\r[{:<{}}] {:3.0f} %",
-                              std::string(static_cast<std::size_t>(share * kBarWidth), '#'), kBarWidth,
-                              100.0 * share));
+  draw(phase, [&] {
+    const std::string done(static_cast<std::size_t>(share * kBarWidth), '#');
+    const std::string bar = fmt::format(" [{:<{}}] {:3.0f} %", done, kBarWidth, 100.0 * share);
+    if (share == 0.0) return bar;
+    const std::chrono::duration<double> taken = Clock::now() - phase_began_;
+    return bar + ", " + describe_time_left(taken * (1.0 - share) / share);
+  });
+}
+
+void Console::progress(const std::string& phase) {
+  draw(phase, [] { return " ..."; });
+}
+
+void Console::draw(const std::string& phase, const std::function<std::string()>& rest) {
+  const Clock::time_point now = Clock::now();
+  const bool is_new = phase != phase_;
+  if (is_new) {
+    phase_ = phase;
+    phase_began_ = now;
+  }
+  if (!bar_wanted_ || (now < next_draw_ && !(is_new && bar_shown_))) return;
+  next_draw_ = now + kDrawInterval;
+  bar_shown_ = true;
+  print_to_stderr("\r" + phase_ + rest() + "\x1b[K");
 }
 
 void Console::clear() {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,18 +36,25 @@ class Console {
   /// What is going on. Printed when verbose.
   void remark(const std::string& message);
 
-  /// Shows how much of the work is done, in [0, 1]; gone with clear().
-  void progress(double share);
+  /// Shows what is being done, how much of it is done, in [0, 1], and how long the rest takes if it goes on
+  /// as it did. Gone with clear().
+  void progress(const std::string& phase, double share);
+  /// The same of work whose length is not known.
+  void progress(const std::string& phase);
   void clear();
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  void draw(const std::string& phase, const std::function<std::string()>& rest);
 
   bool quiet_;
   bool verbose_;
   bool bar_wanted_;
   bool bar_shown_ = false;
   Clock::time_point next_draw_;
+  std::string phase_;
+  Clock::time_point phase_began_;
 };
 
 /// For a file that is to be written when the work is done: throws FileError now if it cannot be, or if it

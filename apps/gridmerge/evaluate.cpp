@@ -23,6 +23,7 @@ struct EvaluateCommandOptions {
   std::string sets;
   std::string json;
   std::string features;
+  LoadOptions load;
   SearchOptions search;
 
   bool writes_json_file() const { return !json.empty() && json != "-"; }
@@ -44,6 +45,7 @@ Evaluation evaluate_files(const EvaluateCommandOptions& options) {
   if (options.writes_json_file()) try_output_file(options.json, inputs);
   if (!options.features.empty()) try_output_file(options.features, inputs);
   EvaluateOptions engine;
+  engine.load = options.load;
   engine.matcher = PairMatcher(options.common, options.search);
   engine.merger = [&](const std::vector<OccupancyGrid>& maps) {
     if (options.search.up_the_tree()) return merge_up_tree(maps, engine.matcher);
@@ -52,7 +54,7 @@ Evaluation evaluate_files(const EvaluateCommandOptions& options) {
     return merge(maps, joint);
   };
   engine.progress = [&](std::size_t done, std::size_t total) {
-    console.progress(static_cast<double>(done) / static_cast<double>(total));
+    console.progress("evaluating", static_cast<double>(done) / static_cast<double>(total));
   };
   engine.warn = [&](const std::string& warning) { console.warn(warning); };
   return evaluate(truth, engine);
@@ -91,6 +93,7 @@ void add_evaluate(CLI::App& app, Action& action) {
       ->type_name("FILE");
   add_search_options(*command, options->search);
   add_strategy_option(*command, options->search);
+  add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
   command->footer(
       "At least one of the three tables is needed; maps are named relative to the table. Tables are\n"

@@ -58,18 +58,18 @@ void fix(const KnownPoseOptions& options, const std::vector<std::string>& maps,
 
 void add_known_pose_options(CLI::App& command, KnownPoseOptions& options) {
   command
-      .add_option(
-          "--init", options.init,
-          "Table of poses of some or all maps (TSV: map x y theta, in metres and radians, and optionally\n"
-          "sd sd_theta: standard deviations, 1 m and 0.1 rad if not given). Poses that are surer join maps "
-          "by\n"
-          "themselves; of what is not believed, or not sure enough for that, the result says so")
+      .add_option("--init", options.init,
+                  "Poses that you know, of some or all maps: a table (TSV) with the columns map x y theta, "
+                  "in metres\n"
+                  "and radians, and if you like sd sd_theta, their standard deviations (1 m and 0.1 rad if "
+                  "not given).\n"
+                  "Sure poses join maps that share nothing. A pose that the merge does not follow is named")
       ->type_name("FILE");
   command
-      .add_option(
-          "--fix", options.fix,
-          "Take this map's pose for the truth: it is not changed, and the merged map is in its frame, or\n"
-          "in that of --init. One map each: give it again for another, which then needs a pose in --init")
+      .add_option("--fix", options.fix,
+                  "Keep this map where it is. The merged map takes its frame, or that of --init, if given. "
+                  "The option\n"
+                  "names one map; repeat it for others. Each of several needs a pose in --init")
       ->option_text("MAP")
       ->allow_extra_args(false);  // or it would take the maps behind it
 }
@@ -96,6 +96,11 @@ KnownPoses::KnownPoses(const KnownPoseOptions& options, const std::vector<std::s
 std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps,
                                         const MergeResult& result) const {
   std::string text;
+  for (const ContradictedFix& fix : find_contradicted_fixes(maps, poses_, result)) {
+    text += fmt::format(
+        "{}: --fix keeps it {:.3g} m from where it fits {}: the maps contradict the given poses\n",
+        escape_controls(names_[fix.moving]), fix.distance, escape_controls(names_[fix.fixed]));
+  }
   const std::vector<UnusedPose> all = find_unused_poses(maps, poses_, result);
   for (const UnusedPose& unused : all) text += describe(unused) + "\n";
   if (!all.empty() && would_do_in_degrees(maps, result, all.size()))

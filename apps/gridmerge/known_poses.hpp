@@ -35,7 +35,8 @@ class KnownPoses {
   /// For each map, as merge() takes it.
   const std::vector<std::optional<KnownPose>>& poses() const { return poses_; }
 
-  /// Lines that name the poses that the merge did not follow, why, and what to do.
+  /// Lines that name the poses that the merge did not follow, why, and what to do; and those that it followed
+  /// against what the maps say.
   std::string describe_unused(const std::vector<OccupancyGrid>& maps, const MergeResult& result) const;
 
  private:

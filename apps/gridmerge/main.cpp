@@ -48,6 +48,7 @@ int run(int argc, char** argv) {
   CLI::App app("Merges occupancy grid maps made by robots that do not know where the others are.",
                "gridmerge");
   app.footer(
+      "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged\n\n"
       "Exit codes: 0 done, 1 error, 2 wrong usage, 3 done but refused.\n"
       "'gridmerge COMMAND --help' tells more, with an example.");
   app.set_version_flag("--version", "gridmerge " GRIDMERGE_VERSION);
@@ -62,6 +63,10 @@ int run(int argc, char** argv) {
   add_evaluate(app, action);
   add_simulate(app, action);
 
+  if (argc < 2) {
+    print(app.help());
+    return kDone;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

@@ -106,12 +106,14 @@ Answer match_files(const MatchCommandOptions& options) {
     inputs.insert(inputs.end(), moving.files.begin(), moving.files.end());
     try_output_file(options.search.trace, inputs);
   }
-  PairMatcher matcher(options.common, options.search, [&](double share) { console.progress(share); });
+  PairMatcher matcher(options.common, options.search,
+                      [&](double share) { console.progress("matching", share); });
   try {
     Answer answer{matcher(fixed.grid, moving.grid), {}};
     matcher.write_trace();
     const bool is_for_people = !options.json && !options.search.random_walk();
     if (is_for_people && answer.result.verdict == Verdict::refused) {
+      console.progress("trying other scales");
       answer.hint = scale_hint({options.fixed, fixed.grid}, {options.moving, moving.grid},
                                match_options(options.common, options.search));
     }

@@ -244,7 +244,7 @@ void add_measure(CLI::App& app, Action& action) {
       ->required()
       ->allow_extra_args(false)  // or it would take the maps behind it
       ->check(kPose);
-  command->add_option("--c-lock", options->c_lock, "Weight of disagreement less agreement in Delta")
+  command->add_option("--c-lock", options->c_lock, "The weight in Delta = psi + C (disagreement - agreement)")
       ->type_name("C")
       ->check(kNotNegative)
       ->capture_default_str();

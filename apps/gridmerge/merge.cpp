@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -65,6 +66,8 @@ Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
   Inputs inputs;
   MapReader reader(options.load, console);
   for (const std::string& path : options.maps) {
+    console.progress("reading maps",
+                     static_cast<double>(inputs.maps.size()) / static_cast<double>(options.maps.size()));
     LoadedMap map = reader.read(path);
     inputs.maps.push_back(std::move(map.grid));
     inputs.files.insert(inputs.files.end(), map.files.begin(), map.files.end());
@@ -90,7 +93,11 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
                        const std::vector<std::optional<KnownPose>>& known_poses,
                        const MergeCommandOptions& options, PairMatcher& matcher, Console& console) {
   const auto progress = [&](std::size_t done, std::size_t total) {
-    console.progress(static_cast<double>(done) / static_cast<double>(total));
+    if (done < total) {
+      console.progress("matching pairs", static_cast<double>(done) / static_cast<double>(total));
+    } else {
+      console.progress("arranging the maps");
+    }
   };
   try {
     if (options.search.up_the_tree())
@@ -106,20 +113,47 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
   }
 }
 
+/// What is asked of a pair.
+const char* figure_name(const SearchOptions& search) {
+  return search.random_walk() ? "acceptance index" : "probability";
+}
+
 std::string describe_joins(const MergeCommandOptions& options, const MergeResult& result) {
   const std::vector<std::string>& names = options.maps;
-  const char* figure = options.search.random_walk() ? "acceptance index" : "probability";
   std::string text;
   for (const Join& join : result.joins) {
     fmt::format_to(std::back_inserter(text), "{:<8} {} {:.4f}, {:.3f} s: {} and {}\n", name_of(join.outcome),
-                   figure, join.probability, join.match.seconds, escape_controls(names[join.fixed]),
-                   escape_controls(names[join.moving]));
+                   figure_name(options.search), join.probability, join.match.seconds,
+                   escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
   }
   return text;
 }
 
-std::string describe(const std::vector<std::string>& names, const MergeResult& result) {
-  std::string text;
+/// The head of a result that holds no merged map.
+std::string describe_nothing(const MergeCommandOptions& options, const MergeResult& result) {
+  std::string text = fmt::format("nothing was merged: no two of the {} maps fit together surely enough\n",
+                                 options.maps.size());
+  const auto out = std::back_inserter(text);
+  const auto nearest =
+      std::max_element(result.joins.begin(), result.joins.end(),
+                       [](const Join& a, const Join& b) { return a.probability < b.probability; });
+  if (nearest != result.joins.end()) {
+    const std::string fixed = escape_controls(options.maps[nearest->fixed]);
+    const std::string moving = escape_controls(options.maps[nearest->moving]);
+    fmt::format_to(out, "nearest to it: {} and {}, {} {:.4f}\n", fixed, moving, figure_name(options.search),
+                   nearest->probability);
+    fmt::format_to(out, "try: gridmerge match {} {}   (how these two may lie, and why it is not believed)\n",
+                   fixed, moving);
+  }
+  if (options.search.up_the_tree()) return text + "     a lower --accept asks for less\n";
+  return text +
+         "     a lower --accept or a higher --max-false-joins asks for less\n"
+         "     --init TABLE and --fix MAP take poses that you know; the page lays maps by hand\n";
+}
+
+std::string describe(const MergeCommandOptions& options, const MergeResult& result) {
+  const std::vector<std::string>& names = options.maps;
+  std::string text = result.components.empty() ? describe_nothing(options, result) : std::string();
   const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     const Component& component = result.components[i];
@@ -153,7 +187,7 @@ std::string describe(const std::vector<std::string>& names, const MergeResult& r
 /// Of the first maps that were left out: whether they fit the largest merged map, or where there is none
 /// another map, at another scale.
 std::string scale_hints(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
-                        const MergeResult& result) {
+                        const MergeResult& result, Console& console) {
   constexpr std::size_t kMostHints = 2;  // each takes as long as ten matches
   if (options.search.up_the_tree() || result.left_out.empty()) return {};
   const bool has_merged = !result.components.empty();
@@ -165,6 +199,7 @@ std::string scale_hints(const MergeCommandOptions& options, const std::vector<Oc
   for (const std::size_t map : result.left_out) {
     if ((!has_merged && map == first) || count_cells(maps[map]).known() == 0 || asked == kMostHints) continue;
     ++asked;
+    console.progress("trying other scales");
     text += scale_hint(fixed, {options.maps[map], maps[map]}, match_options(options.common, options.search));
   }
   return text;
@@ -191,12 +226,13 @@ int run_merge(const MergeCommandOptions& options) {
   PairMatcher matcher(options.common, options.search);
   if (!options.search.trace.empty()) try_trace(options, inputs.files);
   const MergeResult result = merge_maps(inputs.maps, known_poses.poses(), options, matcher, console);
-  console.clear();
+  console.progress("writing the result");
   write_merge_output(options.output, inputs.files, options.maps, inputs.maps, result);
   matcher.write_trace();
+  const std::string hints = scale_hints(options, inputs.maps, result, console);
+  console.clear();
   if (options.common.verbose) print(describe_joins(options, result));
-  print(describe(options.maps, result) + known_poses.describe_unused(inputs.maps, result) +
-        scale_hints(options, inputs.maps, result));
+  print(describe(options, result) + known_poses.describe_unused(inputs.maps, result) + hints);
   const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
   print("look at it: " + escape_controls(page.string()) + "\n");
   return result.components.size() == 1 && result.left_out.empty() ? kDone : kRefused;
@@ -216,7 +252,7 @@ void add_merge(CLI::App& app, Action& action) {
       ->required();
   command
       ->add_option("--output-resolution", options->output_resolution,
-                   "Metres a cell of the merged map; without it the finest of the maps'")
+                   "Metres per cell of the merged map; if not given, those of the finest map")
       ->type_name("METRES")
       ->check(kMetresPerCell);
   add_known_pose_options(*command, options->known);

@@ -83,9 +83,13 @@ SE2 to_pose(const std::string& text) {
 void add_common_options(CLI::App& command, CommonOptions& options) {
   CLI::Option* quiet = command.add_flag("-q,--quiet", options.quiet,
                                         "Print results and errors only: no warnings, no progress bar");
-  command.add_flag("-v,--verbose", options.verbose, "Print more")->excludes(quiet);
   command
-      .add_option("--threads", options.threads, "Worker threads; 0 = one a core. Results do not depend on it")
+      .add_flag("-v,--verbose", options.verbose,
+                "Print details too: the files that were read, and figures of each pair")
+      ->excludes(quiet);
+  command
+      .add_option("--threads", options.threads,
+                  "Worker threads; 0 = one per core. Results do not depend on it")
       ->type_name("N")
       ->check(CLI::Range(0, 1024).description(""))
       ->capture_default_str();
@@ -93,7 +97,8 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
 
 void add_map_file_options(CLI::App& command, LoadOptions& options) {
   command
-      .add_option("--resolution", options.resolution, "Metres a cell of maps that are images without a YAML")
+      .add_option("--resolution", options.resolution,
+                  "Metres per cell of maps that are images without a YAML")
       ->type_name("METRES")
       ->check(kMetresPerCell);
   command.add_flag("--literal-thresholds", options.literal_thresholds,

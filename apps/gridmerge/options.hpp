@@ -5,7 +5,6 @@
 #include <string>
 
 #include "gridmerge/grid/se2.hpp"
-
 #include "gridmerge/io/map_file.hpp"
 
 namespace gridmerge::cli {

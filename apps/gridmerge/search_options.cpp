@@ -65,7 +65,8 @@ std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& opt
     return added.back();
   };
   add("--c-lock", match.c_locks,
-      "weight of disagreement less agreement, 0 if not given; several, with commas, are used in turn",
+      "the weight in Delta = psi + C (disagreement - agreement), which the walk makes small; 0 if not "
+      "given. Several, with commas, are used in turn, one for each walk",
       "C,...")
       ->allow_extra_args(false)  // or it would take the maps behind it
       ->delimiter(',')
@@ -139,8 +140,8 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
   command
       .add_option(
           "--accept", options.accept,
-          fmt::format("Accept from this probability on, {} if not given; of the random walk from this "
-                      "acceptance index on, {} if not given",
+          fmt::format("How sure a match has to be: the smallest probability that is accepted, {} if not "
+                      "given. Of the random walk the smallest acceptance index, {} if not given",
                       MatchOptions{}.accept_probability, RandomWalkMatchOptions{}.accept_acceptance_index))
       ->type_name("P")
       ->check(kProbability);

@@ -97,12 +97,16 @@ std::string describe(const Simulation& simulation, const std::string& output) {
 int run_simulate(const SimulateCommandOptions& options) {
   Console console(options.common);
   SimulateOptions simulation_options = make_options(options);
-  simulation_options.progress = [&](double share) { console.progress(share / (1.0 + options.others)); };
+  // Each building takes about as long as another.
+  const auto show = [&](int done, double share) {
+    console.progress("simulating", (done + share) / (1.0 + options.others));
+  };
+  simulation_options.progress = [&](double share) { show(0, share); };
   const Simulation simulation = simulate(simulation_options);
   std::vector<Simulation> elsewhere;
   for (int i = 0; i < options.others; ++i) {
     SimulateOptions other = gridmerge::elsewhere(simulation_options, i);
-    other.progress = [&](double share) { console.progress((i + 1 + share) / (1.0 + options.others)); };
+    other.progress = [&, i](double share) { show(i + 1, share); };
     elsewhere.push_back(simulate(other));
   }
   console.clear();
@@ -173,7 +177,7 @@ void add_mapping_options(CLI::App& command, SimulateCommandOptions& options) {
   };
   number("--drift", simulation.drift, "AMOUNT",
          "How much maps bend: 0 not at all, 1 as hand-held mapping does");
-  number("--resolution", simulation.resolution, "METRES", "Metres a cell of the maps");
+  number("--resolution", simulation.resolution, "METRES", "Metres per cell of the maps");
   number("--range", simulation.sensor.range, "METRES", "Of the range finder");
   number("--field-of-view", options.field_of_view, "DEGREES", "Of the range finder");
   number("--angular-step", options.angular_step, "DEGREES", "Between its beams");
@@ -183,8 +187,8 @@ void add_mapping_options(CLI::App& command, SimulateCommandOptions& options) {
   command
       .add_option(
           "--tidy", simulation.tidy,
-          "Without specks, and with walls so much thicker on each side, as hand-held mappers draw them; "
-          "as the range finder left them if not given")
+          "Clean the maps as hand-held mappers do: remove specks, and make walls thicker by this much on "
+          "each side. If not given, maps stay as the range finder drew them")
       ->type_name("METRES")
       ->check(kNotNegative);
   command.add_flag("--probabilities", options.dataset.probabilities,
@@ -211,8 +215,12 @@ void add_simulate(CLI::App& app, Action& action) {
       "frame of their own. Writes robot_1.yaml and so on, elsewhere_1.yaml of other buildings, "
       "building.yaml,\n"
       "and the truth: pairs.tsv, negatives.tsv and sets.tsv, as 'gridmerge evaluate' reads them.\n\n"
-      "Example:\n  gridmerge simulate --kind office --robots 6 --overlap 0.2 --size 40x25 --seed 7 -o "
-      "office");
+      "The less the maps overlap, and the more they bend, the fewer of them can be joined. These four "
+      "can:\n\n"
+      "Example:\n  gridmerge simulate --kind office --robots 4 --overlap 0.6 --seed 4 -o office\n"
+      "  gridmerge merge office/robot_1.yaml office/robot_2.yaml office/robot_3.yaml office/robot_4.yaml -o "
+      "merged\n"
+      "  gridmerge evaluate office/pairs.tsv --negatives office/negatives.tsv --sets office/sets.tsv");
   command->callback([options, &action] { action = [options] { return run_simulate(*options); }; });
 }
 

@@ -239,7 +239,8 @@ def _checked_array(name: str, data: object, dtype: np.dtype[Any]) -> Any:
     if not isinstance(data, np.ndarray):
         raise TypeError(f"{name}: must be a numpy array of {dtype}, is {_arguments.kind_of(data)}")
     if data.dtype != dtype:
-        raise TypeError(f"{name}: must be of dtype {dtype}, is {data.dtype}")
+        remedy = f"; {name}.astype(np.{dtype}) converts it" if data.dtype.kind in "biuf" else ""
+        raise TypeError(f"{name}: must be of dtype {dtype}, is {data.dtype}{remedy}")
     if data.ndim != 2:
         raise ValueError(f"{name}: must have two dimensions (height, width), has {data.ndim}")
     return np.require(data, requirements=["ALIGNED"])

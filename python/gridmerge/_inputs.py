@@ -8,6 +8,8 @@ import sys
 import warnings
 from collections.abc import Iterable
 
+import numpy as np
+
 from . import _arguments
 from ._grid import OccupancyGrid, load
 
@@ -26,6 +28,8 @@ def to_map(name: str, value: object) -> OccupancyGrid:
         return grid
     if hasattr(value, "info") or (hasattr(value, "data") and not hasattr(value, "dtype")):
         return OccupancyGrid._from_msg(value, name)
+    if isinstance(value, np.ndarray):
+        raise TypeError(f"{name}: is an array; OccupancyGrid(array, resolution=...) makes a map of it")
     raise TypeError(
         f"{name}: must be an OccupancyGrid, a path, or a message with the fields of nav_msgs/OccupancyGrid, "
         f"is {_arguments.kind_of(value)}"

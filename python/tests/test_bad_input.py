@@ -286,3 +286,10 @@ def test_an_uninitialised_core_object_is_no_crash() -> None:
     empty = _core.Grid.__new__(_core.Grid)
     with pytest.raises(TypeError):
         _core.match(empty, empty, 0, 0.8, 10, None)
+
+
+def test_an_array_that_is_no_map_names_the_remedy() -> None:
+    with pytest.raises(TypeError, match=r"; data\.astype\(np\.int8\) converts it"):
+        gridmerge.OccupancyGrid(np.zeros((3, 4)), 0.05)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"fixed: is an array; OccupancyGrid\(array, resolution=\.\.\.\)"):
+        gridmerge.match(GOOD, GOOD)  # type: ignore[arg-type]

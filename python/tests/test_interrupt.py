@@ -29,7 +29,8 @@ LONG_WORK = {
 LONGEST_WAIT = {"taking in large maps": 0.5, "taking in large maps one by one": 0.5}  # [s]
 
 PROGRAM = """
-import sys, time
+import signal, sys, time
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a parent that ignores it, as nohup does, hands that down
 import numpy as np
 import gridmerge
 

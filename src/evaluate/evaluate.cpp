@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "gridmerge/evaluate/count.hpp"
-#include "gridmerge/io/map_file.hpp"
 #include "map_cache.hpp"
 
 namespace gridmerge {
@@ -17,7 +16,7 @@ class Evaluator {
  public:
   Evaluator(const Truth& truth, const EvaluateOptions& options)
       : options_(options),
-        maps_(options.cache_bytes, options.warn),
+        maps_(options.load, options.cache_bytes, options.warn),
         total_(truth.pairs.size() + truth.negatives.size() + truth.sets.size()) {
     if (!options_.matcher) {
       options_.matcher = [](const OccupancyGrid& fixed, const OccupancyGrid& moving) {

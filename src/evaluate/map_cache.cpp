@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "gridmerge/io/map_file.hpp"
-
 namespace gridmerge {
 
 namespace {
@@ -13,8 +11,9 @@ std::size_t size_in_bytes(const EvaluatedMap& map) {
 }
 }  // namespace
 
-MapCache::MapCache(std::size_t max_bytes, std::function<void(const std::string&)> warn)
-    : max_bytes_(max_bytes), warn_(std::move(warn)) {}
+MapCache::MapCache(const LoadOptions& load, std::size_t max_bytes,
+                   std::function<void(const std::string&)> warn)
+    : load_(load), max_bytes_(max_bytes), warn_(std::move(warn)) {}
 
 std::shared_ptr<const EvaluatedMap> MapCache::get(const std::filesystem::path& path) {
   // A handful of maps fit, so a list that is walked is all it takes.
@@ -35,7 +34,7 @@ std::shared_ptr<const EvaluatedMap> MapCache::get(const std::filesystem::path& p
 }
 
 EvaluatedMap MapCache::read(const std::filesystem::path& path) {
-  LoadedMap loaded = load_map(path);
+  LoadedMap loaded = load_map(path, load_);
   if (warn_ && !loaded.warnings.empty() && warned_.insert(path).second) {
     for (const MapWarning& warning : loaded.warnings) warn_(path.string() + ": " + warning.text);
   }

@@ -12,6 +12,7 @@
 
 #include "gridmerge/evaluate/displacement.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/io/map_file.hpp"
 
 namespace gridmerge {
 
@@ -23,7 +24,7 @@ struct EvaluatedMap {
 /// Reads maps once and keeps those used last, as far as they fit.
 class MapCache {
  public:
-  MapCache(std::size_t max_bytes, std::function<void(const std::string&)> warn);
+  MapCache(const LoadOptions& load, std::size_t max_bytes, std::function<void(const std::string&)> warn);
 
   /// The map, from memory if it is there. It lives on with its user when the cache drops it. Throws
   /// FileError.
@@ -37,6 +38,7 @@ class MapCache {
  private:
   using Entry = std::pair<std::filesystem::path, std::shared_ptr<const EvaluatedMap>>;
 
+  LoadOptions load_;
   std::size_t max_bytes_;
   std::size_t bytes_ = 0;
   std::list<Entry> entries_;  ///< used last first

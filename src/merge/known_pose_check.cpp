@@ -98,4 +98,21 @@ std::vector<UnusedPose> find_unused_poses(const std::vector<OccupancyGrid>& maps
   return unused;
 }
 
+std::vector<ContradictedFix> find_contradicted_fixes(const std::vector<OccupancyGrid>& maps,
+                                                     const std::vector<std::optional<KnownPose>>& known_poses,
+                                                     const MergeResult& result) {
+  const KnownMaps known = known_maps(maps, known_poses);
+  const auto is_fixed = [&](std::size_t map) { return known.contains(map) && known.at(map).pose.fixed; };
+  std::vector<ContradictedFix> contradicted;
+  for (const Join& join : result.joins) {
+    if (join.match.verdict != Verdict::accepted || !is_fixed(join.fixed) || !is_fixed(join.moving)) continue;
+    const KnownMap &fixed = known.at(join.fixed), &moving = known.at(join.moving);
+    const SE2 T_given = inverse(fixed.pose.T_world_map) * moving.pose.T_world_map;
+    const double distance = displacement(moving.extent, T_given, join.match.T_fixed_moving);
+    if (distance > agreement_tolerance(fixed.extent, moving.extent))
+      contradicted.push_back({join.fixed, join.moving, distance});
+  }
+  return contradicted;
+}
+
 }  // namespace gridmerge

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -21,7 +23,8 @@ namespace {
 constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 constexpr double kFarthest =
     1e12;  // [m]: maps' origins are within 1e9, and poses were multiplied a few times
-constexpr double kRounding = 1e-9;  // probabilities are differences, too
+constexpr std::size_t kMostEqual = 100;  // of one name: what is said of them is looked for among all pairs
+constexpr double kRounding = 1e-9;       // probabilities are differences, too
 constexpr double kInfinity = std::numeric_limits<double>::max();
 
 double share(const JsonReader& json) {
@@ -65,25 +68,31 @@ class RecordReader {
     for (std::size_t i = 0; i < json.size(); ++i) {
       const std::string name = json.at(i).text();
       if (name.empty() || name.find('\0') != std::string::npos) json.at(i).fail("is no name of a file");
-      if (!index_.emplace(name, i).second)
-        json.at(i).fail("is '" + name + "' once more: what is said of the two cannot be told apart");
+      named_[name].push_back(i);
+      if (named_[name].size() > kMostEqual) json.at(i).fail("is there too often: '" + name + "'");
       record_.names.push_back(name);
     }
     is_placed_.assign(record_.names.size(), false);
   }
 
-  std::size_t map_at(const JsonReader& json) const {
-    const auto found = index_.find(json.text());
-    if (found == index_.end()) json.fail("is none of the maps: '" + json.text() + "'");
+  /// All of that name, ascending: one, or a file that was given several times, which is equal maps.
+  const std::vector<std::size_t>& maps_at(const JsonReader& json) const {
+    const auto found = named_.find(json.text());
+    if (found == named_.end()) json.fail("is none of the maps: '" + json.text() + "'");
     return found->second;
   }
 
-  /// Of a map that nothing was said of before.
-  std::size_t place(const JsonReader& json) {
-    const std::size_t map = map_at(json);
-    if (is_placed_[map]) json.fail("is in two places: '" + record_.names[map] + "'");
-    is_placed_[map] = true;
-    return map;
+  std::size_t map_at(const JsonReader& json) const { return maps_at(json).front(); }
+
+  /// Of a map that nothing was said of before; of equal ones the first from `from` on, if there is one.
+  std::size_t place(const JsonReader& json, std::size_t from) {
+    std::optional<std::size_t> found;
+    for (const std::size_t map : maps_at(json)) {
+      if (!is_placed_[map] && (!found || *found < from)) found = map;
+    }
+    if (!found) json.fail("is in two places: '" + json.text() + "'");
+    is_placed_[*found] = true;
+    return *found;
   }
 
   void read_components(const JsonReader& json) {
@@ -99,7 +108,7 @@ class RecordReader {
     Component component;
     const JsonReader members = json.at("members");
     for (std::size_t i = 0; i < members.size(); ++i) {
-      component.members.push_back(read_member(members.at(i)));
+      component.members.push_back(read_member(members.at(i), i > 0 ? component.members.back().map : 0));
       if (i > 0 && component.members[i - 1].map > component.members[i].map)
         members.at(i).fail("is not in the order of the maps");
     }
@@ -108,8 +117,9 @@ class RecordReader {
     component.in_world_frame = json.at("frame").is_null();
     if (component.in_world_frame) return component;
     // That of the first member, or of one that was fixed where its own frame has it.
-    const std::size_t frame = map_at(json.at("frame"));
-    component.in_world_frame = frame != component.members.front().map;
+    const std::size_t first = component.members.front().map, named = map_at(json.at("frame"));
+    const std::size_t frame = record_.names[named] == record_.names[first] ? first : named;
+    component.in_world_frame = frame != first;
     if (frame_of(component) != frame) json.at("frame").fail("is not the frame of its members");
     return component;
   }
@@ -123,9 +133,9 @@ class RecordReader {
     return omega;
   }
 
-  Member read_member(const JsonReader& json) {
+  Member read_member(const JsonReader& json, std::size_t from) {
     Member member;
-    member.map = place(json.at("source"));
+    member.map = place(json.at("source"), from);
     member.T_component_map = json.at("transform").transform(kFarthest);
     if (!json.at("probability").is_null()) member.probability = share(json.at("probability"));
     const JsonReader sd = json.at("sd");
@@ -138,11 +148,27 @@ class RecordReader {
     for (std::size_t i = 0; i < json.size(); ++i) record_.result.joins.push_back(read_join(json.at(i)));
   }
 
+  /// The maps of a join. Of equal ones those that are next in the order of joins: ascending, fixed < moving.
+  std::pair<std::size_t, std::size_t> pair_of(const JsonReader& json) const {
+    using Maps = std::pair<std::size_t, std::size_t>;
+    const Maps before = record_.result.joins.empty()
+                            ? Maps{}
+                            : Maps{record_.result.joins.back().fixed, record_.result.joins.back().moving};
+    std::optional<std::tuple<bool, bool, Maps>> best;
+    for (const std::size_t fixed : maps_at(json.at("fixed"))) {
+      for (const std::size_t moving : maps_at(json.at("moving"))) {
+        const Maps maps{fixed, moving};
+        const std::tuple one{fixed > moving, maps <= before, maps};
+        if (fixed != moving && (!best || one < *best)) best = one;
+      }
+    }
+    if (!best) json.fail("is of a map and itself");
+    return std::get<Maps>(*best);
+  }
+
   Join read_join(const JsonReader& json) const {
     Join join;
-    join.fixed = map_at(json.at("fixed"));
-    join.moving = map_at(json.at("moving"));
-    if (join.fixed == join.moving) json.fail("is of a map and itself");
+    std::tie(join.fixed, join.moving) = pair_of(json);
     join.outcome = one_of(json.at("outcome"),
                           std::array{JoinOutcome::refused, JoinOutcome::accepted, JoinOutcome::rescued,
                                      JoinOutcome::rejected, JoinOutcome::known});
@@ -196,21 +222,30 @@ class RecordReader {
     if (maps.size() != reasons.size()) reasons.fail("does not go with left_out");
     std::vector<std::size_t>& left_out = record_.result.left_out;
     for (std::size_t i = 0; i < maps.size(); ++i) {
-      left_out.push_back(place(maps.at(i)));
+      left_out.push_back(place(maps.at(i), i > 0 ? left_out.back() : 0));
       if (i > 0 && left_out[i - 1] > left_out[i]) maps.at(i).fail("is not in the order of the maps");
     }
     for (std::size_t i = 0; i < maps.size(); ++i) {
       const JsonReader reason = reasons.at(i);
-      if (has_objects && map_at(reason.at("source")) != left_out[i])
+      if (has_objects && reason.at("source").text() != record_.names[left_out[i]])
         reason.at("source").fail("does not go with left_out");
       record_.result.left_out_reasons.push_back(read_reason(has_objects ? reason.at("reason") : reason));
     }
   }
 
   MergeRecord record_;
-  std::unordered_map<std::string, std::size_t> index_;  // of a map by its name
+  std::unordered_map<std::string, std::vector<std::size_t>> named_;  // maps by their name
   std::vector<bool> is_placed_;
 };
+
+/// Whether an equal map lies there: merge() counts equal maps once.
+bool is_placed(const PlacedMap& one, const std::vector<PlacedMap>& placed) {
+  return std::any_of(placed.begin(), placed.end(), [&](const PlacedMap& other) {
+    const OccupancyGrid &a = *one.map, &b = *other.map;
+    return one.T_output_map == other.T_output_map && a.origin == b.origin && a.width == b.width &&
+           a.resolution == b.resolution && a.cells == b.cells;
+  });
+}
 
 }  // namespace
 
@@ -235,14 +270,17 @@ MergeRecord read_merge_record(const std::filesystem::path& directory) {
 std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<OccupancyGrid>& maps,
                                     const std::filesystem::path& directory) {
   if (maps.size() != record.names.size()) throw std::invalid_argument("there are not as many maps as names");
+  const bool drops_copies = record.result.expected_false_joins.has_value();  // merge() does, a tree does not
   std::vector<std::size_t> changed;
   for (std::size_t i = 0; i < record.result.components.size(); ++i) {
     Component& component = record.result.components[i];
     const std::filesystem::path file = directory / component_file(i);
     const OccupancyGrid merged = load_map(file).grid;
     std::vector<PlacedMap> placed;
-    for (const Member& member : component.members)
-      placed.push_back({&maps[member.map], member.T_component_map});
+    for (const Member& member : component.members) {
+      const PlacedMap one{&maps[member.map], member.T_component_map};
+      if (!drops_copies || !is_placed(one, placed)) placed.push_back(one);
+    }
     try {
       component.fused = fuse(placed, merged.resolution);
     } catch (const std::invalid_argument& error) {

@@ -38,6 +38,18 @@ TEST_F(MapFiles, UnknownIsUnknownUnderAnyFreeThreshold) {
   EXPECT_NE(run({"info", map}).out.find("load as unknown"), std::string::npos);
 }
 
+TEST_F(MapFiles, EvaluateReadsToTheLetterToo) {
+  changed(left, "quarter.yaml", "free_thresh:", "free_thresh: 0.25");
+  const std::string table = directory.write("negatives.tsv", "fixed\tmoving\nquarter.yaml\tother.yaml\n");
+  const std::vector<std::string> arguments = {"evaluate", "--negatives", table};
+  EXPECT_NE(run(arguments).err.find("free_thresh 0.25"), std::string::npos);
+  std::vector<std::string> literal = arguments;
+  literal.push_back("--literal-thresholds");
+  const Outcome outcome = run(literal);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err.find("load as unknown"), std::string::npos) << outcome.err;
+}
+
 TEST_F(MapFiles, AnImagePathOfAnotherMachineIsNoObstacle) {
   const std::string map = changed(left, "moved.yaml", "image:", "image: /home/robot/maps/left.pgm");
   const Outcome outcome = run({"info", map});

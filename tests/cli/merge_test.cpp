@@ -97,6 +97,31 @@ TEST_F(Merge, OfOneMapTwiceIsThatMap) {
   expect_near(json.at("components").at(0).at("members").at(1).at("transform"), {}, 0.05, 0.0035);
 }
 
+TEST_F(Merge, AMapThatIsGivenTwiceCanBeShownAgain) {
+  const std::vector<std::vector<std::string>> inputs = {
+      {left, left}, {left, right, left}, {right, left, left}, {left, left, other}, {other, other, left}};
+  for (const std::vector<std::string>& maps : inputs) {
+    std::vector<std::string> arguments = {"merge", "-o", output};
+    arguments.insert(arguments.end(), maps.begin(), maps.end());
+    EXPECT_EQ(run(arguments).exit_code % 3, 0);
+    const std::string page = read_file(output + "/report.html");
+    EXPECT_EQ(run({"report", output}).err, "");
+    EXPECT_TRUE(read_file(output + "/report.html") == page) << arguments[3] << " " << arguments[4];
+  }
+}
+
+TEST_F(Merge, FixedPosesThatTheMapsContradictAreNamed) {
+  const std::string poses = directory.write(
+      "poses.tsv", "map\tx\ty\ttheta\nleft.yaml\t0\t0\t0\nright.yaml\t" +
+                       std::to_string(T_left_right.x + 60.0) + "\t" + std::to_string(T_left_right.y) + "\t" +
+                       std::to_string(T_left_right.theta) + "\n");
+  const Outcome outcome =
+      run({"merge", left, right, "--init", poses, "--fix", left, "--fix", right, "-o", output});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.out.find(right + ": --fix keeps it 60 m from where it fits " + left), std::string::npos)
+      << outcome.out;
+}
+
 TEST_F(Merge, FixTakesOneMapAndNoticesACopy) {
   // The second name after --fix is one more input.
   const Outcome outcome = run({"merge", left, right, "--fix", left, right, "-o", output});

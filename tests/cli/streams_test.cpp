@@ -75,7 +75,9 @@ TEST_F(Streams, TheProgressBarIsForTerminalsAndGoesAway) {
 
   const Outcome shown = run(arguments, terminal);
   EXPECT_EQ(shown.exit_code, 0);
-  EXPECT_NE(shown.err.find("%"), std::string::npos) << "no bar in a run of " << shown.out;
+  EXPECT_NE(shown.err.find("\revaluating ["), std::string::npos) << "no bar in a run of " << shown.out;
+  EXPECT_NE(shown.err.find("%, "), std::string::npos) << shown.err;
+  EXPECT_NE(shown.err.find(" left"), std::string::npos) << shown.err;
   const std::string erase = "\r\x1b[K";
   ASSERT_GE(shown.err.size(), erase.size());
   EXPECT_EQ(shown.err.substr(shown.err.size() - erase.size()), erase);

@@ -9,8 +9,8 @@
 namespace gridmerge::test {
 namespace {
 
-const std::vector<std::string> kCommands = {"info",   "match", "measure", "merge",
-                                            "report", "view",  "evaluate"};
+const std::vector<std::string> kCommands = {"info",   "match", "measure",  "merge",
+                                            "report", "view",  "evaluate", "simulate"};
 
 class WrongUsage : public testing::TestWithParam<std::vector<std::string>> {};
 
@@ -26,7 +26,7 @@ using Words = std::vector<std::string>;
 INSTANTIATE_TEST_SUITE_P(
     Cli, WrongUsage,
     testing::Values(
-        Words{}, Words{""}, Words{"frobnicate"}, Words{"--frobnicate"}, Words{"info"},
+        Words{""}, Words{"frobnicate"}, Words{"--frobnicate"}, Words{"info"},
         Words{"info", "a.yaml", "--frobnicate"}, Words{"match"}, Words{"match", "a.yaml"},
         Words{"match", "a.yaml", "b.yaml", "c.yaml"}, Words{"match", "a.yaml", "b.yaml", "--threads", "-1"},
         Words{"match", "a.yaml", "b.yaml", "--threads", "two"},

@@ -107,7 +107,7 @@ TEST_F(Evaluate, WarnsOnceOfAMap) {
 }
 
 TEST_F(Evaluate, TheCacheKeepsWhatWasUsedLastAndItsBound) {
-  MapCache unbounded(std::size_t{1} << 30, nullptr);
+  MapCache unbounded({}, std::size_t{1} << 30, nullptr);
   const auto left = unbounded.get(map("left").path);
   const std::size_t left_bytes = unbounded.bytes();
   EXPECT_GE(left_bytes, left->grid.cells.size());
@@ -116,7 +116,7 @@ TEST_F(Evaluate, TheCacheKeepsWhatWasUsedLastAndItsBound) {
   const std::size_t both_bytes = unbounded.bytes();
   EXPECT_GT(both_bytes, left_bytes);
 
-  MapCache two(both_bytes, nullptr);
+  MapCache two({}, both_bytes, nullptr);
   const auto first = two.get(map("left").path);
   const auto second = two.get(map("right").path);
   EXPECT_EQ(two.get(map("left").path), first);  // used last: "right" has to go for "small"
@@ -127,7 +127,7 @@ TEST_F(Evaluate, TheCacheKeepsWhatWasUsedLastAndItsBound) {
   EXPECT_NE(two.get(map("right").path), second);
   EXPECT_FALSE(second->grid.cells.empty());
 
-  MapCache none(0, nullptr);
+  MapCache none({}, 0, nullptr);
   EXPECT_FALSE(none.get(map("left").path)->grid.cells.empty());
   EXPECT_EQ(none.bytes(), 0u);
 }

@@ -50,6 +50,31 @@ TEST(UnusedPoses, NameTheOneThatLiesElsewhereAndHowFar) {
   }
 }
 
+TEST(ContradictedFixes, AreTheFixedPairsThatMatchElsewhere) {
+  Rooms rooms;
+  Join join;
+  join.fixed = 0;
+  join.moving = 1;
+  join.match.verdict = Verdict::accepted;
+  join.match.T_fixed_moving = Rooms::at(1);
+  rooms.result.joins = {join};
+  const auto contradicted = [&] { return find_contradicted_fixes(rooms.maps, rooms.known, rooms.result); };
+
+  rooms.known[0]->fixed = rooms.known[1]->fixed = true;
+  EXPECT_TRUE(contradicted().empty());
+  rooms.known[1]->T_world_map = rooms.T_world * Rooms::at(1) * SE2{0.0, 24.0, 0.0};
+  ASSERT_EQ(contradicted().size(), 1u);
+  EXPECT_EQ(contradicted()[0].fixed, 0u);
+  EXPECT_EQ(contradicted()[0].moving, 1u);
+  EXPECT_NEAR(contradicted()[0].distance, 24.0, 1e-6);
+
+  rooms.known[1]->fixed = false;  // an unused pose then
+  EXPECT_TRUE(contradicted().empty());
+  rooms.known[1]->fixed = true;
+  rooms.result.joins[0].match.verdict = Verdict::refused;  // the maps are not sure of it
+  EXPECT_TRUE(contradicted().empty());
+}
+
 TEST(UnusedPoses, ATurnCountsAsADistanceToo) {
   Rooms rooms;
   rooms.known[3].reset();

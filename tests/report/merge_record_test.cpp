@@ -170,7 +170,8 @@ TEST(MergeRecord, SaysWhatIsWrongAndWhere) {
   EXPECT_TRUE(contains(complaint("/left_out/0", "a.yaml"), "in two places: 'a.yaml'"));
   EXPECT_TRUE(contains(complaint("/left_out", {"e.yaml", "b \"<&>\n.yaml"}), "order of the maps"));
   EXPECT_TRUE(contains(complaint("/left_out_maps", Json::array()), "does not go with left_out"));
-  EXPECT_TRUE(contains(complaint("/maps/1", "a.yaml"), "once more"));
+  EXPECT_TRUE(contains(complaint("/maps", std::vector<std::string>(101, "a.yaml")),
+                       "maps[100] is there too often: 'a.yaml'"));
   EXPECT_TRUE(contains(complaint("/maps/1", ""), "no name"));
   EXPECT_TRUE(contains(complaint("/maps/1", std::string("a\0b", 3)), "no name"));
   EXPECT_TRUE(contains(complaint("/maps/6", "g.yaml"), "'g.yaml' is in no component"));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gridmerge/evaluate/truth.hpp"
+#include "gridmerge/io/map_file.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/tree.hpp"
 
@@ -26,6 +27,8 @@ struct EvaluateOptions {
   Matcher matcher;
   /// How the maps of a set are merged; merge() as it is, if empty.
   std::function<MergeResult(const std::vector<OccupancyGrid>&)> merger;
+  /// How files become maps.
+  LoadOptions load;
   /// How much of the maps of pairs and negatives is kept in memory, those used last first [bytes].
   std::size_t cache_bytes = std::size_t{96} << 20;
   /// Called with the number of finished and of all pairs, negatives and sets.

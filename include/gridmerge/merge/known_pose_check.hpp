@@ -38,4 +38,18 @@ std::vector<UnusedPose> find_unused_poses(const std::vector<OccupancyGrid>& maps
                                           const std::vector<std::optional<KnownPose>>& known_poses,
                                           const MergeResult& result);
 
+/// Two maps whose poses were fixed, and which alone would surely lie elsewhere.
+struct ContradictedFix {
+  std::size_t fixed = 0;   ///< index of an input map
+  std::size_t moving = 0;  ///< index of a later one
+  double distance = 0.0;   ///< of the fixed pose of `moving` from where it fits `fixed` [m, as UnusedPose]
+};
+
+/// The fixed poses that merge() followed against what the maps say: of each pair that the maps' own match
+/// accepts elsewhere, beyond the tolerance that bent maps need. In the order of the joins. Arguments as of
+/// merge(), with what it returned. O(cells + joins).
+std::vector<ContradictedFix> find_contradicted_fixes(const std::vector<OccupancyGrid>& maps,
+                                                     const std::vector<std::optional<KnownPose>>& known_poses,
+                                                     const MergeResult& result);
+
 }  // namespace gridmerge
