@@ -134,6 +134,31 @@ TEST(SearchAllPoses, CandidatesComeBestFirstAndNoneTwice) {
   }
 }
 
+// With so many candidates wanted that every shift has to be looked at, the best ones are the same: what is
+// passed over otherwise cannot be among them.
+TEST(SearchAllPoses, TheBestAreTheSameWhenAllAreLookedAt) {
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    const int width = 60 + 25 * static_cast<int>(seed);
+    const WallMap fixed = make_wall_map(test::random_grid(seed, width, 70), 0.1);
+    const WallMap moving = make_wall_map(test::random_grid(seed + 100, 60, 80), 0.1);
+    ExhaustiveSearchOptions options;
+    options.coarse_factor = 2 + static_cast<int>(seed) % 3;
+    options.rotations = 50;
+    options.samples = seed == 7 ? 1 : 40 + 25 * seed;
+    options.max_candidates = 1000000;
+    const auto all = search_all_poses(fixed, moving, options);
+    for (const std::size_t count : {1U, 10U, 60U, 200U}) {
+      options.max_candidates = count;
+      const auto found = search_all_poses(fixed, moving, options);
+      ASSERT_EQ(found.size(), std::min(count, all.size())) << seed;
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        ASSERT_EQ(found[i].score, all[i].score) << seed << " " << i;
+        ASSERT_EQ(found[i].T_fixed_moving, all[i].T_fixed_moving) << seed << " " << i;
+      }
+    }
+  }
+}
+
 TEST(SearchAllPoses, AMapWithoutWallsHasNoCandidates) {
   const WallMap map = make_wall_map(test::random_grid(1, 30, 30), 0.1);
   const WallMap empty = make_wall_map(make_grid(30, 30, 0.1, {}, Cell::free), 0.1);
