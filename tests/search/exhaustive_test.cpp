@@ -108,15 +108,18 @@ TEST(SearchAllPoses, FindsTheBestOfAllPoses) {
 TEST(SearchAllPoses, DoesNotDependOnThreads) {
   const WallMap fixed = make_wall_map(test::random_grid(1, 90, 70), 0.1);
   const WallMap moving = make_wall_map(test::random_grid(2, 60, 80), 0.1);
-  std::vector<std::vector<PoseCandidate>> runs;
-  for (const int threads : {1, 2, 4}) {
-    with_threads(threads, [&] { runs.push_back(search_all_poses(fixed, moving)); });
-  }
-  for (const auto& run : runs) {
-    ASSERT_EQ(run.size(), runs[0].size());
-    for (std::size_t i = 0; i < run.size(); ++i) {
-      EXPECT_EQ(run[i].score, runs[0][i].score);
-      EXPECT_EQ(run[i].T_fixed_moving, runs[0][i].T_fixed_moving);
+  for (const std::size_t max_candidates : {100U, 1000000U}) {  // few: shifts are passed over; all: none is
+    ExhaustiveSearchOptions options;
+    options.max_candidates = max_candidates;
+    std::vector<std::vector<PoseCandidate>> runs;
+    for (const int threads : {1, 2, 4})
+      with_threads(threads, [&] { runs.push_back(search_all_poses(fixed, moving, options)); });
+    for (const auto& run : runs) {
+      ASSERT_EQ(run.size(), runs[0].size());
+      for (std::size_t i = 0; i < run.size(); ++i) {
+        EXPECT_EQ(run[i].score, runs[0][i].score);
+        EXPECT_EQ(run[i].T_fixed_moving, runs[0][i].T_fixed_moving);
+      }
     }
   }
 }
