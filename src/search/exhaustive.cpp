@@ -22,8 +22,10 @@ namespace {
 
 constexpr double kScale = 6.0;  // score units a nat
 constexpr std::size_t kPeaksPerRotation = 96;
-constexpr int kPeakFloor = 4;  // peaks below the best of their rotation by this factor are dropped
-constexpr int kApart = 2;      // candidates nearer than this in x, y and rotation are one
+constexpr int kPeakFloor = 4;            // peaks below the best of their rotation by this factor are dropped
+constexpr std::size_t kPilotStep = 8;    // every 8th rotation tells what the others have to reach
+constexpr std::size_t kPilotMargin = 4;  // see foreseen_score()
+constexpr int kApart = 2;                // candidates nearer than this in x, y and rotation are one
 /// Shifts at which fewer than this share of the samples could lie on the fixed map are not looked at.
 constexpr double kLeastMet = 0.08;
 static_assert(kMaxSearchSamples * kMaxCorrelated < 32767);
@@ -70,8 +72,7 @@ SearchFrame make_frame(const WallMap& fixed, const WallMap& moving, const Exhaus
   return frame;
 }
 
-/// The evidence of a wall in each coarse cell of the fixed map, with a rim of zeros on all sides for every
-/// shift of the box, so that the kernel needs no bounds checks.
+/// The evidence of a wall in each coarse cell of the fixed map.
 EvidenceImage make_evidence_image(const WallMap& fixed, const SearchFrame& frame,
                                   const ExhaustiveSearchOptions& options) {
   const auto table = evidence_table({options.sigma, options.outliers}, fixed.background);
@@ -86,26 +87,22 @@ EvidenceImage make_evidence_image(const WallMap& fixed, const SearchFrame& frame
     }
   }
 
-  EvidenceImage image;
-  image.width = frame.fixed_width + 2 * frame.box + kCorrelateBlock;
-  image.height = frame.fixed_height + 2 * frame.box;
-  image.values.assign(static_cast<std::size_t>(image.width) * image.height, 0);
+  EvidenceImage image(frame.fixed_width, frame.fixed_height);
   const double cells = static_cast<double>(options.coarse_factor) * options.coarse_factor;
   for (int y = 0; y < frame.fixed_height; ++y) {
     for (int x = 0; x < frame.fixed_width; ++x) {
       const double mean = sums[static_cast<std::size_t>(y) * frame.fixed_width + x] / cells;
-      image.values[static_cast<std::size_t>(y + frame.box) * image.width + x + frame.box] =
-          static_cast<std::int8_t>(
-              std::clamp<long>(std::lround(kScale * mean), -kMaxCorrelated, kMaxCorrelated));
+      image.at(x, y) = static_cast<std::int8_t>(
+          std::clamp<long>(std::lround(kScale * mean), -kMaxCorrelated, kMaxCorrelated));
     }
   }
   return image;
 }
 
-/// The turned wall points in the box, and the shifts at which enough of them can meet the fixed map.
+/// The turned wall points, and the shifts at which enough of them can meet the fixed map.
 struct TurnedWalls {
-  std::vector<std::int32_t> offsets;  // into the evidence image
-  int first_x = 0;                    // shifts, with one more on each side
+  std::vector<Sample> samples;  // in the fixed map's evidence, at the first shift
+  int first_x = 0;              // shifts of the box, with one more on each side
   int first_y = 0;
   int shifts_x = 0;
   int shifts_y = 0;
@@ -123,17 +120,17 @@ Shifts useful_shifts(std::vector<int>& points, std::size_t least, int box, int l
   const auto high = points.end() - static_cast<std::ptrdiff_t>(least);
   std::nth_element(points.begin(), high, points.end());
   const int highest = *high;
-  // The fixed map begins at `box`, and points are shifted by the result. One more on either side: the rim.
+  // The box begins `box` before the fixed map, and points are shifted by the result. One more on either side:
+  // the rim.
   return {box - highest - 1, length + highest - lowest + 2};
 }
 
-TurnedWalls turn_walls(const std::vector<WallPoint>& walls, const SearchFrame& frame, int rotation,
-                       int image_width) {
+TurnedWalls turn_walls(const std::vector<WallPoint>& walls, const SearchFrame& frame, int rotation) {
   const double angle = frame.angle(rotation);
   const double c = std::cos(angle);
   const double s = std::sin(angle);
   TurnedWalls turned;
-  turned.offsets.reserve(walls.size());
+  turned.samples.reserve(walls.size());
   std::vector<int> columns;
   std::vector<int> rows;
   for (const WallPoint& wall : walls) {
@@ -141,7 +138,7 @@ TurnedWalls turn_walls(const std::vector<WallPoint>& walls, const SearchFrame& f
     const double y = wall.position.y - frame.centre.y;
     columns.push_back(static_cast<int>(std::floor((c * x - s * y) / frame.factor + 0.5 * frame.box)));
     rows.push_back(static_cast<int>(std::floor((s * x + c * y) / frame.factor + 0.5 * frame.box)));
-    turned.offsets.push_back(rows.back() * image_width + columns.back());
+    turned.samples.push_back({columns.back(), rows.back()});
   }
   const std::size_t least = 1 + static_cast<std::size_t>(kLeastMet * static_cast<double>(walls.size()));
   const Shifts x = useful_shifts(columns, least, frame.box, frame.fixed_width);
@@ -150,21 +147,62 @@ TurnedWalls turn_walls(const std::vector<WallPoint>& walls, const SearchFrame& f
   turned.shifts_x = x.count;
   turned.first_y = y.first;
   turned.shifts_y = y.count;
+  for (Sample& sample : turned.samples) {
+    sample.x += turned.first_x - frame.box;
+    sample.y += turned.first_y - frame.box;
+  }
   return turned;
 }
 
-/// The best local maxima of one rotation.
-std::vector<Peak> find_peaks(const ScoreImage& scores, const TurnedWalls& turned, int rotation) {
-  const int floor = find_maximum(scores, turned.shifts_x) / kPeakFloor;
-  std::vector<Peak> peaks;
-  for (const LocalMaximum& maximum : find_local_maxima(scores, turned.shifts_x, floor))
-    peaks.push_back({rotation, turned.first_x + maximum.x, turned.first_y + maximum.y, maximum.score});
-  if (peaks.size() > kPeaksPerRotation) {
-    std::nth_element(peaks.begin(), peaks.begin() + kPeaksPerRotation, peaks.end());
-    peaks.resize(kPeaksPerRotation);
+/// Finds the peaks of one rotation after the other, in memory that it keeps.
+class PeakFinder {
+ public:
+  /// `pooled` is `evidence` by pool_pairs().
+  PeakFinder(const EvidenceImage& evidence, const EvidenceImage& pooled)
+      : evidence_(evidence), pooled_(pooled) {}
+
+  /// The best local maxima of all shifts.
+  std::vector<Peak> find_all(const TurnedWalls& turned, int rotation) {
+    resize(scores_, turned.shifts_x, turned.shifts_y);
+    correlate(evidence_, turned.samples, scores_);
+    return best_of(turned, rotation, 0);
   }
-  return peaks;
-}
+
+  /// Those of them that score `least` (above 0) or more. Most shifts need no score of their own, because four
+  /// at a time are found to score less.
+  std::vector<Peak> find_from(int least, const TurnedWalls& turned, int rotation) {
+    resize(bounds_, (turned.shifts_x + 1) / 2, (turned.shifts_y + 1) / 2);
+    correlate(pooled_, pool_pairs(turned.samples), bounds_);
+    resize(scores_, turned.shifts_x, turned.shifts_y);
+    correlate_where(evidence_, turned.samples, bounds_, least, scores_);
+    return best_of(turned, rotation, least - 1);
+  }
+
+ private:
+  static void resize(ScoreImage& scores, int columns, int rows) {
+    scores.width = (columns + kCorrelateBlock - 1) / kCorrelateBlock * kCorrelateBlock;
+    scores.height = rows;
+    scores.values.resize(static_cast<std::size_t>(scores.width) * scores.height);
+  }
+
+  std::vector<Peak> best_of(const TurnedWalls& turned, int rotation, int floor) const {
+    const int best = find_maximum(scores_, turned.shifts_x);
+    std::vector<Peak> peaks;
+    for (const LocalMaximum& maximum :
+         find_local_maxima(scores_, turned.shifts_x, std::max(floor, best / kPeakFloor)))
+      peaks.push_back({rotation, turned.first_x + maximum.x, turned.first_y + maximum.y, maximum.score});
+    if (peaks.size() > kPeaksPerRotation) {
+      std::nth_element(peaks.begin(), peaks.begin() + kPeaksPerRotation, peaks.end());
+      peaks.resize(kPeaksPerRotation);
+    }
+    return peaks;
+  }
+
+  const EvidenceImage& evidence_;
+  const EvidenceImage& pooled_;
+  ScoreImage scores_;
+  ScoreImage bounds_;
+};
 
 /// Drops, best first, every peak that has a better one next to it.
 std::vector<Peak> keep_distinct(std::vector<Peak> peaks, int rotations, std::size_t max_count) {
@@ -199,6 +237,21 @@ std::vector<Peak> keep_distinct(std::vector<Peak> peaks, int rotations, std::siz
   return kept;
 }
 
+std::vector<Peak> together(const std::vector<std::vector<Peak>>& by_rotation) {
+  std::vector<Peak> all;
+  for (const std::vector<Peak>& some : by_rotation) all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
+
+/// What the last of `max_candidates` will score at least, by the peaks of the pilots: so that all rotations
+/// have kPilotMargin times as many peaks, most of which lie beside better ones. 0 if they have not.
+int foreseen_score(std::vector<Peak> pilots, std::size_t max_candidates) {
+  const std::size_t wanted = kPilotMargin * max_candidates / kPilotStep;
+  if (wanted == 0 || pilots.size() <= wanted) return 0;
+  std::nth_element(pilots.begin(), pilots.begin() + static_cast<std::ptrdiff_t>(wanted), pilots.end());
+  return pilots[wanted].score;
+}
+
 void check(const WallMap& fixed, const WallMap& moving, const ExhaustiveSearchOptions& options) {
   if (fixed.cell != moving.cell) throw std::invalid_argument("both wall maps must have cells of one size");
   if (options.coarse_factor < 1) throw std::invalid_argument("coarse_factor must be at least 1");
@@ -220,26 +273,41 @@ std::vector<PoseCandidate> search_all_poses(const WallMap& fixed, const WallMap&
 
   if (walls.empty()) return {};
 
-  tbb::enumerable_thread_specific<ScoreImage> scratch;
+  const EvidenceImage pooled = pool_pairs(evidence);
+  tbb::enumerable_thread_specific<PeakFinder> finders([&] { return PeakFinder(evidence, pooled); });
   std::vector<std::vector<Peak>> peaks(options.rotations);
-  parallel_for(peaks.size(), [&](std::size_t i) {
-    const int rotation = static_cast<int>(i);
-    const TurnedWalls turned = turn_walls(walls, frame, rotation, evidence.width);
-    ScoreImage& scores = scratch.local();
-    scores.width = (turned.shifts_x + kCorrelateBlock - 1) / kCorrelateBlock * kCorrelateBlock;
-    scores.height = turned.shifts_y;
-    scores.values.resize(static_cast<std::size_t>(scores.width) * scores.height);
-    const std::size_t first = static_cast<std::size_t>(turned.first_y) * evidence.width + turned.first_x;
-    correlate(evidence, first, turned.offsets, scores);
-    peaks[rotation] = find_peaks(scores, turned, rotation);
-  });
+  const auto in_rotations = [&](bool pilots, auto find) {
+    parallel_for(peaks.size(), [&](std::size_t i) {
+      if ((i % kPilotStep == 0) != pilots) return;
+      const int rotation = static_cast<int>(i);
+      peaks[i] = find(finders.local(), turn_walls(walls, frame, rotation), rotation);
+    });
+  };
+  const auto find_all = [](PeakFinder& finder, const TurnedWalls& turned, int rotation) {
+    return finder.find_all(turned, rotation);
+  };
 
-  std::vector<Peak> all;
-  for (const std::vector<Peak>& some : peaks) all.insert(all.end(), some.begin(), some.end());
-  std::vector<PoseCandidate> candidates;
-  for (const Peak& peak : keep_distinct(std::move(all), options.rotations, options.max_candidates)) {
-    candidates.push_back({frame.pose(peak), peak.score});
+  in_rotations(true, find_all);
+  const int least = foreseen_score(together(peaks), options.max_candidates);
+  if (least > 0) {
+    in_rotations(false, [&](PeakFinder& finder, const TurnedWalls& turned, int rotation) {
+      return finder.find_from(least, turned, rotation);
+    });
   }
+  // The best ones are the same whatever lies below `least`, if there are enough of them from there on.
+  std::vector<Peak> kept;
+  if (least > 0) {
+    std::vector<Peak> from_least = together(peaks);
+    std::erase_if(from_least, [&](const Peak& peak) { return peak.score < least; });
+    kept = keep_distinct(std::move(from_least), options.rotations, options.max_candidates);
+  }
+  if (kept.size() < options.max_candidates) {
+    in_rotations(false, find_all);
+    kept = keep_distinct(together(peaks), options.rotations, options.max_candidates);
+  }
+
+  std::vector<PoseCandidate> candidates;
+  for (const Peak& peak : kept) candidates.push_back({frame.pose(peak), peak.score});
   return candidates;
 }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "../grid/multiversion.hpp"
+#include "../grid/unaligned.hpp"
 
 namespace gridmerge {
 
@@ -51,7 +52,7 @@ std::array<ErrorModel, kErrorModels> make_error_models() {
 
 /// evidence_table() of every model, by distance bin.
 std::vector<ModelScores> tabulate(const std::array<double, kDistanceBins>& background) {
-  std::vector<ModelScores> nats(kEncounters);
+  std::vector<ModelScores> nats(kEncounters, ModelScores{});
   const auto models = error_models();
   for (std::size_t i = 0; i < kErrorModels; ++i) {
     const auto table = evidence_table(models[i], background);
@@ -73,31 +74,92 @@ constexpr auto kEncounterOffset = [] {
   return offsets;
 }();
 
+/// Rows of kEncounterOffset for walls that are turned by so many parts of a turn, by their facing before.
+constexpr auto kTurnedOffsets = [] {
+  std::array<std::array<const std::uint8_t*, kFacingCodes>, kDirections> rows{};
+  for (int steps = 0; steps < kDirections; ++steps) {
+    for (int facing = 0; facing < kFacingCodes; ++facing)
+      rows[steps][facing] = kEncounterOffset[turned(static_cast<std::uint8_t>(facing), steps)].data();
+  }
+  return rows;
+}();
+
 constexpr std::size_t kBlock = 128;
+
+/// Places are kept in tiles of as many columns and rows, one cache line each: a point that is moved a little,
+/// in any direction, mostly stays in its tile.
+constexpr unsigned kTileColumns = 8;
+constexpr unsigned kTileRows = 4;
+
+constexpr unsigned tiles_along(int cells, unsigned tile) {
+  return (static_cast<unsigned>(cells) + tile - 1) / tile;
+}
+
+/// Of a place, in rows of `row_of_tiles` tiles. Unsigned, so that divisions are shifts.
+inline __attribute__((always_inline)) unsigned index_in_tiles(unsigned x, unsigned y, unsigned row_of_tiles) {
+  const unsigned tile = y / kTileRows * row_of_tiles + x / kTileColumns;
+  return (tile * kTileRows + y % kTileRows) * kTileColumns + x % kTileColumns;
+}
 
 /// Where `count` turned points fall; what falls outside is moved to the rim, which is unseen. The same bits
 /// in every version: no operation is fused or reordered.
 GRIDMERGE_MULTIVERSION
 void place_points(const float* px, const float* py, std::size_t count, float c, float s, float tx, float ty,
-                  float last_x, float last_y, int width, int* at) {
+                  float last_x, float last_y, unsigned row_of_tiles, int* at) {
   for (std::size_t i = 0; i < count; ++i) {
     const float x = std::min(std::max(c * px[i] - s * py[i] + tx, 0.0F), last_x);
     const float y = std::min(std::max(s * px[i] + c * py[i] + ty, 0.0F), last_y);
-    at[i] = static_cast<int>(y) * width + static_cast<int>(x);
+    at[i] = static_cast<int>(index_in_tiles(static_cast<unsigned>(static_cast<int>(x)),
+                                            static_cast<unsigned>(static_cast<int>(y)), row_of_tiles));
   }
 }
 
-/// Adds `count` times what each model says of an encounter to the models' scores from the `first` model on.
+// Scores of eight models: one AVX2 register, or two of SSE2.
+using Lanes = float __attribute__((vector_size(32)));
+constexpr std::size_t kLanes = sizeof(Lanes) / sizeof(float);
+constexpr std::size_t kModelLanes = kPaddedModels / kLanes;
+static_assert(kPaddedModels % kLanes == 0);
+
+/// The sums stay in registers while the encounters are added.
+template <std::size_t FirstLanes>
+inline __attribute__((always_inline)) void add_to_lanes(const int* encounters, std::size_t count,
+                                                        const int* histogram, float weight,
+                                                        const ModelScores* nats, ModelScores& sums) {
+  Lanes lanes[kModelLanes - FirstLanes];
+#pragma GCC unroll 8
+  for (std::size_t i = FirstLanes; i < kModelLanes; ++i)
+    load(sums.data() + i * kLanes, lanes[i - FirstLanes]);
+  for (std::size_t n = 0; n < count; ++n) {
+    const int met = encounters[n];
+    const float times = weight * static_cast<float>(histogram[met]);
+#pragma GCC unroll 8
+    for (std::size_t i = FirstLanes; i < kModelLanes; ++i) {
+      Lanes one;
+      load(nats[met].data() + i * kLanes, one);
+      lanes[i - FirstLanes] += times * one;
+    }
+  }
+#pragma GCC unroll 8
+  for (std::size_t i = FirstLanes; i < kModelLanes; ++i)
+    store(lanes[i - FirstLanes], sums.data() + i * kLanes);
+}
+
+/// Adds `count` times what each model says of an encounter to the models' scores, at least from the `first`
+/// model on.
 GRIDMERGE_MULTIVERSION
 void add_encounters(const int* histogram, float weight, const ModelScores* nats, std::size_t first,
                     ModelScores& sums) {
-  ModelScores scores = sums;
+  std::array<int, kEncounters> encounters;  // that happened; no branches, since which did cannot be foreseen
+  std::size_t count = 0;
   for (int met = 0; met < kEncounters; ++met) {
-    if (histogram[met] == 0) continue;
-    const float count = weight * static_cast<float>(histogram[met]);
-    for (std::size_t i = first; i < kErrorModels; ++i) scores[i] += count * nats[met][i];
+    encounters[count] = met;
+    count += histogram[met] != 0 ? 1 : 0;
   }
-  sums = scores;
+  if (first < kLanes) {
+    add_to_lanes<0>(encounters.data(), count, histogram, weight, nats, sums);
+  } else {
+    add_to_lanes<1>(encounters.data(), count, histogram, weight, nats, sums);
+  }
 }
 
 double seen(std::span<const int> histogram) {
@@ -153,15 +215,21 @@ std::vector<WallPoint> draw_evenly(const std::vector<WallPoint>& points, std::si
 
 WallEvidence::LookUp::LookUp(const WallMap& map)
     : walls(map.walls),
-      width(map.width),
+      row_of_tiles(tiles_along(map.width, kTileColumns)),
       last_x(static_cast<float>(map.width - 1)),
       last_y(static_cast<float>(map.height - 1)),
       nats(tabulate(map.background)) {
-  places.reserve(map.places.size());
-  for (const Place& place : map.places) {
-    const int distance = place.distance == kUnseen ? kEncounters : place.distance;
-    const int facing = place.distance == kUnseen ? kNoDirection : place.facing;
-    places.push_back(static_cast<std::uint16_t>(distance | facing << 8));
+  const unsigned rows_of_tiles = tiles_along(map.height, kTileRows);
+  places.resize(static_cast<std::size_t>(row_of_tiles) * rows_of_tiles * kTileColumns * kTileRows);
+  for (int y = 0; y < map.height; ++y) {
+    const Place* const row = map.places.data() + static_cast<std::size_t>(y) * map.width;
+    for (int x = 0; x < map.width; ++x) {
+      const Place& place = row[x];
+      const int distance = place.distance == kUnseen ? kEncounters : place.distance;
+      const int facing = place.distance == kUnseen ? kNoDirection : place.facing;
+      places[index_in_tiles(static_cast<unsigned>(x), static_cast<unsigned>(y), row_of_tiles)] =
+          static_cast<std::uint16_t>(distance | facing << 8);
+    }
   }
 }
 
@@ -195,11 +263,7 @@ WallEvidence::Histogram WallEvidence::count_encounters(const LookUp& map, const 
   constexpr double kFarAway = 1e6;  // beyond any map
   const float tx = static_cast<float>(std::clamp(T_map_points.x, -kFarAway, kFarAway));
   const float ty = static_cast<float>(std::clamp(T_map_points.y, -kFarAway, kFarAway));
-  std::array<const std::uint8_t*, kFacingCodes> offsets;  // by the point's facing, then the place's
-  for (int facing = 0; facing < kFacingCodes; ++facing) {
-    const std::uint8_t at = turned(static_cast<std::uint8_t>(facing), steps_of_turn(T_map_points.theta));
-    offsets[facing] = kEncounterOffset[at].data();
-  }
+  const auto& offsets = kTurnedOffsets[steps_of_turn(T_map_points.theta)];
 
   // Several, because neighbouring walls often meet the same: adding to one counter twice in a row would wait.
   constexpr std::size_t kHistograms = 4;
@@ -208,12 +272,16 @@ WallEvidence::Histogram WallEvidence::count_encounters(const LookUp& map, const 
   for (std::size_t first = 0; first < points.x.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, points.x.size() - first);
     place_points(points.x.data() + first, points.y.data() + first, count, c, s, tx, ty, map.last_x,
-                 map.last_y, map.width, at.data());
-    for (std::size_t i = 0; i < count; ++i) {
+                 map.last_y, map.row_of_tiles, at.data());
+    const auto meet = [&](std::size_t i, Histogram& histogram) {
       const int place = map.places[at[i]];
-      const int met = (place & 0xff) + offsets[points.facing[first + i]][place >> 8];
-      ++histograms[i % kHistograms][met];
+      ++histogram[(place & 0xff) + offsets[points.facing[first + i]][place >> 8]];
+    };
+    std::size_t i = 0;
+    for (; i + kHistograms <= count; i += kHistograms) {
+      for (std::size_t own = 0; own < kHistograms; ++own) meet(i + own, histograms[own]);
     }
+    for (; i < count; ++i) meet(i, histograms[0]);
   }
   for (std::size_t other = 1; other < kHistograms; ++other) {
     for (std::size_t met = 0; met < histograms[0].size(); ++met) histograms[0][met] += histograms[other][met];
@@ -230,7 +298,7 @@ Evidence WallEvidence::operator()(const SE2& T_fixed_moving_cells, double min_si
   ModelScores scores{};
   add_encounters(in_fixed.data(), moving_walls_.weight, fixed_->nats.data(), first, scores);
   add_encounters(in_moving.data(), fixed_walls_.weight, moving_->nats.data(), first, scores);
-  const auto best_score = std::max_element(scores.begin() + first, scores.end());
+  const auto best_score = std::max_element(scores.begin() + first, scores.begin() + kErrorModels);
   Evidence best;
   best.score = *best_score;
   best.model = models[best_score - scores.begin()];

@@ -185,8 +185,9 @@ void mark_things(WallMap& map, const std::vector<int>& at) {
 }  // namespace
 
 int steps_of_turn(double theta) {
-  const double turns = theta / (2.0 * std::numbers::pi) + 1.0;
-  return static_cast<int>(std::lround(turns * kDirections)) % kDirections;
+  const double steps = (theta / (2.0 * std::numbers::pi) + 1.0) * kDirections;
+  const int whole = static_cast<int>(steps);  // std::lround() is a call on many a machine
+  return (whole + (steps - whole >= 0.5 ? 1 : 0)) % kDirections;
 }
 
 WallMap make_wall_map(const OccupancyGrid& grid, double cell) {

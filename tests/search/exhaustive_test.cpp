@@ -108,15 +108,18 @@ TEST(SearchAllPoses, FindsTheBestOfAllPoses) {
 TEST(SearchAllPoses, DoesNotDependOnThreads) {
   const WallMap fixed = make_wall_map(test::random_grid(1, 90, 70), 0.1);
   const WallMap moving = make_wall_map(test::random_grid(2, 60, 80), 0.1);
-  std::vector<std::vector<PoseCandidate>> runs;
-  for (const int threads : {1, 2, 4}) {
-    with_threads(threads, [&] { runs.push_back(search_all_poses(fixed, moving)); });
-  }
-  for (const auto& run : runs) {
-    ASSERT_EQ(run.size(), runs[0].size());
-    for (std::size_t i = 0; i < run.size(); ++i) {
-      EXPECT_EQ(run[i].score, runs[0][i].score);
-      EXPECT_EQ(run[i].T_fixed_moving, runs[0][i].T_fixed_moving);
+  for (const std::size_t max_candidates : {100U, 1000000U}) {  // few: shifts are passed over; all: none is
+    ExhaustiveSearchOptions options;
+    options.max_candidates = max_candidates;
+    std::vector<std::vector<PoseCandidate>> runs;
+    for (const int threads : {1, 2, 4})
+      with_threads(threads, [&] { runs.push_back(search_all_poses(fixed, moving, options)); });
+    for (const auto& run : runs) {
+      ASSERT_EQ(run.size(), runs[0].size());
+      for (std::size_t i = 0; i < run.size(); ++i) {
+        EXPECT_EQ(run[i].score, runs[0][i].score);
+        EXPECT_EQ(run[i].T_fixed_moving, runs[0][i].T_fixed_moving);
+      }
     }
   }
 }
@@ -131,6 +134,31 @@ TEST(SearchAllPoses, CandidatesComeBestFirstAndNoneTwice) {
   for (std::size_t i = 1; i < found.size(); ++i) {
     EXPECT_LE(found[i].score, found[i - 1].score);
     for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(found[i].T_fixed_moving == found[j].T_fixed_moving);
+  }
+}
+
+// With so many candidates wanted that every shift has to be looked at, the best ones are the same: what is
+// passed over otherwise cannot be among them.
+TEST(SearchAllPoses, TheBestAreTheSameWhenAllAreLookedAt) {
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    const int width = 60 + 25 * static_cast<int>(seed);
+    const WallMap fixed = make_wall_map(test::random_grid(seed, width, 70), 0.1);
+    const WallMap moving = make_wall_map(test::random_grid(seed + 100, 60, 80), 0.1);
+    ExhaustiveSearchOptions options;
+    options.coarse_factor = 2 + static_cast<int>(seed) % 3;
+    options.rotations = 50;
+    options.samples = seed == 7 ? 1 : 40 + 25 * seed;
+    options.max_candidates = 1000000;
+    const auto all = search_all_poses(fixed, moving, options);
+    for (const std::size_t count : {1U, 10U, 60U, 200U}) {
+      options.max_candidates = count;
+      const auto found = search_all_poses(fixed, moving, options);
+      ASSERT_EQ(found.size(), std::min(count, all.size())) << seed;
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        ASSERT_EQ(found[i].score, all[i].score) << seed << " " << i;
+        ASSERT_EQ(found[i].T_fixed_moving, all[i].T_fixed_moving) << seed << " " << i;
+      }
+    }
   }
 }
 

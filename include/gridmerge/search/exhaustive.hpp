@@ -30,8 +30,9 @@ inline constexpr std::size_t kMaxSearchSamples = 240;
 /// can lie on the fixed map, and returns the best local maxima, best first. A score is the sum over the
 /// sampled walls of the evidence (evidence_table) in the fixed map, averaged over the coarse cell in which
 /// the wall falls, in whole sixths of a nat and at most 15 of them: the result is the same bits on every
-/// machine and for any number of threads.
-/// Runs in the calling TBB arena. O(rotations * samples * translations).
+/// machine and for any number of threads. Shifts that by a bound cannot reach the score of the last candidate
+/// are passed over (branch and bound, Lawler and Wood 1966, of one level), which changes nothing in the
+/// result. Runs in the calling TBB arena. O(rotations * samples * translations).
 std::vector<PoseCandidate> search_all_poses(const WallMap& fixed, const WallMap& moving,
                                             const ExhaustiveSearchOptions& options = {});
 

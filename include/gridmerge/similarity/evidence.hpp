@@ -24,8 +24,10 @@ struct ErrorModel {
 inline constexpr std::size_t kErrorModels = 42;
 std::span<const ErrorModel, kErrorModels> error_models();
 
-/// A score [nats] for each of error_models().
-using ModelScores = std::array<float, kErrorModels>;
+/// A score [nats] for each of error_models(), and zeros up to whole vector registers.
+inline constexpr std::size_t kPaddedModels = 48;
+static_assert(kErrorModels <= kPaddedModels);
+using ModelScores = std::array<float, kPaddedModels>;
 
 /// How the free sides of two walls that meet lie to each other, in classes of the angle between them: 0 where
 /// one of them is not known, then from the same direction (1) to the opposite one (kFacings - 1).
@@ -84,7 +86,7 @@ class WallEvidence {
     explicit LookUp(const WallMap& map);
 
     const std::vector<WallPoint>& walls;
-    int width;
+    unsigned row_of_tiles;              // how many tiles of places lie in a row
     float last_x;                       // of the last column
     float last_y;                       // of the last row
     std::vector<std::uint16_t> places;  // distance bin or kEncounters, and in the high byte the facing
