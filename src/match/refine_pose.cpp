@@ -123,7 +123,8 @@ Hypothesis judge_pose(const PreparedMap& fixed, const PreparedMap& moving, const
   Hypothesis pose = PoseJudge(maps).judge(to_cells(T_maps, maps.fixed_walls, maps.moving_walls));
   weigh_among_all(pose, maps);
   pose.T_fixed_moving = T_fixed_moving;
-  if (swapped) pose.figures.free_direction = undirected_angle(pose.figures.free_direction + T_fixed_moving.theta);
+  if (swapped)
+    pose.figures.free_direction = undirected_angle(pose.figures.free_direction + T_fixed_moving.theta);
   return pose;
 }
 

@@ -15,8 +15,8 @@ namespace gridmerge {
 /// What `transforms.json` keeps of a merge.
 struct MergeRecord {
   std::vector<std::string> names;  ///< of all maps, in their order
-  /// As merge() returned it, but for what is not kept: the fused maps have their omega and no more (see fuse_again()), and of a
-  /// join's match there are no features and no times.
+  /// As merge() returned it, but for what is not kept: the fused maps have their omega and no more (see
+  /// fuse_again()), and of a join's match there are no features and no times.
   MergeResult result;
 };
 
