@@ -67,7 +67,7 @@ TEST_F(MapFiles, NorIsAYawThatIsNoNumber) {
 
 TEST_F(MapFiles, MergeTellsAKindOfWarningOnce) {
   std::vector<std::string> arguments = {"merge", "-o", directory.file("out")};
-  for (const std::string& name : {"a", "b", "c", "d", "e"})
+  for (const std::string name : {"a", "b", "c", "d", "e"})
     arguments.push_back(
         changed(name == "b" ? right : left, name + ".yaml", "free_thresh:", "free_thresh: 0.25"));
   const Outcome outcome = run(arguments);
