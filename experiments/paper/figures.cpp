@@ -11,8 +11,9 @@
 
 #include "gridmerge/io/atomic_file.hpp"
 #include "gridmerge/merge/merge.hpp"
+#include "gridmerge/report/distance_picture.hpp"
+#include "gridmerge/search/random_walk.hpp"
 #include "gridmerge/similarity/distance_map.hpp"
-#include "gridmerge/similarity/image_similarity.hpp"
 #include "pictures.hpp"
 #include "runs.hpp"
 
@@ -41,31 +42,18 @@ OccupancyGrid small_map() {
   return map;
 }
 
-std::string numbers(const DistanceMap& distances) {
-  std::string text = "```\n";
-  for (int row = distances.height - 1; row >= 0; --row) {
-    for (int column = 0; column < distances.width; ++column) {
-      const int distance = distances.at(column, row);
-      text += distance == kNoDistance ? std::string("  .") : fmt::format("{:3}", distance);
-    }
-    text += '\n';
-  }
-  return text + "```\n";
-}
-
 std::string figure_1(const Folder& folder) {
   const OccupancyGrid map = small_map();
   const DistanceMap distances = make_distance_map(map, Cell::occupied);
   return save(folder, "fig1_map.png", draw(map), "a small map") +
-         save(folder, "fig1_dmap.png", draw_distances(distances, 16),
-              "its d-map of occupied: each cell's Manhattan distance to the nearest occupied one") +
-         numbers(distances);
+         save(folder, "fig1_dmap.png", distance_map_png(distances),
+              "its d-map of occupied: each cell's Manhattan distance to the nearest occupied one");
 }
 
 std::string figure_2(const Folder& folder) {
   const DistanceMapPasses passes = trace_distance_map(small_map(), Cell::occupied);
   const auto show = [&](const DistanceMap& distances, const std::string& name, const std::string& what) {
-    return save(folder, "fig2_" + name + ".png", draw_distances(distances, 16), what) + numbers(distances);
+    return save(folder, "fig2_" + name + ".png", distance_map_png(distances), what);
   };
   return show(passes.start, "start", "0 at occupied cells, infinity (a dot) elsewhere") +
          show(passes.forward, "forward", "after the pass from the upper left corner") +
@@ -79,15 +67,17 @@ std::string figure_3(const Folder& folder) {
   std::string about;
   for (const auto& [fixed, moving] : {std::pair<std::size_t, std::size_t>{1, 2}, {3, 4}}) {
     const Pair pair = pair_of(draw, fixed, moving);
-    SimilarityMeter meter(pair.fixed->map, pair.moving->map);
-    std::string table = "shift [cells]\tpsi\tagr - dis\tomega\tdelta, c_lock 0\tdelta, c_lock 7.5\n";
+    std::vector<SE2> cut;
     for (int shift = -kReach; shift <= kReach; ++shift) {
-      SE2 pose = pair.truth();
-      pose.x += shift * pair.fixed->map.resolution;
-      const ImageSimilarity measured = meter(pose);
-      fmt::format_to(std::back_inserter(table), "{}\t{}\t{}\t{}\t{}\t{}\n", shift, measured.psi(),
-                     measured.agreement - measured.disagreement,
-                     count_equal_cells(pair.fixed->map, pair.moving->map, pose), measured.delta(0.0),
+      cut.push_back(pair.truth());
+      cut.back().x += shift * pair.fixed->map.resolution;
+    }
+    std::string table = "shift [cells]\tpsi\tagr - dis\tomega\tdelta, c_lock 0\tdelta, c_lock 7.5\n";
+    int shift = -kReach;
+    for (const MeasuredPose& pose : measure_poses(pair.fixed->map, pair.moving->map, cut)) {
+      const ImageSimilarity& measured = pose.similarity;
+      fmt::format_to(std::back_inserter(table), "{}\t{}\t{}\t{}\t{}\t{}\n", shift++, measured.psi(),
+                     measured.agreement - measured.disagreement, measured.omega, measured.delta(0.0),
                      measured.delta(7.5));
     }
     const std::string name = fmt::format("fig3_m{}_m{}.tsv", fixed, moving);
@@ -121,7 +111,7 @@ std::string show_merge(const Folder& folder, const std::string& name, const Pair
   const Run run = merge_two(pair, method, kShownDraw);
   return save(folder, name, draw_merged(pair, run.T_fixed_moving),
               fmt::format("{} by {}: ai {:.4f}, {:.2f} m off the truth, {}", pair.name, method.name,
-                          run.found.acceptance_index, run.error, run.accepted ? "accepted" : "refused"));
+                          run.found.acceptance_index(), run.error, run.accepted ? "accepted" : "refused"));
 }
 
 std::string show_merges(const Folder& folder, int figure, std::size_t fixed, std::size_t moving) {

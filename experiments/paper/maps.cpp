@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "maps.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <span>
 #include <stdexcept>
@@ -145,32 +147,17 @@ Draw make_draw(int side, std::uint64_t seed) {
 }
 
 Pair pair_of(const Draw& draw, std::size_t fixed, std::size_t moving) {
-  return {"m" + std::to_string(fixed) + " + m" + std::to_string(moving), &draw.robots.at(fixed - 1),
-          &draw.robots.at(moving - 1)};
+  return {fmt::format("m{} + m{}", fixed, moving), &draw.robots.at(fixed - 1), &draw.robots.at(moving - 1)};
 }
 
 SharedCells measure_shared(const Pair& pair) {
-  const OccupancyGrid &fixed = pair.fixed->map, &moving = pair.moving->map;
-  const SE2 T_grid_moving = inverse(fixed.origin) * pair.truth();
-  SharedCells shared;
-  for (int row = 0; row < moving.height; ++row) {
-    for (int column = 0; column < moving.width; ++column) {
-      const Cell cell = moving.at(column, row);
-      if (cell == Cell::unknown) continue;
-      const Point2 p = T_grid_moving * moving.cell_center(column, row);
-      const int x = static_cast<int>(std::floor(p.x / fixed.resolution));
-      const int y = static_cast<int>(std::floor(p.y / fixed.resolution));
-      if (!fixed.contains(x, y) || fixed.at(x, y) == Cell::unknown) continue;
-      if (fixed.at(x, y) != cell) {
-        ++shared.contradicting;
-      } else {
-        ++(cell == Cell::free ? shared.free : shared.occupied);
-      }
-    }
-  }
-  const auto all = static_cast<double>(shared.occupied + shared.free + shared.contradicting);
-  shared.of_fixed = all / static_cast<double>(count_cells(fixed).known());
-  shared.of_moving = all / static_cast<double>(count_cells(moving).known());
+  // On the moving map's lattice, since that map is the smaller one where shares are to be exact.
+  SimilarityMeter meter(pair.moving->map, pair.fixed->map);
+  SharedCells shared{meter.count_common(inverse(pair.truth()))};
+  const CommonClasses& common = shared.common;
+  const auto all = static_cast<double>(common.occupied_occupied + common.free_free + common.contradicting);
+  shared.of_fixed = all / static_cast<double>(count_cells(pair.fixed->map).known());
+  shared.of_moving = all / static_cast<double>(count_cells(pair.moving->map).known());
   return shared;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "gridmerge/similarity/image_similarity.hpp"
 #include "gridmerge/simulate/simulate.hpp"
 
 namespace gridmerge::paper {
@@ -49,9 +50,7 @@ Pair pair_of(const Draw& draw, std::size_t fixed, std::size_t moving);
 
 /// Cells that both maps of a pair know at the truth.
 struct SharedCells {
-  std::int64_t occupied = 0;  ///< in both
-  std::int64_t free = 0;      ///< in both
-  std::int64_t contradicting = 0;
+  CommonClasses common;
   double of_fixed = 0.0;   ///< all three, as a share of the fixed map's known cells
   double of_moving = 0.0;  ///< ... of the moving map's
 };

@@ -6,8 +6,10 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "figures.hpp"
 #include "gridmerge/io/atomic_file.hpp"
@@ -17,8 +19,10 @@ namespace {
 
 using namespace gridmerge;
 
+constexpr int kSide = 400;  // cells of the paper's maps
 constexpr int kDraws = 10;
 constexpr int kHardDraws = 30;  // of the hard pair, for what Delta says at its truth
+constexpr int kLargeSide = 1000;
 constexpr int kLargeDraws = 3;
 
 constexpr const char* kUsage =
@@ -27,11 +31,13 @@ constexpr const char* kUsage =
     "       gridmerge_paper all DIR      both, and all figures\n";
 
 std::string make_tables() {
+  const std::vector<paper::Draw> all = paper::make_draws(kSide, kHardDraws);
+  const std::span<const paper::Draw> draws = std::span(all).first(kDraws);
   std::string text = "# The paper's experiments, made again\n\n## What the pairs share\n\n";
-  text += paper::shared_cells(kDraws);
-  text += fmt::format("\n## Table I, {} draws\n\n", kDraws) + paper::table_one(kDraws);
-  text += fmt::format("\n## The hard pair, {} draws\n\n", kHardDraws) + paper::hard_pair_measures(kHardDraws);
-  return text + "\n## 1000 x 1000 cells\n\n" + paper::larger_maps(kLargeDraws);
+  text += paper::shared_cells(draws);
+  text += fmt::format("\n## Table I, {} draws\n\n", kDraws) + paper::table_one(draws);
+  text += fmt::format("\n## The hard pair, {} draws\n\n", kHardDraws) + paper::hard_pair_measures(all);
+  return text + "\n## 1000 x 1000 cells\n\n" + paper::larger_maps(paper::make_draws(kLargeSide, kLargeDraws));
 }
 
 std::string make_all(const std::filesystem::path& folder) {

@@ -35,22 +35,4 @@ std::string draw_merged(const Pair& pair, const SE2& T_fixed_moving) {
   return draw_placed({{&pair.fixed->map, {}}, {&pair.moving->map, T_fixed_moving}});
 }
 
-std::string draw_distances(const DistanceMap& distances, int scale) {
-  int largest = 1;
-  for (const std::uint16_t distance : distances.distances) {
-    if (distance != kNoDistance) largest = std::max<int>(largest, distance);
-  }
-  PngImage image;
-  image.channels = 1;
-  image.width = distances.width * scale;
-  image.height = distances.height * scale;
-  for (int y = image.height - 1; y >= 0; --y) {
-    for (int x = 0; x < image.width; ++x) {
-      const int distance = distances.at(x / scale, y / scale);
-      image.samples.push_back(static_cast<std::uint8_t>(255 * std::min(distance, largest) / largest));
-    }
-  }
-  return encode_png(image);
-}
-
 }  // namespace gridmerge::paper

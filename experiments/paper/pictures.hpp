@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "gridmerge/grid/placed_map.hpp"
-#include "gridmerge/similarity/distance_map.hpp"
 #include "maps.hpp"
 
 namespace gridmerge::paper {
@@ -18,9 +17,5 @@ std::string draw_placed(const std::vector<PlacedMap>& maps);
 
 /// The two maps of a pair, the moving one placed at `T_fixed_moving`.
 std::string draw_merged(const Pair& pair, const SE2& T_fixed_moving);
-
-/// A distance map in gray, `scale` pixels a cell: black at distance 0, white at the
-/// largest and where there is none.
-std::string draw_distances(const DistanceMap& distances, int scale);
 
 }  // namespace gridmerge::paper

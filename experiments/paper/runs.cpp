@@ -31,12 +31,6 @@ MatchResult search(const Pair& pair) {
   return match(pair.fixed->map, pair.moving->map, options);
 }
 
-Measured measure(const Pair& pair, const SE2& T_fixed_moving, double c_lock) {
-  const ImageSimilarity similarity = measure_similarity(pair.fixed->map, pair.moving->map, T_fixed_moving);
-  return {similarity.delta(c_lock), similarity.acceptance_index(),
-          count_equal_cells(pair.fixed->map, pair.moving->map, T_fixed_moving)};
-}
-
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t middle = values.size() / 2;
@@ -52,9 +46,9 @@ Run merge_two(const Pair& pair, const Method& method, std::uint64_t seed) {
   run.error = rms_displacement(pair.moving->map, result.T_fixed_moving, pair.truth());
   run.accepted = result.verdict == Verdict::accepted;
   run.T_fixed_moving = result.T_fixed_moving;
-  const double c_lock = method.is_walk() ? method.c_locks.back() : 0.0;
-  run.found = measure(pair, result.T_fixed_moving, c_lock);
-  run.truth = measure(pair, pair.truth(), c_lock);
+  if (method.is_walk()) run.c_lock = method.c_locks.back();
+  run.found = measure_similarity(pair.fixed->map, pair.moving->map, result.T_fixed_moving);
+  run.truth = measure_similarity(pair.fixed->map, pair.moving->map, pair.truth());
   return run;
 }
 
@@ -74,7 +68,7 @@ std::string runs_row(const std::string& pair, const Method& method, const std::v
   const auto count = [&](const auto& condition) {
     return std::count_if(runs.begin(), runs.end(), condition);
   };
-  const auto ai = [](const Run& run) { return run.found.acceptance_index; };
+  const auto ai = [](const Run& run) { return run.found.acceptance_index(); };
   const auto [low, high] = std::minmax_element(runs.begin(), runs.end(),
                                                [&](const Run& a, const Run& b) { return ai(a) < ai(b); });
   const std::string failures =
@@ -85,7 +79,7 @@ std::string runs_row(const std::string& pair, const Method& method, const std::v
       "| {} | {} | {} | {:.4f} ({:.4f}–{:.4f}) | {:.4f} | {:.2f} | {:.2f} | {} of {} | {} | {} | {} |\n",
       pair, method.name,
       method.is_walk() ? fmt::format("{:.0f}", median_of([](const Run& r) { return r.steps; })) : "–",
-      median_of(ai), ai(*low), ai(*high), median_of([](const Run& r) { return r.truth.acceptance_index; }),
+      median_of(ai), ai(*low), ai(*high), median_of([](const Run& r) { return r.truth.acceptance_index(); }),
       median_of([](const Run& r) { return r.seconds; }), median_of([](const Run& r) { return r.error; }),
       count([](const Run& r) { return r.correct(); }), runs.size(),
       count([](const Run& r) { return r.accepted && r.correct(); }),

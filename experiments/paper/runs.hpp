@@ -22,13 +22,6 @@ struct Method {
   bool is_walk() const { return !c_locks.empty(); }
 };
 
-/// What the paper measures at a pose, under the c_lock of the walk that found it.
-struct Measured {
-  double delta = 0.0;
-  double acceptance_index = 0.0;
-  std::int64_t equal_cells = 0;  ///< omega
-};
-
 /// How one merge of two maps went.
 struct Run {
   std::size_t steps = 0;  ///< proposals of all walks; 0 for the engine
@@ -36,12 +29,13 @@ struct Run {
   double error = 0.0;  ///< rms_displacement() [m]
   bool accepted = false;
   SE2 T_fixed_moving;
-  Measured found;
-  Measured truth;
+  double c_lock = 0.0;    ///< of the walk
+  ImageSimilarity found;  ///< at that pose
+  ImageSimilarity truth;
 
   bool correct() const { return error <= kTolerance; }
   /// Wrong, although Delta at the truth is better than at the pose that was found.
-  bool is_search_failure() const { return !correct() && truth.delta < found.delta; }
+  bool is_search_failure() const { return !correct() && truth.delta(c_lock) < found.delta(c_lock); }
   /// Wrong, and Delta prefers the wrong pose: no search could help.
   bool is_measure_failure() const { return !correct() && !is_search_failure(); }
 };

@@ -17,8 +17,6 @@ namespace gridmerge::paper {
 
 namespace {
 
-constexpr int kSide = 400;  // cells of the paper's maps
-
 const Method kWalk0{"walk, c_lock 0", {0.0}, 1};
 const Method kWalk{"walk, c_lock 7.5", {7.5}, 1};
 /// As the paper did for its hard pair: more walks, first with the one c_lock, then with the other.
@@ -40,14 +38,7 @@ const std::vector<Row>& rows() {
   return all;
 }
 
-std::vector<Draw> make_draws(int side, int draws) {
-  std::vector<Draw> made;
-  for (int seed = 1; seed <= draws; ++seed) made.push_back(make_draw(side, static_cast<std::uint64_t>(seed)));
-  return made;
-}
-
-std::string row_of(const std::vector<Draw>& draws, std::size_t fixed, std::size_t moving,
-                   const Method& method) {
+std::string row_of(std::span<const Draw> draws, std::size_t fixed, std::size_t moving, const Method& method) {
   std::vector<Run> runs;
   std::string name;
   for (const Draw& draw : draws) {
@@ -82,7 +73,7 @@ void add(Placed& placed, const MergeResult& result, const std::vector<RobotMap>&
 }
 
 /// "3to8": m3 to m8 into one map.
-std::string row_of_many(const std::vector<Draw>& draws, const std::string& name,
+std::string row_of_many(std::span<const Draw> draws, const std::string& name,
                         const std::function<MergeResult(const std::vector<OccupancyGrid>&)>& merger) {
   constexpr std::size_t kFirst = 2;  // m3
   Placed placed;
@@ -109,57 +100,62 @@ MatchResult walk_up(const OccupancyGrid& fixed, const OccupancyGrid& moving) {
 
 }  // namespace
 
-std::string table_one(int draws) {
-  const std::vector<Draw> made = make_draws(kSide, draws);
+std::vector<Draw> make_draws(int side, int draws) {
+  std::vector<Draw> made;
+  for (int seed = 1; seed <= draws; ++seed) made.push_back(make_draw(side, static_cast<std::uint64_t>(seed)));
+  return made;
+}
+
+std::string table_one(std::span<const Draw> draws) {
   std::string table = kRunsHead;
   for (const Row& row : rows()) {
-    for (const Method& method : row.methods) table += row_of(made, row.fixed, row.moving, method);
+    for (const Method& method : row.methods) table += row_of(draws, row.fixed, row.moving, method);
   }
   table += "\n| maps | method | placed | of these right | draws with all in one |\n|---|---|---|---|---|\n";
-  table += row_of_many(made, "up the tree, 4 walks, c_lock 0 and 7.5 in turn",
+  table += row_of_many(draws, "up the tree, 4 walks, c_lock 0 and 7.5 in turn",
                        [](const auto& maps) { return merge_up_tree(maps, walk_up); });
-  table += row_of_many(made, "engine, jointly", [](const auto& maps) { return merge(maps); });
+  table += row_of_many(draws, "engine, jointly", [](const auto& maps) { return merge(maps); });
   return table;
 }
 
-std::string hard_pair_measures(int draws) {
+std::string hard_pair_measures(std::span<const Draw> draws) {
   const Method method{"8 walks, c_lock 7.5", {7.5}, 8};
   std::string table =
       "| draw | Δ at the truth | Δ found | ω at the truth | ω found | ai at the truth | ai found | error [m] "
       "|\n"
       "|---|---|---|---|---|---|---|---|\n";
-  for (const Draw& draw : make_draws(kSide, draws)) {
+  for (const Draw& draw : draws) {
     const Run run = merge_two(pair_of(draw, 3, 4), method, draw.seed);
-    std::fprintf(stderr, "  hard pair, draw %zu of %d: %.1f s\n", static_cast<std::size_t>(draw.seed), draws,
-                 run.seconds);
-    table += fmt::format("| {} | {:.0f} | {:.0f} | {} | {} | {:.3f} | {:.3f} | {:.2f} |\n", draw.seed,
-                         run.truth.delta, run.found.delta, run.truth.equal_cells, run.found.equal_cells,
-                         run.truth.acceptance_index, run.found.acceptance_index, run.error);
+    std::fprintf(stderr, "  hard pair, draw %zu of %zu: %.1f s\n", static_cast<std::size_t>(draw.seed),
+                 draws.size(), run.seconds);
+    table +=
+        fmt::format("| {} | {:.0f} | {:.0f} | {} | {} | {:.3f} | {:.3f} | {:.2f} |\n", draw.seed,
+                    run.truth.delta(run.c_lock), run.found.delta(run.c_lock), run.truth.omega,
+                    run.found.omega, run.truth.acceptance_index(), run.found.acceptance_index(), run.error);
   }
   return table;
 }
 
-std::string shared_cells(int draws) {
+std::string shared_cells(std::span<const Draw> draws) {
   std::string table =
       "| draw | maps | shared, of the first | of the second | occupied in both | free in both | "
       "contradicting |\n"
       "|---|---|---|---|---|---|---|\n";
-  for (const Draw& draw : make_draws(kSide, draws)) {
+  for (const Draw& draw : draws) {
     for (const Row& row : rows()) {
       const Pair pair = pair_of(draw, row.fixed, row.moving);
       const SharedCells shared = measure_shared(pair);
       table += fmt::format("| {} | {} | {:.2f} % | {:.2f} % | {} | {} | {} |\n", draw.seed, pair.name,
-                           100.0 * shared.of_fixed, 100.0 * shared.of_moving, shared.occupied, shared.free,
-                           shared.contradicting);
+                           100.0 * shared.of_fixed, 100.0 * shared.of_moving, shared.common.occupied_occupied,
+                           shared.common.free_free, shared.common.contradicting);
     }
   }
   return table;
 }
 
-std::string larger_maps(int draws) {
-  const std::vector<Draw> made = make_draws(1000, draws);
+std::string larger_maps(std::span<const Draw> draws) {
   std::string table = kRunsHead;
-  for (const Method& method : {kWalk0, kWalk, kEngine}) table += row_of(made, 1, 2, method);
+  for (const Method& method : {kWalk0, kWalk, kEngine}) table += row_of(draws, 1, 2, method);
   return table;
 }
 

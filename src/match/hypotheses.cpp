@@ -229,11 +229,11 @@ std::vector<PoseFigures> compared_figures(const std::vector<Hypothesis>& hypothe
   const PoseMetric metric = make_pose_metric(maps.moving_walls);
   const double near = kNearDistinct * distinct_displacement(maps);
   std::vector<PoseFigures> figures = figures_of(hypotheses);
+  std::vector<SE2> T_cells;
+  for (const Hypothesis& hypothesis : hypotheses)
+    T_cells.push_back(to_cells(hypothesis.T_fixed_moving, maps.fixed_walls, maps.moving_walls));
   compare_rivals(figures, [&](std::size_t a, std::size_t b) {
-    const auto in_cells = [&](std::size_t i) {
-      return to_cells(hypotheses[i].T_fixed_moving, maps.fixed_walls, maps.moving_walls);
-    };
-    return metric.displacement(in_cells(a), in_cells(b)) < near;
+    return metric.displacement(T_cells[a], T_cells[b]) < near;
   });
   return figures;
 }
