@@ -10,6 +10,7 @@
 #include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "support/building.hpp"
+#include "support/effort.hpp"
 
 namespace gridmerge {
 namespace {
@@ -156,14 +157,17 @@ TEST(RandomWalk, TheWholeTraceHoldsEveryProposal) {
   EXPECT_EQ(again.trace.size(), accepted);
 }
 
-/// Of four wrong starts, from how many the walk reaches the truth.
+constexpr int kWrongStarts = test::repeats(4, 1);
+
+/// Of the wrong starts, from how many the walk reaches the truth.
 int count_arrivals(double c_lock, double wide_share, std::uint64_t seed) {
   const EasyPair pair;
   const SE2 truth = inverse(pair.T_moving_fixed);
   const Point2 centre = pair.T_moving_fixed * Point2{9.0, 6.5};  // of the building, in the moving map
+  const std::array<SE2, 4> starts{SE2{0.0, 0.0, 3.1}, SE2{6.0, 0.0, 1.6}, SE2{0.0, -6.0, -1.6},
+                                  SE2{-4.0, 4.0, 2.4}};
   int arrived = 0;
-  for (const SE2& wrong :
-       {SE2{0.0, 0.0, 3.1}, SE2{6.0, 0.0, 1.6}, SE2{0.0, -6.0, -1.6}, SE2{-4.0, 4.0, 2.4}}) {
+  for (const SE2& wrong : std::span(starts).first(kWrongStarts)) {
     const SE2 turned{0.0, 0.0, truth.theta + wrong.theta};
     const Point2 at = turned * centre;
     RandomWalkOptions options;
@@ -184,7 +188,7 @@ int count_arrivals(double c_lock, double wide_share, std::uint64_t seed) {
 class FromWrongPlaces : public testing::TestWithParam<double> {};
 
 TEST_P(FromWrongPlaces, WideProposalsLeadOut) {
-  EXPECT_EQ(count_arrivals(GetParam(), RandomWalkOptions{}.wide_share, 1), 4);
+  EXPECT_EQ(count_arrivals(GetParam(), RandomWalkOptions{}.wide_share, 1), kWrongStarts);
 }
 
 TEST_P(FromWrongPlaces, NothingElseDoes) {

@@ -11,6 +11,7 @@
 
 #include "gridmerge/similarity/distance_map.hpp"
 #include "literal_similarity.hpp"
+#include "support/effort.hpp"
 
 namespace gridmerge {
 namespace {
@@ -110,7 +111,7 @@ TEST(DistanceMap, CrossesTheLargestMaps) {
 
 TEST(ImageSimilarity, EqualsTheLiteralOneUnderAnyTransform) {
   std::mt19937 random(2);
-  for (int run = 0; run < 200; ++run) {
+  for (int run = 0; run < test::repeats(200, 60); ++run) {
     SCOPED_TRACE(run);
     const OccupancyGrid fixed =
         random_map(random, 1 + static_cast<int>(random() % 50), 1 + static_cast<int>(random() % 50));

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "gridmerge/evaluate/displacement.hpp"
+#include "support/effort.hpp"
 
 namespace gridmerge {
 namespace {
@@ -52,7 +53,8 @@ double walls_met(const OccupancyGrid& fixed, const OccupancyGrid& moving, const 
 }
 
 TEST(Simulate, MapsLieOnTheirBuildingAndOnEachOtherUnderTheTruth) {
-  for (const BuildingKind kind : building_kinds()) {
+  for (const BuildingKind kind :
+       building_kinds().first(test::repeats(building_kinds().size(), std::size_t{2}))) {
     SCOPED_TRACE(name_of(kind));
     SimulateOptions options = small(kind);
     options.drift = 0.0;
@@ -81,15 +83,16 @@ TEST(Simulate, MapsLieOnTheirBuildingAndOnEachOtherUnderTheTruth) {
 TEST(Simulate, OverlapComesOutAboutAsAskedFor) {
   for (const double wanted : {0.15, 0.5, 0.8}) {
     double sum = 0.0;
-    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const int seeds = test::repeats(4, 1);
+    for (int seed = 1; seed <= seeds; ++seed) {
       SimulateOptions options = small();
-      options.seed = seed;
+      options.seed = static_cast<std::uint64_t>(seed);
       options.overlap = wanted;
       const double overlap = simulate(options).overlap;
       EXPECT_NEAR(overlap, wanted, 0.1) << seed;
       sum += overlap;
     }
-    EXPECT_NEAR(sum / 4.0, wanted, 0.05);
+    EXPECT_NEAR(sum / seeds, wanted, 0.05);
   }
 }
 
@@ -104,17 +107,18 @@ TEST(Simulate, NoOverlapMakesStrangers) {
 
 TEST(Simulate, DriftBendsMapsAndWidensTheTolerance) {
   double straight = 0.0, bent = 0.0, tolerance = 0.0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  const int seeds = test::repeats(4, 1);
+  for (int seed = 1; seed <= seeds; ++seed) {
     SimulateOptions options = small();
     options.width = 40.0;
-    options.seed = seed;
+    options.seed = static_cast<std::uint64_t>(seed);
     options.overlap = 0.6;
     options.drift = 0.0;
-    straight += simulate(options).maps.front().bend / 4.0;
+    straight += simulate(options).maps.front().bend / seeds;
     options.drift = 2.0;
     const Simulation simulation = simulate(options);
-    bent += simulation.maps.front().bend / 4.0;
-    tolerance += simulation.pairs.front().tolerance / 4.0;
+    bent += simulation.maps.front().bend / seeds;
+    tolerance += simulation.pairs.front().tolerance / seeds;
   }
   EXPECT_LT(straight, 0.03);
   EXPECT_GT(bent, 0.2);
