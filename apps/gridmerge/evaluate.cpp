@@ -46,7 +46,9 @@ Evaluation evaluate_files(const EvaluateCommandOptions& options) {
   if (!options.features.empty()) try_output_file(options.features, inputs);
   EvaluateOptions engine;
   engine.load = options.load;
-  engine.matcher = PairMatcher(options.common, options.search);
+  SearchOptions search = options.search;
+  search.lists_all = !options.features.empty();
+  engine.matcher = PairMatcher(options.common, search);
   engine.merger = [&](const std::vector<OccupancyGrid>& maps) {
     if (options.search.up_the_tree()) return merge_up_tree(maps, engine.matcher);
     MergeOptions joint;
@@ -89,7 +91,7 @@ void add_evaluate(CLI::App& app, Action& action) {
       ->type_name("FILE");
   command
       ->add_option("--features", options->features,
-                   "Write what each verdict rests on to this file (TSV), one line a match")
+                   "Write what each verdict rests on to this file (TSV), one line per judged pose")
       ->type_name("FILE");
   add_search_options(*command, options->search);
   add_strategy_option(*command, options->search);
@@ -110,7 +112,7 @@ void add_evaluate(CLI::App& app, Action& action) {
       throw CLI::ValidationError("evaluate", "give PAIRS, --negatives or --sets");
     }
     if (!options->features.empty() && options->search.random_walk())
-      throw CLI::ValidationError("--features", "needs --search exhaustive");
+      throw CLI::ValidationError("--features", "does not go with --search random-walk");
     action = [options] { return run_evaluate(*options); };
   });
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -131,11 +132,17 @@ void check_walk(const SearchOptions& options) {
 }  // namespace
 
 void add_search_options(CLI::App& command, SearchOptions& options) {
+  std::vector<std::string> names;
+  std::string methods;
+  for (const SearchMethodName& one : search_methods()) {
+    names.emplace_back(one.name);
+    methods += fmt::format("{}: {}; ", one.name, one.meaning);
+  }
+  names.emplace_back(kRandomWalk);
   command
-      .add_option("--search", options.method,
-                  "exhaustive: every pose; random-walk: the walk of Birk & Carpin (2006)")
+      .add_option("--search", options.method, methods + kRandomWalk + ": the walk of Birk & Carpin (2006)")
       ->type_name("METHOD")
-      ->check(CLI::IsMember({"exhaustive", "random-walk"}))
+      ->check(CLI::IsMember(names))
       ->capture_default_str();
   command
       .add_option(
@@ -190,6 +197,8 @@ MatchOptions match_options(const CommonOptions& common, const SearchOptions& opt
   MatchOptions engine;
   engine.threads = common.threads;
   engine.accept_probability = options.accept_from();
+  if (options.lists_all) engine.max_hypotheses = std::numeric_limits<std::size_t>::max();
+  engine.search = search_method(options.method).value_or(SearchMethod::exhaustive);
   return engine;
 }
 

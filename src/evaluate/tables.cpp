@@ -117,6 +117,7 @@ std::string features_table(const Evaluation& evaluation) {
   std::string text = "fixed\tmoving\ttier\thypothesis\ttruth\terror\tx\ty\ttheta";
   for (const PoseFigure& figure : pose_figures()) text += fmt::format("\t{}", figure.name);
   for (const VerdictTerm& term : verdict_terms()) text += fmt::format("\tterm: {}", term.name);
+  for (const RankTerm& term : rank_terms()) text += fmt::format("\trank: {}", term.name);
   text += '\n';
   for (const MatchOutcome& match : evaluation.matches) {
     for (std::size_t i = 0; i < match.hypotheses.size(); ++i) {
@@ -129,6 +130,8 @@ std::string features_table(const Evaluation& evaluation) {
         fmt::format_to(std::back_inserter(text), "\t{}", hypothesis.figures.*figure.value);
       for (const VerdictTerm& term : verdict_terms())
         fmt::format_to(std::back_inserter(text), "\t{}", term(hypothesis.figures));
+      for (const RankTerm& term : rank_terms())
+        fmt::format_to(std::back_inserter(text), "\t{}", term.value(hypothesis.figures));
       text += '\n';
     }
   }

@@ -213,6 +213,10 @@ Hypothesis PoseJudge::settle(const Hypothesis& hypothesis) const {
   return judge(climbed);
 }
 
+double PoseJudge::acceptance_index(const SE2& T_cells) const {
+  return agreement(to_map_frames(T_cells, maps_.fixed_walls, maps_.moving_walls));
+}
+
 double PoseJudge::agreement(const SE2& T_fixed_moving) const {
   return count_agreement(maps_.fixed, maps_.moving, T_fixed_moving, stride_).acceptance_index();
 }
@@ -247,33 +251,6 @@ void weigh(std::vector<Hypothesis>& hypotheses, const ComparedMaps& maps) {
   }
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
-}
-
-std::vector<Hypothesis> find_hypotheses(const ComparedMaps& maps, std::size_t max_hypotheses,
-                                        const std::function<void(double)>& progress) {
-  const auto report = [&](double share) {
-    if (progress) progress(share);
-  };
-  report(0.1);
-  const ExhaustiveSearchOptions search = choose_search(maps);
-  const std::vector<PoseCandidate> candidates = search_all_poses(maps.fixed_walls, maps.moving_walls, search);
-  report(0.5);
-  RefineOptions refinement;
-  refinement.coarse_cell = search.coarse_factor;
-  refinement.distinct = distinct_displacement(maps);
-  refinement.max_poses = std::max(kRankedPoses, max_hypotheses);
-  const PoseJudge judge(maps);
-  const std::vector<ScoredPose> poses = refine(judge.walls(), maps.moving_walls, candidates, refinement,
-                                               [&](double share) { report(0.5 + 0.3 * share); });
-  std::vector<Hypothesis> judged(poses.size());
-  parallel_for(poses.size(), [&](std::size_t i) { judged[i] = judge.judge(poses[i].T_fixed_moving); });
-  std::erase_if(judged, [](const Hypothesis& hypothesis) { return !(hypothesis.score > 0.0); });
-  weigh(judged, maps);
-  if (!judged.empty()) {
-    judged.front() = judge.settle(judged.front());
-    weigh(judged, maps);
-  }
-  return judged;
 }
 
 }  // namespace gridmerge

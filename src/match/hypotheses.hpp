@@ -54,6 +54,9 @@ class PoseJudge {
   /// itself exactly.
   Hypothesis settle(const Hypothesis& hypothesis) const;
 
+  /// Of the cells that are counted, the share that agrees under a pose between the grid frames [cells].
+  double acceptance_index(const SE2& T_cells) const;
+
   const WallEvidence& walls() const { return walls_; }
 
  private:
@@ -74,12 +77,6 @@ class PoseJudge {
   WallEvidence sliding_walls_;  // fewer, for how well a pose is held
   int stride_;                  // of the cells that are counted
 };
-
-/// Searches all poses, refines them and weighs each: distinct ones, most probable first, with probabilities;
-/// without those that on the whole speak against themselves. `progress` as in MatchOptions. Runs in the
-/// calling TBB arena.
-std::vector<Hypothesis> find_hypotheses(const ComparedMaps& maps, std::size_t max_hypotheses,
-                                        const std::function<void(double)>& progress);
 
 /// The figures of each, with what it has before its rivals (compare_rivals()).
 std::vector<PoseFigures> compared_figures(const std::vector<Hypothesis>& hypotheses,

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "gridmerge/grid/parallel.hpp"
-#include "hypotheses.hpp"
+#include "looks.hpp"
 
 namespace gridmerge {
 
@@ -33,7 +33,7 @@ MatchResult match_in_arena(const PreparedMap& fixed, const PreparedMap& moving, 
   const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);
 
   MatchResult result;
-  result.hypotheses = find_hypotheses(maps, options.max_hypotheses, options.progress);
+  result.hypotheses = find_hypotheses(maps, {options.search, options.accept_probability, options.progress});
   result.reason = explain_refusal(figures_of(result.hypotheses), options.accept_probability);
   if (result.hypotheses.empty()) return result;
   const AgreementCounts counts =

@@ -13,6 +13,8 @@ std::span<const PoseFigure> pose_figures() {
       PoseFigure{"lead", "sqrt(nats)",
                  "the score's lead over the best other one, by its square root: what chance moves it by",
                  &F::lead},
+      PoseFigure{"stands_out", "nats", "how far its rank stands above those of all other hypotheses together",
+                 &F::stands_out},
       PoseFigure{"wall_score", "nats", "of it, the evidence of the walls", &F::wall_score},
       PoseFigure{"seen_walls", "m", "length of the walls of both maps that lie where the other map has seen",
                  &F::seen_walls},

@@ -13,6 +13,11 @@ namespace gridmerge {
 
 namespace {
 
+constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+/// The score of unrelated poses spreads as this power of the walls that are seen: neighbouring walls tell
+/// nearly the same, so more than the square root.
+constexpr double kSpreadPower = 0.75;
+
 /// One pass over the surviving poses.
 struct Round {
   std::size_t points;  // wall points of each map that are looked at
@@ -23,17 +28,38 @@ struct Round {
   double distinct;     // poses nearer than this afterwards are one [cells]
 };
 
-/// Best first. The sort is stable, so equal scores keep the order of the search and the result is
+/// Many candidates, few of which are near a pose with much in common: they are thinned by score, which is
+/// cheap, and the rest is climbed from.
+std::array<Round, 4> rounds_by_amount(double coarse, const RefineOptions& options) {
+  return {{
+      {150, kAll, 0.0, 1.0, 0.35, 0.0},                   // score only
+      {200, 150, 0.5, coarse / 4.0, 0.35, coarse / 4.0},  // into the basin
+      {400, 50, 0.25, 1.0, 0.0, coarse / 2.0},            // the error model settles
+      {1000, 2 * options.max_poses, 0.25, 0.25, 0.0, options.distinct},
+  }};
+}
+
+/// Where little overlaps, a pose a step beside the true one looks like any other: all are climbed from.
+std::array<Round, 4> rounds_by_quality(double coarse, const RefineOptions& options) {
+  return {{
+      {200, kAll, 0.5, coarse / 2.0, 0.35, coarse / 2.0},
+      {300, 200, 0.25, coarse / 4.0, 0.35, coarse / 2.0},
+      {600, 100, 0.25, 1.0, 0.0, coarse / 2.0},
+      {1000, 2 * options.max_poses, 0.25, 0.5, 0.0, options.distinct},
+  }};
+}
+
+/// Best first. The sort is stable, so equal ranks keep the order of the search and the result is
 /// deterministic.
-void sort_by_score(std::vector<ScoredPose>& poses) {
-  std::stable_sort(poses.begin(), poses.end(), [](const ScoredPose& a, const ScoredPose& b) {
-    return a.evidence.score > b.evidence.score;
+void sort_by(RankBy rank, std::vector<ScoredPose>& poses) {
+  std::stable_sort(poses.begin(), poses.end(), [rank](const ScoredPose& a, const ScoredPose& b) {
+    return rank_of(a.evidence, rank) > rank_of(b.evidence, rank);
   });
 }
 
 std::vector<ScoredPose> keep_distinct(std::vector<ScoredPose> poses, const PoseMetric& metric,
-                                      double distinct, std::size_t max_count) {
-  sort_by_score(poses);
+                                      double distinct, RankBy rank) {
+  sort_by(rank, poses);
   if (distinct <= 0.0) return poses;
   std::vector<ScoredPose> kept;
   for (const ScoredPose& pose : poses) {
@@ -41,12 +67,16 @@ std::vector<ScoredPose> keep_distinct(std::vector<ScoredPose> poses, const PoseM
       return metric.displacement(pose.T_fixed_moving, other.T_fixed_moving) < distinct;
     });
     if (is_new) kept.push_back(pose);
-    if (kept.size() == max_count) break;
   }
   return kept;
 }
 
 }  // namespace
+
+double rank_of(const Evidence& evidence, RankBy rank) {
+  if (rank == RankBy::amount) return evidence.score;
+  return evidence.score / std::pow(std::max(1.0, evidence.seen_walls), kSpreadPower);
+}
 
 double PoseMetric::displacement(const SE2& a, const SE2& b) const {
   const Point2 at_a = a * pivot;
@@ -111,14 +141,9 @@ ScoredPose climb(const WallEvidence& evidence, const PoseMetric& metric, const S
 std::vector<ScoredPose> refine(const WallEvidence& all_points, const WallMap& moving,
                                const std::vector<PoseCandidate>& candidates, const RefineOptions& options,
                                const std::function<void(double)>& progress) {
-  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   const double coarse = options.coarse_cell;
-  const std::array<Round, 4> rounds{{
-      {150, kAll, 0.0, 1.0, 0.35, 0.0},                   // score only
-      {200, 150, 0.5, coarse / 4.0, 0.35, coarse / 4.0},  // into the basin
-      {400, 50, 0.25, 1.0, 0.0, coarse / 2.0},            // the error model settles
-      {1000, 2 * options.max_poses, 0.25, 0.25, 0.0, options.distinct},
-  }};
+  const std::array<Round, 4> rounds =
+      options.rank == RankBy::amount ? rounds_by_amount(coarse, options) : rounds_by_quality(coarse, options);
 
   const PoseMetric metric = make_pose_metric(moving);
   std::vector<ScoredPose> poses;
@@ -133,7 +158,7 @@ std::vector<ScoredPose> refine(const WallEvidence& all_points, const WallMap& mo
       poses[i] = climb(evidence, metric, poses[i].T_fixed_moving, round.first_step * coarse, round.last_step,
                        round.min_sigma * coarse);
     });
-    poses = keep_distinct(std::move(poses), metric, round.distinct, kAll);
+    poses = keep_distinct(std::move(poses), metric, round.distinct, options.rank);
     if (progress) progress(static_cast<double>(r + 1) / rounds.size());
   }
   if (poses.size() > options.max_poses) poses.resize(options.max_poses);
@@ -142,7 +167,7 @@ std::vector<ScoredPose> refine(const WallEvidence& all_points, const WallMap& mo
     throw_if_cancelled();
     pose.evidence = all_points(pose.T_fixed_moving);
   }
-  sort_by_score(poses);
+  sort_by(options.rank, poses);
   return poses;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../similarity/lattice_frames.hpp"
-#include "hypotheses.hpp"
+#include "looks.hpp"
 
 namespace gridmerge {
 
@@ -66,7 +66,7 @@ void weigh_among_all(Hypothesis& pose, const ComparedMaps& maps) {
     return to_cells(one.T_fixed_moving, maps.fixed_walls, maps.moving_walls);
   };
   std::vector<Hypothesis> all{pose};
-  for (const Hypothesis& other : find_hypotheses(maps, kRankedPoses, {})) {
+  for (const Hypothesis& other : find_hypotheses(maps)) {
     if (metric.displacement(in_cells(pose), in_cells(other)) >= distinct_displacement(maps))
       all.push_back(other);
   }

@@ -74,7 +74,8 @@ std::span<const VerdictTerm> verdict_terms() {
       VerdictTerm{"tells apart", "-ln(1 + exp(-3 (wall_lines - 3.5)))", kAmount, -12.0, 0.0,
                   [](const F& f) { return -std::log1p(std::exp(-3.0 * (f.wall_lines - 3.5))); }},
       VerdictTerm{"held", "ln(held / held_most)", kAmount, -3.5, 0.0, how_held},
-      VerdictTerm{"lead", "lead / 10", kAmount, 0.0, 10.0, [](const F& f) { return 0.1 * f.lead; }},
+      VerdictTerm{"stands out", "stands_out", TermKind::rivals, 0.0, 6.0,
+                  [](const F& f) { return f.stands_out; }},
       VerdictTerm{"far ahead, bent",
                   "(lead - 30) / 20 within [0, 1], times ln(sigma / 0.1 m) / ln(2.5) within [0, 1]",
                   TermKind::excuse, 0.0, 1.0, far_ahead_though_bent},
@@ -91,6 +92,26 @@ std::span<const VerdictTerm> verdict_terms() {
   return kTerms;
 }
 
+std::span<const RankTerm> rank_terms() {
+  using F = PoseFigures;
+  static constexpr std::array kTerms{
+      RankTerm{"evidence", "ln(score)", [](const F& f) { return logarithm(f.score, 1.0); }},
+      RankTerm{"seen", "-ln(seen_walls)", [](const F& f) { return -logarithm(f.seen_walls, 1.0); }},
+      RankTerm{"cells", "-ln(1.01 - acceptance_index)",
+               [](const F& f) { return missing(f.acceptance_index, 0.01); }},
+      RankTerm{"lines", "ln(wall_lines + 0.5)", [](const F& f) { return std::log(f.wall_lines + 0.5); }},
+      RankTerm{"things", "as \"things met\"", [](const F& f) { return missing(things_share(f), 0.05); }},
+      RankTerm{"tolerance", "ln(sigma)", [](const F& f) { return logarithm(f.sigma, 0.03); }}};
+  return kTerms;
+}
+
+double rank_of(const PoseFigures& figures) {
+  const auto terms = rank_terms();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < terms.size(); ++i) sum += kRankWeights[i].weight * terms[i].value(figures);
+  return sum;
+}
+
 double log_odds_of(const PoseFigures& figures) {
   const auto terms = verdict_terms();
   double sum = kVerdictBias;
@@ -98,36 +119,54 @@ double log_odds_of(const PoseFigures& figures) {
   return sum;
 }
 
+namespace {
+
+/// Nothing stands out more: also what has no rivals.
+constexpr double kMostStandingOut = 20.0;  // nats
+
+/// What has less than this share of a pose's score has too little in common to tell whose cells agree better.
+constexpr double kRivalScore = 0.5;
+
+}  // namespace
+
 void compare_rivals(std::span<PoseFigures> hypotheses,
                     const std::function<bool(std::size_t, std::size_t)>& are_near) {
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     PoseFigures& one = hypotheses[i];
-    double next_score = 0.0;
+    const double rank = rank_of(one);
+    double next_score = 0.0, others = std::exp(-kMostStandingOut);
     one.next_acceptance_index = 0.0;
     for (std::size_t j = 0; j < hypotheses.size(); ++j) {
       const PoseFigures& other = hypotheses[j];
       if (j == i || (other.score < one.score && are_near && are_near(i, j))) continue;
       next_score = std::max(next_score, other.score);
-      one.next_acceptance_index = std::max(one.next_acceptance_index, other.acceptance_index);
+      others += std::exp(rank_of(other) - rank);
+      if (other.score >= kRivalScore * one.score)
+        one.next_acceptance_index = std::max(one.next_acceptance_index, other.acceptance_index);
     }
     one.lead = one.score > 0.0 ? (one.score - next_score) / std::sqrt(one.score) : 0.0;
+    one.stands_out = -std::log(others);
   }
 }
 
 std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses) {
-  std::vector<double> weights;
-  double most = 0.0;
-  for (const PoseFigures& figures : hypotheses) {
-    weights.push_back(log_odds_of(figures));
-    most = std::max(most, weights.back());
+  if (hypotheses.empty()) return {};
+  std::vector<double> odds;
+  for (const PoseFigures& figures : hypotheses) odds.push_back(rank_of(figures));
+  const auto best = std::max_element(odds.begin(), odds.end());
+  const PoseFigures& figures = hypotheses[static_cast<std::size_t>(best - odds.begin())];
+  const double belief = logistic(log_odds_of(figures)), share = logistic(figures.stands_out);
+  const double most = *best;
+  double others = 0.0;
+  for (double& one : odds) {
+    one = std::exp(one - most);
+    others += one;
   }
-  double sum = std::exp(-most);
-  for (double& weight : weights) {
-    weight = std::exp(weight - most);
-    sum += weight;
-  }
-  for (double& weight : weights) weight /= sum;
-  return weights;
+  others -= *best;
+  std::vector<double> probabilities;
+  for (auto one = odds.begin(); one != odds.end(); ++one)
+    probabilities.push_back(one == best ? belief * share : belief * (1.0 - share) * *one / others);
+  return probabilities;
 }
 
 bool slides(const PoseFigures& figures) {
@@ -148,15 +187,18 @@ Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_pr
     }
     return logistic(log_odds);
   };
-  if (mended([](TermKind) { return false; }) >= accept_probability) return Reason::ambiguous;
-  const bool agrees = mended([](TermKind kind) { return kind == TermKind::amount; }) >= accept_probability;
+  const auto with_rivals = [&](auto is_mended) {
+    return mended([&](TermKind kind) { return kind == TermKind::rivals || is_mended(kind); }) >=
+           accept_probability;
+  };
+  if (with_rivals([](TermKind) { return false; })) return Reason::ambiguous;
+  const bool agrees = with_rivals([](TermKind kind) { return kind == TermKind::amount; });
   // Nearly as good: the better one of the two would be refused however much the maps had in common.
   const double rival = hypotheses.size() > 1 ? probabilities[1] / (probabilities[0] + probabilities[1]) : 0.0;
   if (agrees && 1.0 - rival < accept_probability) return Reason::ambiguous;
   if (agrees && slides(hypotheses[0])) return Reason::ambiguous;
   if (agrees) return Reason::too_little_overlap;
-  if (mended([](TermKind kind) { return kind == TermKind::quality; }) >= accept_probability)
-    return Reason::contradiction;
+  if (with_rivals([](TermKind kind) { return kind == TermKind::quality; })) return Reason::contradiction;
   return Reason::several;
 }
 
@@ -166,6 +208,8 @@ const char* name_of(TermKind kind) {
       return "amount";
     case TermKind::quality:
       return "quality";
+    case TermKind::rivals:
+      return "rivals";
     case TermKind::excuse:
       break;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -108,12 +109,9 @@ class Merger::State {
       const std::vector<MapId> all = in_canonical_order();
       const std::vector<Copy> copies = find_copies(all);
       const std::vector<MapId> maps = those_that_count(all, copies);
-      match_new_pairs(maps);
-      const ArrangementProblem problem = make_problem(maps);
-      const Arrangement arrangement =
-          arrange_within(problem, options_.match.accept_probability, options_.max_false_joins);
+      const auto [problem, arrangement, again] = solve(maps);
       result.expected_false_joins = expected_false_joins(arrangement);
-      result.joins = make_joins(maps, problem, arrangement);
+      result.joins = make_joins(maps, problem, arrangement, again);
       add_components(maps, problem, arrangement, result);
       std::vector<const OccupancyGrid*> grids;
       for (const auto& [id, input] : inputs_) grids.push_back(input->grid.get());
@@ -131,14 +129,47 @@ class Merger::State {
     MapId fixed;
     MatchResult match;
   };
+  using Matches = std::map<Pair, Made>;
+
+  struct Solution {
+    ArrangementProblem problem;
+    Arrangement arrangement;
+    std::set<Pair> again;  // pairs that were looked at a second time
+  };
+
+  /// Looks at every pair quickly, and again at those whose maps that leaves apart: maps that lie in one
+  /// component gain little by one more join. What a pair's match is depends on the maps alone, not on when
+  /// they came.
+  Solution solve(const std::vector<MapId>& maps) {
+    const bool looks_twice = options_.match.search == SearchMethod::exhaustive;
+    match_new_pairs(all_pairs(maps), looks_twice ? SearchMethod::quick : options_.match.search, matches_);
+    Solution solution = arrange(maps, {});
+    if (!looks_twice) return solution;
+    const std::vector<Pair> apart = pairs_apart(maps, solution.arrangement);
+    if (apart.empty()) return solution;
+    match_new_pairs(apart, SearchMethod::exhaustive, thorough_matches_);
+    std::set<Pair> again;
+    for (const Pair& pair : apart) again.insert(std::minmax(pair.first, pair.second));
+    return arrange(maps, std::move(again));
+  }
+
+  /// With the second look at the pairs in `again`.
+  Solution arrange(const std::vector<MapId>& maps, std::set<Pair> again) const {
+    Solution solution{make_problem(maps, again), {}, std::move(again)};
+    solution.arrangement =
+        arrange_within(solution.problem, options_.match.accept_probability, options_.max_false_joins);
+    return solution;
+  }
 
   void require(MapId id) const {
     if (!inputs_.contains(id)) throw std::out_of_range("there is no map " + std::to_string(id));
   }
 
   void forget(MapId id) {
-    std::erase_if(matches_,
-                  [&](const auto& match) { return match.first.first == id || match.first.second == id; });
+    for (Matches* matches : {&matches_, &thorough_matches_}) {
+      std::erase_if(*matches,
+                    [&](const auto& match) { return match.first.first == id || match.first.second == id; });
+    }
   }
 
   /// An order that depends on the maps alone, so that sums are made in the same order whatever order they
@@ -177,19 +208,41 @@ class Merger::State {
     return maps;
   }
 
-  void match_new_pairs(const std::vector<MapId>& maps) {
+  static std::vector<Pair> all_pairs(const std::vector<MapId>& maps) {
     std::vector<Pair> pairs;
     for (auto a = maps.begin(); a != maps.end(); ++a) {
-      for (auto b = std::next(a); b != maps.end(); ++b) {
-        if (!matches_.contains(std::minmax(*a, *b))) pairs.emplace_back(*a, *b);
+      for (auto b = std::next(a); b != maps.end(); ++b) pairs.emplace_back(*a, *b);
+    }
+    return pairs;
+  }
+
+  /// The pairs of maps that lie in no common group.
+  static std::vector<Pair> pairs_apart(const std::vector<MapId>& maps, const Arrangement& arrangement) {
+    std::vector<std::size_t> group_of(maps.size());
+    for (std::size_t i = 0; i < arrangement.groups.size(); ++i) {
+      for (const PlacedNode& node : arrangement.groups[i]) group_of[node.map] = i;
+    }
+    std::vector<Pair> pairs;
+    for (std::size_t a = 0; a < maps.size(); ++a) {
+      for (std::size_t b = a + 1; b < maps.size(); ++b) {
+        if (group_of[a] != group_of[b]) pairs.emplace_back(maps[a], maps[b]);
       }
     }
+    return pairs;
+  }
+
+  /// Matches those of the pairs that `matches` does not hold.
+  void match_new_pairs(std::vector<Pair> pairs, SearchMethod search, Matches& matches) {
+    std::erase_if(pairs,
+                  [&](const Pair& pair) { return matches.contains(std::minmax(pair.first, pair.second)); });
+    MatchOptions options = options_.match;
+    options.search = search;
     std::vector<MatchResult> results(pairs.size());
     std::mutex reporting;
     std::size_t done = 0;
     const auto match_pair = [&](std::size_t i) {
       const auto [fixed, moving] = pairs[i];
-      results[i] = match(inputs_.at(fixed)->prepared, inputs_.at(moving)->prepared, options_.match);
+      results[i] = match(inputs_.at(fixed)->prepared, inputs_.at(moving)->prepared, options);
       const std::lock_guard lock(reporting);
       ++done;
       if (options_.progress) options_.progress(done, pairs.size());
@@ -201,11 +254,13 @@ class Merger::State {
       parallel_for(pairs.size(), [&](std::size_t i) { with_threads(1, [&] { match_pair(i); }); });
     }
     for (std::size_t i = 0; i < pairs.size(); ++i)
-      matches_[std::minmax(pairs[i].first, pairs[i].second)] = {pairs[i].first, std::move(results[i])};
+      matches[std::minmax(pairs[i].first, pairs[i].second)] = {pairs[i].first, std::move(results[i])};
   }
 
-  MatchResult match_between(MapId fixed, MapId moving) const {
-    const Made& made = matches_.at(std::minmax(fixed, moving));
+  /// By the last look at the pair.
+  MatchResult match_between(MapId fixed, MapId moving, const std::set<Pair>& again) const {
+    const Pair pair = std::minmax(fixed, moving);
+    const Made& made = again.contains(pair) ? thorough_matches_.at(pair) : matches_.at(pair);
     return made.fixed == fixed ? made.match : inverse(made.match);
   }
 
@@ -214,7 +269,7 @@ class Merger::State {
     return known == known_poses_.end() ? std::nullopt : std::optional(known->second);
   }
 
-  ArrangementProblem make_problem(const std::vector<MapId>& maps) const {
+  ArrangementProblem make_problem(const std::vector<MapId>& maps, const std::set<Pair>& again) const {
     ArrangementProblem problem;
     for (const MapId id : maps) {
       problem.coverage.push_back(&inputs_.at(id)->coverage);
@@ -224,7 +279,7 @@ class Merger::State {
     }
     for (std::size_t a = 0; a < maps.size(); ++a) {
       for (std::size_t b = a + 1; b < maps.size(); ++b) {
-        PairCandidates pair{a, b, candidate_joins(match_between(maps[a], maps[b]))};
+        PairCandidates pair{a, b, candidate_joins(match_between(maps[a], maps[b], again))};
         const std::optional<KnownPose> of_a = known_pose(maps[a]), of_b = known_pose(maps[b]);
         if (of_a && of_b && !(of_a->fixed && of_b->fixed))
           apply_known_poses(*of_a, *of_b, problem.maps[a], problem.maps[b], pair);
@@ -236,7 +291,7 @@ class Merger::State {
 
   /// In the order in which the maps were added.
   std::vector<Join> make_joins(const std::vector<MapId>& maps, const ArrangementProblem& problem,
-                               const Arrangement& arrangement) const {
+                               const Arrangement& arrangement, const std::set<Pair>& again) const {
     std::map<std::size_t, std::size_t> used;  // candidate by pair
     for (const UsedCandidate& one : arrangement.used) used[one.pair] = one.candidate;
     std::vector<bool> is_placed(maps.size());
@@ -247,7 +302,7 @@ class Merger::State {
     std::vector<Join> joins;
     for (std::size_t i = 0; i < problem.pairs.size(); ++i) {
       const PairCandidates& pair = problem.pairs[i];
-      const MatchResult match = match_between(maps[pair.fixed], maps[pair.moving]);
+      const MatchResult match = match_between(maps[pair.fixed], maps[pair.moving], again);
       const CandidateJoin* candidate = used.contains(i) ? &pair.candidates[used.at(i)] : nullptr;
       const bool is_in_company = is_placed[pair.fixed] || is_placed[pair.moving];
       Join join = make_join(index[pair.fixed], index[pair.moving], match, {candidate, is_in_company});
@@ -306,7 +361,8 @@ class Merger::State {
   MapId next_ = 0;
   std::map<MapId, std::unique_ptr<const Input>> inputs_;
   std::map<MapId, KnownPose> known_poses_;
-  std::map<Pair, Made> matches_;
+  Matches matches_;           // of the first look
+  Matches thorough_matches_;  // of the second look
 };
 
 Merger::Merger(MergeOptions options) : state_(std::make_unique<State>(std::move(options))) {}

@@ -115,6 +115,7 @@ constexpr int half(int value) {  // rounded down
 EvidenceImage::EvidenceImage(int width, int height, int planes)
     : width_(width),
       height_(height),
+      planes_(planes),
       values_(static_cast<std::size_t>(stride()) * (height + 2) * planes, 0) {}
 
 void correlate(const EvidenceImage& image, std::vector<Sample> samples, ScoreImage& output) {
@@ -132,12 +133,14 @@ void correlate(const EvidenceImage& image, std::vector<Sample> samples, ScoreIma
 }
 
 EvidenceImage pool_pairs(const EvidenceImage& image) {
-  EvidenceImage pooled(half(image.width()) + 2, half(image.height()) + 2, 4);
-  for (int y = -1; y < image.height(); ++y) {
-    for (int x = -1; x < image.width(); ++x) {
-      const int plane = 2 * (y & 1) + (x & 1);
-      pooled.at(half(x) + 1, half(y) + 1, plane) = std::max(
-          std::max(image.at(x, y), image.at(x + 1, y)), std::max(image.at(x, y + 1), image.at(x + 1, y + 1)));
+  EvidenceImage pooled(half(image.width()) + 2, half(image.height()) + 2, 4 * image.planes());
+  for (int plane = 0; plane < image.planes(); ++plane) {
+    for (int y = -1; y < image.height(); ++y) {
+      for (int x = -1; x < image.width(); ++x) {
+        pooled.at(half(x) + 1, half(y) + 1, 4 * plane + 2 * (y & 1) + (x & 1)) =
+            std::max(std::max(image.at(x, y, plane), image.at(x + 1, y, plane)),
+                     std::max(image.at(x, y + 1, plane), image.at(x + 1, y + 1, plane)));
+      }
     }
   }
   return pooled;
@@ -146,8 +149,10 @@ EvidenceImage pool_pairs(const EvidenceImage& image) {
 std::vector<Sample> pool_pairs(const std::vector<Sample>& samples) {
   std::vector<Sample> pooled;
   pooled.reserve(samples.size());
-  for (const Sample& sample : samples)
-    pooled.push_back({half(sample.x) + 1, half(sample.y) + 1, 2 * (sample.y & 1) + (sample.x & 1)});
+  for (const Sample& sample : samples) {
+    pooled.push_back(
+        {half(sample.x) + 1, half(sample.y) + 1, 4 * sample.plane + 2 * (sample.y & 1) + (sample.x & 1)});
+  }
   return pooled;
 }
 

@@ -28,6 +28,7 @@ class EvidenceImage {
 
   int width() const { return width_; }
   int height() const { return height_; }
+  int planes() const { return planes_; }
   int stride() const { return width_ + 2 * kCorrelateBlock; }
 
   /// Column in [-kCorrelateBlock, width + kCorrelateBlock), row in [-1, height].
@@ -42,6 +43,7 @@ class EvidenceImage {
  private:
   int width_;
   int height_;
+  int planes_;
   std::vector<std::int8_t> values_;
 };
 
@@ -57,9 +59,9 @@ struct Sample {
 /// samples that fall on the image); vectorised.
 void correlate(const EvidenceImage& image, std::vector<Sample> samples, ScoreImage& output);
 
-/// The four images of largest values of 2 x 2 cells, one for the parities of their first column and row: a
-/// cell in plane 2 * (y mod 2) + (x mod 2) at (floor(x / 2) + 1, floor(y / 2) + 1) has the largest value of
-/// (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1). O(cells).
+/// Four images of largest values of 2 x 2 cells for each plane, one for the parities of their first column
+/// and row: of plane p a cell in plane 4 p + 2 * (y mod 2) + (x mod 2) at (floor(x / 2) + 1, floor(y / 2) +
+/// 1) has the largest value of (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1). O(cells).
 EvidenceImage pool_pairs(const EvidenceImage& image);
 
 /// The samples in the pooled image: with them, correlate() gives at (x, y) what no score of the shifts (2 x,

@@ -8,6 +8,7 @@
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/pose_figures.hpp"
 #include "gridmerge/match/prepared_map.hpp"
+#include "gridmerge/match/search_method.hpp"
 #include "gridmerge/match/verdict.hpp"
 
 namespace gridmerge {
@@ -22,8 +23,9 @@ struct Hypothesis {
 };
 
 struct MatchOptions {
+  SearchMethod search = SearchMethod::exhaustive;
   int threads = 0;                   ///< worker threads; 0 = one a core. The result does not depend on it.
-  std::size_t max_hypotheses = 10;   ///< how many distinct hypotheses the result lists
+  std::size_t max_hypotheses = 10;   ///< how many distinct hypotheses the result lists; some 30 are judged
   double accept_probability = 0.95;  ///< the verdict is `accepted` from this probability on
   /// Called now and then with the share of the work that is done, in [0, 1]; never from two threads at once.
   std::function<void(double)> progress;

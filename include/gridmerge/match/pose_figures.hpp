@@ -9,6 +9,7 @@ namespace gridmerge {
 struct PoseFigures {
   double score = 0.0;
   double lead = 0.0;
+  double stands_out = 0.0;
   double wall_score = 0.0;
   double seen_walls = 0.0;
   double walls_met = 0.0;

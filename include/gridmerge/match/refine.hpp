@@ -31,11 +31,21 @@ struct ScoredPose {
   Evidence evidence;
 };
 
+/// What makes one pose better than another on the way.
+enum class RankBy {
+  amount,   ///< the score: what overlaps much wins
+  quality,  ///< the score by what unrelated walls spread it, seen_walls^0.75: what overlaps little may win
+};
+
 struct RefineOptions {
   double distinct = 20.0;      ///< poses displaced by less than this are one hypothesis [cells]
   double coarse_cell = 4.0;    ///< spacing of the candidates [cells]
   std::size_t max_poses = 10;  ///< how many distinct poses are returned
+  RankBy rank = RankBy::amount;
 };
+
+/// The figure by which `rank` orders poses; larger is better.
+double rank_of(const Evidence& evidence, RankBy rank);
 
 /// Climbs from the candidates to the local maxima of the evidence, in rounds: few points and many candidates
 /// first, many points and few candidates last, with steps from half a coarse cell down to a quarter of a

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "looks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gridmerge/grid/parallel.hpp"
+#include "gridmerge/search/thorough.hpp"
+
+namespace gridmerge {
+
+namespace {
+
+/// Distinct poses of the thorough look whose cells are counted, and of them those that get all figures.
+constexpr std::size_t kCountedPoses = 40;
+constexpr std::size_t kThoroughPoses = 20;
+
+double logarithm(double value) {
+  return std::log(std::max(value, 1e-9));
+}
+
+/// What a pose promises before its dear figures are known: the quality of its walls and of its cells.
+double promise(const ScoredPose& pose, double acceptance_index) {
+  return logarithm(rank_of(pose.evidence, RankBy::quality)) - std::log(1.01 - acceptance_index);
+}
+
+std::vector<Hypothesis> judge_all(const PoseJudge& judge, const std::vector<SE2>& T_cells) {
+  std::vector<Hypothesis> judged(T_cells.size());
+  parallel_for(T_cells.size(), [&](std::size_t i) { judged[i] = judge.judge(T_cells[i]); });
+  std::erase_if(judged, [](const Hypothesis& hypothesis) { return !(hypothesis.score > 0.0); });
+  return judged;
+}
+
+std::vector<Hypothesis> look_quickly(const ComparedMaps& maps, const PoseJudge& judge,
+                                     const std::function<void(double)>& report) {
+  const ExhaustiveSearchOptions search = choose_search(maps);
+  const std::vector<PoseCandidate> candidates = search_all_poses(maps.fixed_walls, maps.moving_walls, search);
+  report(0.5);
+  RefineOptions refinement;
+  refinement.coarse_cell = search.coarse_factor;
+  refinement.distinct = distinct_displacement(maps);
+  refinement.max_poses = kRankedPoses;
+  std::vector<SE2> T_cells;
+  for (const ScoredPose& pose : refine(judge.walls(), maps.moving_walls, candidates, refinement,
+                                       [&](double share) { report(0.5 + 0.4 * share); }))
+    T_cells.push_back(pose.T_fixed_moving);
+  return judge_all(judge, T_cells);
+}
+
+std::vector<Hypothesis> look_thoroughly(const ComparedMaps& maps, const PoseJudge& judge,
+                                        const std::function<void(double)>& report) {
+  const ExhaustiveSearchOptions quick = choose_search(maps);
+  ThoroughSearchOptions search;
+  search.coarse_factor = quick.coarse_factor;
+  search.rotations = quick.rotations;
+  search.sigma = quick.sigma;
+  const std::vector<PoseCandidate> candidates =
+      search_thoroughly(maps.fixed_walls, maps.moving_walls, search);
+  report(0.5);
+  RefineOptions refinement;
+  refinement.coarse_cell = search.coarse_factor;
+  refinement.distinct = distinct_displacement(maps);
+  refinement.max_poses = kCountedPoses;
+  refinement.rank = RankBy::quality;
+  const std::vector<ScoredPose> poses = refine(judge.walls(), maps.moving_walls, candidates, refinement,
+                                               [&](double share) { report(0.5 + 0.4 * share); });
+  struct Promising {
+    SE2 T_cells;
+    double promise;
+  };
+  std::vector<Promising> promising(poses.size());
+  parallel_for(poses.size(), [&](std::size_t i) {
+    promising[i] = {poses[i].T_fixed_moving,
+                    promise(poses[i], judge.acceptance_index(poses[i].T_fixed_moving))};
+  });
+  std::stable_sort(promising.begin(), promising.end(),
+                   [](const Promising& a, const Promising& b) { return a.promise > b.promise; });
+  std::vector<SE2> T_cells;
+  for (std::size_t i = 0; i < std::min(promising.size(), kThoroughPoses); ++i)
+    T_cells.push_back(promising[i].T_cells);
+  return judge_all(judge, T_cells);
+}
+
+/// Of those that show one place the one that more speaks for.
+std::vector<Hypothesis> keep_distinct(std::vector<Hypothesis> all, const ComparedMaps& maps) {
+  const PoseMetric metric = make_pose_metric(maps.moving_walls);
+  const double distinct = distinct_displacement(maps);
+  const auto in_cells = [&](const Hypothesis& one) {
+    return to_cells(one.T_fixed_moving, maps.fixed_walls, maps.moving_walls);
+  };
+  weigh(all, maps);
+  std::vector<Hypothesis> kept;
+  for (const Hypothesis& one : all) {
+    const SE2 T_one = in_cells(one);
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Hypothesis& other) {
+      return metric.displacement(in_cells(other), T_one) < distinct;
+    });
+    if (is_new) kept.push_back(one);
+  }
+  return kept;
+}
+
+/// Weighs them, and brings the best one to its maximum.
+void weigh_and_settle(std::vector<Hypothesis>& hypotheses, const ComparedMaps& maps, const PoseJudge& judge) {
+  weigh(hypotheses, maps);
+  if (hypotheses.empty()) return;
+  hypotheses.front() = judge.settle(hypotheses.front());
+  weigh(hypotheses, maps);
+}
+
+}  // namespace
+
+std::vector<Hypothesis> find_hypotheses(const ComparedMaps& maps, const LookOptions& options) {
+  const auto report = [&](double share) {
+    if (options.progress) options.progress(share);
+  };
+  const bool may_look_twice = options.search == SearchMethod::exhaustive;
+  report(0.1);
+  const PoseJudge judge(maps);
+  std::vector<Hypothesis> hypotheses;
+  if (options.search != SearchMethod::thorough) {
+    const double share = may_look_twice ? 0.3 : 1.0;
+    hypotheses = look_quickly(maps, judge, [&](double done) { report(0.1 + share * 0.9 * done); });
+    weigh_and_settle(hypotheses, maps, judge);
+    const double best = hypotheses.empty() ? 0.0 : hypotheses.front().probability;
+    if (!may_look_twice || best >= options.decided_from) return hypotheses;
+  }
+  const std::vector<Hypothesis> found =
+      look_thoroughly(maps, judge, [&](double done) { report(0.37 + 0.63 * done); });
+  hypotheses.insert(hypotheses.end(), found.begin(), found.end());
+  hypotheses = keep_distinct(std::move(hypotheses), maps);
+  weigh_and_settle(hypotheses, maps, judge);
+  return hypotheses;
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "hypotheses.hpp"
+
+namespace gridmerge {
+
+struct LookOptions {
+  SearchMethod search = SearchMethod::exhaustive;
+  double decided_from = 0.95;  ///< the quick look's best probability that needs no second look
+  std::function<void(double)> progress;  ///< as in MatchOptions
+};
+
+/// Searches all poses, refines them and weighs each: distinct ones, most probable first, with probabilities;
+/// without those that on the whole speak against themselves. Runs in the calling TBB arena.
+std::vector<Hypothesis> find_hypotheses(const ComparedMaps& maps, const LookOptions& options = {});
+
+}  // namespace gridmerge

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/match/search_method.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace gridmerge {
+
+std::span<const SearchMethodName> search_methods() {
+  static constexpr std::array kMethods{
+      SearchMethodName{SearchMethod::exhaustive, "exhaustive",
+                       "a quick look at every pose, then a thorough one if that decides nothing"},
+      SearchMethodName{SearchMethod::quick, "quick", "the quick look alone"},
+      SearchMethodName{SearchMethod::thorough, "thorough", "the thorough look alone"}};
+  return kMethods;
+}
+
+const char* name_of(SearchMethod method) {
+  return search_methods()[static_cast<std::size_t>(method)].name;
+}
+
+std::optional<SearchMethod> search_method(std::string_view name) {
+  for (const SearchMethodName& one : search_methods()) {
+    if (name == one.name) return one.method;
+  }
+  return std::nullopt;
+}
+
+}  // namespace gridmerge
