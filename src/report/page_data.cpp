@@ -56,6 +56,7 @@ Json join_json(const Join& join) {
           {"moving", join.moving},
           {"outcome", name_of(join.outcome)},
           {"reason", reason_json(join.reason())},
+          {"by_themselves", own_verdict_json(join.match)},
           {"transform", transform_json(join.T_fixed_moving)},
           {"probability", number_json(join.probability)},
           {"acceptance_index", number_json(join.acceptance_index)},
