@@ -94,7 +94,7 @@ Json page_data(const std::vector<std::string>& names, const std::vector<Occupanc
     const Reason reason = result.left_out_reasons.at(i);
     left_out.push_back({{"map", result.left_out[i]},
                         {"reason", name_of(reason)},
-                        {"explanation", explain_left_out(reason)}});
+                        {"explanation", explain_left_out(result, i)}});
   }
   return {{"version", GRIDMERGE_VERSION},  {"live", false},
           {"maps", std::move(shown_maps)}, {"components", std::move(components)},
