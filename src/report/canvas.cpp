@@ -54,7 +54,8 @@ void Canvas::write(int x, int y, TextSize size, std::string_view text, Colour co
   const Coverage coverage = draw_text(text, size);
   for (int row = 0; row < coverage.height; ++row) {
     for (int column = 0; column < coverage.width; ++column) {
-      const auto at = static_cast<std::size_t>(row * coverage.width + column);
+      const std::size_t at = static_cast<std::size_t>(row) * static_cast<std::size_t>(coverage.width) +
+                             static_cast<std::size_t>(column);
       const auto covered = static_cast<unsigned char>(coverage.values[at]);
       if (covered != 0) blend(x + coverage.left + column, y + row, colour, covered / 255.0);
     }

@@ -111,18 +111,12 @@ int text_width(std::string_view text, TextSize size) {
 }
 
 std::string fit_width(std::string_view text, TextSize size, int width) {
-  if (text_width(text, size) <= width) return std::string(text);
-  std::vector<std::string_view> rests;  // from each character on
-  for (std::string_view rest = text; !rest.empty(); take_character(rest)) rests.push_back(rest);
-  int room = width * static_cast<int>(size) - advance_of(glyphs_of(kEllipsis));
-  std::string_view end;
-  for (auto rest = rests.rbegin(); rest != rests.rend(); ++rest) {
-    std::string_view from_here = *rest;
-    room -= glyph_of(take_character(from_here)).advance;
-    if (room < 0) break;
-    end = *rest;
-  }
-  return std::string(kEllipsis) + std::string(end);
+  const int room = width * static_cast<int>(size);
+  const int whole = advance_of(glyphs_of(text));
+  if (whole <= room) return std::string(text);
+  int excess = whole + advance_of(glyphs_of(kEllipsis)) - room;
+  while (excess > 0 && !text.empty()) excess -= glyph_of(take_character(text)).advance;
+  return std::string(kEllipsis) + std::string(text);
 }
 
 Coverage draw_text(std::string_view text, TextSize size) {

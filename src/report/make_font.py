@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws font.png, the letters of the pictures, in DejaVu Sans (Debian: fonts-dejavu-core, python3-pil).
+"""Draws font.png, the letters of the pictures, in DejaVu Sans.
+
+The font is free (Bitstream Vera's licence; changes are in the public domain) and comes with Debian's fonts-dejavu-core; drawing it takes
+python3-pil too. Neither is needed to build or to run gridmerge.
 
 A cell for each character of font_characters.hpp, 32 in a row. Its first row of pixels is white as far as the character
 advances; below, gray is how much the letter covers. The sizes are those of font.cpp.

@@ -79,17 +79,17 @@ double round_length(double limit) {
 }
 
 Canvas draw_scale_bar(double metres_per_pixel, int available) {
-  constexpr TextSize text = TextSize::small;
+  constexpr TextSize kText = TextSize::small;
   const double length = round_length(metres_per_pixel * std::max(available / 4, 1));
   const int bar = std::max(1, static_cast<int>(std::lround(length / metres_per_pixel)));
   const std::string label = fmt::format("{:.6g} m", length);
-  const int gap = gap_of(text), height = line_height(text), line = std::max(1, gap / 4);
-  Canvas canvas(bar + gap + text_width(label, text), height, Style::kPage);
-  const int top = baseline(text) / 4, bottom = baseline(text);
+  const int gap = gap_of(kText), height = line_height(kText), line = std::max(1, gap / 4);
+  Canvas canvas(bar + gap + text_width(label, kText), height, Style::kPage);
+  const int top = baseline(kText) / 4, bottom = baseline(kText);
   canvas.fill(0, (top + bottom - line) / 2, bar, line, Style::kInk);
   canvas.fill(0, top, line, bottom - top, Style::kInk);
   canvas.fill(bar - line, top, line, bottom - top, Style::kInk);
-  canvas.write(bar + gap, 0, text, label, Style::kInk);
+  canvas.write(bar + gap, 0, kText, label, Style::kInk);
   return canvas;
 }
 

@@ -82,16 +82,16 @@ Canvas flow(const std::vector<Canvas>& parts, int width, int row_gap) {
 
 // A label after a sample of what it explains: two colours beside each other.
 Canvas legend_entry(Colour left, Colour right, const std::string& label, int width) {
-  constexpr TextSize size = TextSize::small;
-  const int side = baseline(size) - baseline(size) / 4;
-  const int text_x = 2 * side + gap_of(size);
-  const std::string text = fit_width(label, size, width - text_x);
-  Canvas canvas(text_x + text_width(text, size), line_height(size), Style::kPage);
-  const int top = baseline(size) - side;
+  constexpr TextSize kSize = TextSize::small;
+  const int side = baseline(kSize) - baseline(kSize) / 4;
+  const int text_x = 2 * side + gap_of(kSize);
+  const std::string text = fit_width(label, kSize, width - text_x);
+  Canvas canvas(text_x + text_width(text, kSize), line_height(kSize), Style::kPage);
+  const int top = baseline(kSize) - side;
   canvas.fill(0, top, 2 * side, side, Style::kLine);
   canvas.fill(1, top + 1, side - 1, side - 2, left);
   canvas.fill(side, top + 1, side - 1, side - 2, right);
-  canvas.write(text_x, 0, size, text, Style::kInk);
+  canvas.write(text_x, 0, kSize, text, Style::kInk);
   return canvas;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 #include <random>
 
@@ -59,13 +60,9 @@ TEST(Font, SizesAreTheSameLettersReduced) {
 TEST(Font, LettersStandOnTheBaseline) {
   for (const TextSize size : kSizes) {
     const Coverage drawn = draw_text("HE", size);
-    int lowest = 0;
-    for (int row = 0; row < drawn.height; ++row) {
-      for (int column = 0; column < drawn.width; ++column) {
-        const char value = drawn.values[static_cast<std::size_t>(row * drawn.width + column)];
-        if (static_cast<unsigned char>(value) > 127) lowest = row;
-      }
-    }
+    const auto inked = std::find_if(drawn.values.rbegin(), drawn.values.rend(),
+                                    [](char value) { return static_cast<unsigned char>(value) > 127; });
+    const int lowest = static_cast<int>(drawn.values.rend() - inked - 1) / drawn.width;
     EXPECT_NEAR(lowest + 1, baseline(size), 1);
   }
 }

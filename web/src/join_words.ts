@@ -4,9 +4,13 @@ import { h } from "./dom";
 import { degrees, fixed, probability } from "./numbers";
 import { type Join, reasons } from "./report";
 import type { State } from "./state";
+import { count } from "./text";
 import type { Offset, Witness } from "./witnesses";
 
 // Why the merge decides as it does, in sentences.
+
+/** So many other maps are told one by one. */
+const mostListed = 3;
 
 /** "0.12 m and 0.4°". */
 export function sayOffset({ distance, angle }: Offset): string {
@@ -29,11 +33,12 @@ export function sayWitnesses(state: State, witnesses: Witness[]): HTMLElement {
     return h("span", {}, "No other map is joined to both: what speaks here are longer chains of joins, or a pose that was given.");
   }
   const tell = ({ map, offset }: Witness) => h("span", {}, mapLabel(state, map), ` ${sayOffset(offset)}`);
-  const [nearest] = witnesses;
-  if (witnesses.length === 1) {
-    return h("span", {}, "One other map is joined to both. Over it the second map lies off by ", tell(nearest), ".");
+  const joined = `${count(witnesses.length, "other map")} ${witnesses.length === 1 ? "is" : "are"} joined to both.`;
+  if (witnesses.length <= mostListed) {
+    const all = witnesses.flatMap((witness, i) => [i > 0 ? ", " : "", tell(witness)]);
+    return h("span", {}, `${joined} Over ${witnesses.length === 1 ? "it" : "them"} the second map lies off by `, ...all, ".");
   }
   const half = witnesses[Math.ceil(witnesses.length / 2) - 1];
-  return h("span", {}, `${witnesses.length} other maps are joined to both. Over half of them the second map lies off by at most `,
-    `${fixed(half.offset.distance, 2)} m: nearest `, tell(nearest), ", farthest ", tell(witnesses[witnesses.length - 1]), ".");
+  return h("span", {}, `${joined} Over half of them the second map lies off by at most ${fixed(half.offset.distance, 2)} m: nearest `,
+    tell(witnesses[0]), ", farthest ", tell(witnesses[witnesses.length - 1]), ".");
 }

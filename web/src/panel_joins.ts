@@ -34,7 +34,7 @@ export class JoinsPanel {
     const all = state.report.joins.length <= crowded;
     this.shown = new Set(outcomes.filter((outcome) => all || outcome !== "refused"));
     if (state.report.joins.every((join) => !this.shown.has(join.outcome))) this.shown.add("refused");
-    this.table = new JoinTable(state, this.shown, (join) => this.choose(join));
+    this.table = new JoinTable(state, this.shown, (join) => this.goTo(join));
     replace(this.element, this.chosen, this.filters(), this.graph, this.table.element);
     for (const topic of ["scene", "colors"] as const) state.on(topic, () => this.update());
     // Distances are told at a map's middle, which is known with its cells.
@@ -61,7 +61,7 @@ export class JoinsPanel {
 
   private update(): void {
     const isMatrix = this.state.report.maps.length > mostInGraph;
-    const drawing = (isMatrix ? joinMatrix : joinGraph)(this.state, this.shown, (join) => this.choose(join));
+    const drawing = (isMatrix ? joinMatrix : joinGraph)(this.state, this.shown, (join) => this.goTo(join));
     replace(this.graph, drawing, isMatrix ? h("p", { class: "soft" },
       "A square for each two maps: full if accepted, hollow if rescued, broken if not used; the larger, the more they have in common.") : null);
     this.table.update();
@@ -71,7 +71,12 @@ export class JoinsPanel {
   /** A hypothesis of -1: as the merge has it, if that is none of the two maps' own. */
   private choose(join: number, hypothesis = mergedHypothesis(this.state.report.joins[join])): void {
     this.state.show({ kind: "join", join, hypothesis });
-    this.chosen.scrollIntoView({ block: "nearest" });
+  }
+
+  /** What is said of the join stands at the top: most of it is longer than the panel. */
+  private goTo(join: number): void {
+    this.choose(join);
+    this.chosen.scrollIntoView({ block: "start" });
   }
 
   private goBack(join: number): void {
@@ -124,12 +129,12 @@ export class JoinsPanel {
         },
       });
       radio.checked = hypothesis === current;
-      const place = T_merged ? `${sayOffset(offsetOf(transform, T_merged, this.middleOf(join.moving)))} from where the merged map has it` : null;
-      return h("label", { class: "hypothesis" }, radio, h("span", {}, ...label,
-        h("br"), h("span", { class: "soft" }, describe(transform), place === null ? null : h("span", {}, h("br"), place))));
+      const off = T_merged ? `, ${sayOffset(offsetOf(transform, T_merged, this.middleOf(join.moving)))} off` : null;
+      return h("label", { class: "hypothesis" }, radio, h("span", {}, ...label, off,
+        h("br"), h("span", { class: "soft" }, describe(transform))));
     };
     return h("fieldset", { class: "hypotheses" },
-      h("legend", {}, "Ways in which they may lie"),
+      h("legend", {}, T_merged ? "Ways, and how far off the merged map" : "Ways in which they may lie"),
       merged >= 0 || !isUsed(join) ? null : option(-1, join.transform, h("strong", {}, "as merged")),
       ...join.hypotheses.map(({ transform, probability: own }, i) => option(i, transform,
         `${i + 1}: probability ${probability(own)}`, i === merged && isUsed(join) ? h("strong", {}, " (as merged)") : "")));

@@ -37,7 +37,7 @@ export class TransformsPanel {
     const rows = state.placed().flatMap(({ map }) => this.rows(map));
     replace(this.element,
       h("p", { class: "frame" }, "In the frame ",
-        scene.frame === null ? h("strong", {}, "in which poses were given") : h("strong", {}, "of ", mapLabel(state, scene.frame)),
+        scene.frame === null ? h("strong", {}, "in which poses were given") : h("span", {}, "of ", h("strong", {}, mapLabel(state, scene.frame))),
         scene.component === null ? "." : h("span", {}, ", which is also that of ", h("bdi", {}, scene.title), "."),
         h("span", { class: "soft" }, " A transform takes a point of the map's own frame there.")),
       h("div", { class: "table" }, h("table", {},
