@@ -242,6 +242,11 @@ test("a link to a view restores it", async () => {
   const { page } = tab;
   await page.fill(".layer[data-map='1'] input[type=range]", "30");
   await page.click("#layer-2");
+  await page.fill("input[type=color][data-map='0']", "#990099");
+  await page.click("button:text-is('Place by hand')");
+  await page.focus("canvas");
+  await page.keyboard.press("Shift+ArrowUp");
+  await page.keyboard.press("Escape");
   await page.click("#tab-joins");
   const at = await middle(page);
   await page.click("button[aria-label='Zoom in']");
@@ -255,7 +260,7 @@ test("a link to a view restores it", async () => {
   const seen = await tab.picture();
   await page.click("button[aria-label^='Copy a link']");
   const link = await lastCopied(page);
-  assert.match(link, /report\.html#at=[\d.,-]+&tab=joins&maps=1:0\.3,2:0&grid=0&ruler=/);
+  assert.match(link, /report\.html#at=[\d.,-]+&tab=joins&maps=1:0\.3,2:0&colors=0:990099&placed=3:[\d.,-]+&grid=0&ruler=/);
   assert.equal(page.url(), link);
   await tab.close();
 
@@ -264,6 +269,10 @@ test("a link to a view restores it", async () => {
   // A letter may lie a hundredth of a pixel beside where it was.
   assert.ok(await farthestApart(other.page, await other.picture(), seen) < 32);
   assert.ok(await other.page.isVisible("#panel-joins"));
+  assert.equal(await other.page.inputValue("input[type=color][data-map='0']"), "#990099");
+  await other.page.click("#tab-hand");
+  assert.ok(await other.page.isVisible("#hand-save"), "what was placed by hand can be saved from the link");
+  await other.page.click("#tab-joins");
   // Another link to the same report, in the same tab.
   await other.page.evaluate(() => (location.hash = "#show=join-0-1&merged=1"));
   await other.settled();

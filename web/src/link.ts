@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Report } from "./report";
 import { type SceneId, firstScene } from "./scene";
-import type { Point } from "./se2";
+import { type Point, type SE2, normalizeAngle } from "./se2";
 
 /** All that a link to a view restores. */
 export interface SharedView {
@@ -15,6 +15,10 @@ export interface SharedView {
   agreement: number;
   /** By map; those that are not named are seen in full. */
   maps: Map<number, number>;
+  /** By map, "#rrggbb"; those that are not named have the report's. */
+  colors: Map<number, string>;
+  /** By map: poses given by hand in this scene. */
+  placed: Map<number, SE2>;
   grid: boolean;
   ruler: { from: Point; to: Point } | null;
 }
@@ -22,7 +26,8 @@ export interface SharedView {
 /** What a report shows when it is opened. */
 export function defaultView(report: Report): SharedView {
   return {
-    scene: firstScene(report), center: null, metres: 0, tab: "layers", merged: 0, agreement: 1, maps: new Map(), grid: true, ruler: null,
+    scene: firstScene(report), center: null, metres: 0, tab: "layers", merged: 0, agreement: 1, maps: new Map(), colors: new Map(),
+    placed: new Map(), grid: true, ruler: null,
   };
 }
 
@@ -39,6 +44,10 @@ export function toHash(view: SharedView, report: Report): string {
   if (view.agreement !== usual.agreement) parts.set("agreement", short(view.agreement));
   const faded = [...view.maps].filter(([, opacity]) => opacity !== 1);
   if (faded.length > 0) parts.set("maps", faded.map(([map, opacity]) => `${map}:${short(opacity)}`).join(","));
+  const colored = [...view.colors].filter(([map, color]) => color !== report.maps[map].color);
+  if (colored.length > 0) parts.set("colors", colored.map(([map, color]) => `${map}:${color.slice(1)}`).join(","));
+  const placed = [...view.placed].map(([map, { x, y, theta }]) => `${map}:${[x, y, theta].map((value) => short(value)).join(",")}`);
+  if (placed.length > 0) parts.set("placed", placed.join(";"));
   if (!view.grid) parts.set("grid", "0");
   if (view.ruler) {
     const { from, to } = view.ruler;
@@ -68,6 +77,17 @@ export function fromHash(hash: string, report: Report, tabs: readonly string[]):
     const [, map, opacity] = /^(\d+):(.*)$/.exec(part) ?? [];
     const faded = share(opacity ?? "");
     if (faded !== null && Number(map) < report.maps.length) view.maps.set(Number(map), faded);
+  }
+  for (const part of get("colors").split(",")) {
+    const [, map, color] = /^(\d+):([0-9a-f]{6})$/.exec(part) ?? [];
+    if (color && Number(map) < report.maps.length) view.colors.set(Number(map), `#${color}`);
+  }
+  for (const part of get("placed").split(";")) {
+    const [, map, pose] = /^(\d+):(.*)$/.exec(part) ?? [];
+    const values = numbers(pose ?? "", 3);
+    if (values && Number(map) < report.maps.length) {
+      view.placed.set(Number(map), { x: values[0], y: values[1], theta: normalizeAngle(values[2]) });
+    }
   }
   view.grid = get("grid") !== "0";
   const ends = numbers(get("ruler"), 4);

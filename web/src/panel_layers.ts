@@ -133,7 +133,10 @@ export class LayersPanel {
 
   private recolor(): void {
     for (const row of this.element.querySelectorAll<HTMLElement>("[data-map]")) {
-      row.querySelector(".badge")?.replaceWith(badge(this.state, Number(row.dataset.map)));
+      const map = Number(row.dataset.map);
+      row.querySelector(".badge")?.replaceWith(badge(this.state, map));
+      const picker = row.querySelector<HTMLInputElement>("input[type=color]");
+      if (picker) picker.value = this.state.looks[map].color;
     }
   }
 

@@ -32,8 +32,13 @@ export class SharedState {
     state.show(view.scene);
     set(state.merged, view.merged);
     set(state.agreement, view.agreement);
-    state.looks.forEach((look, map) => set(look, view.maps.get(map) ?? 1));
-    state.changed("looks");
+    state.looks.forEach((look, map) => {
+      set(look, view.maps.get(map) ?? 1);
+      look.color = view.colors.get(map) ?? state.report.maps[map].color;
+    });
+    for (const topic of ["looks", "colors"] as const) state.changed(topic);
+    // Those that were placed before stay: they are somebody's work.
+    for (const [map, pose] of view.placed) state.put(map, pose);
     this.tabs.select(view.tab);
     stage.showGrid(view.grid);
     stage.lookAt(view.center && { center: view.center, metres: view.metres });
@@ -52,6 +57,8 @@ export class SharedState {
       merged: strengthOf(state.merged),
       agreement: strengthOf(state.agreement),
       maps: new Map(state.looks.map((look, map) => [map, strengthOf(look)])),
+      colors: new Map(state.looks.map(({ color }, map) => [map, color])),
+      placed: state.byHand(),
       grid: stage.gridShown,
       ruler: ruler?.from && ruler.to ? { from: ruler.from, to: ruler.to } : null,
     };
