@@ -167,7 +167,7 @@ std::string describe(const MergeCommandOptions& options, const MergeResult& resu
     fmt::format_to(out, "of these joins, {:.3f} are expected to be false\n", *result.expected_false_joins);
   for (std::size_t i = 0; i < result.left_out.size(); ++i) {
     fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[result.left_out[i]]),
-                   explain_left_out(result.left_out_reasons[i]));
+                   explain_left_out(result, i));
   }
   for (const Join& join : result.joins) {
     const std::string pair =

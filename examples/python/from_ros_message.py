@@ -69,8 +69,10 @@ def main() -> None:
     print("T_fixed_moving:", result.transform)
 
     merged = gridmerge.merge([fixed, moving], names=["robot 1", "robot 2"])
-    values = merged.components[0].grid.to_numpy().reshape(-1)  # -1, 0 and 100: what a message's data holds
-    print(f"the merged map's data: {values.size} values, {int((values == 100).sum())} occupied")
+    # Without a class a message is a dict; in a node it is to_msg(nav_msgs.msg.OccupancyGrid, frame_id=..., stamp=...).
+    message = merged.components[0].grid.to_msg(frame_id="world")
+    values = message["data"]  # -1, 0 and 100
+    print(f"the merged map's data: {len(values)} values, {values.count(100)} occupied")
 
 
 if __name__ == "__main__":

@@ -7,8 +7,10 @@ from typing import cast
 
 from . import _arguments, _core, _inputs
 from ._arguments import Progress
+from ._grid import to_resolution
 from ._match import Reason, Verdict
 from ._merge import Strategy
+from ._repr import count, probability, shortened
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +78,15 @@ class MatchCase:
     """Whether the best hypothesis is the true pose; None for a negative."""
     seconds: float
 
+    def __repr__(self) -> str:
+        right = self.verdict == "refused" if self.negative else self.correct
+        error = "" if self.error is None else f", error={self.error:.3f}"
+        return (
+            f"MatchCase({shortened(self.fixed)}, {shortened(self.moving)}, {self.verdict}, "
+            f"{'negative, ' if self.negative else ''}{'right' if right else 'wrong'}{error}, "
+            f"{probability(self.probability)})"
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class SetCase:
@@ -101,6 +112,19 @@ class Evaluation:
     set_cases: tuple[SetCase, ...]
     _core: _core.Evaluation = field(repr=False, compare=False)
 
+    def __repr__(self) -> str:
+        pairs, negatives, sets = self.pairs, self.negatives, self.sets
+        parts = (
+            (
+                pairs.total,
+                f"{pairs.accepted_correct} of {count(pairs.total, 'pair')} right, "
+                f"{pairs.accepted_wrong} wrong, {pairs.refused} refused",
+            ),
+            (negatives.total, f"{negatives.accepted} of {count(negatives.total, 'negative')} accepted"),
+            (sets.total, f"{sets.complete} of {count(sets.total, 'set')} complete"),
+        )
+        return f"Evaluation({'; '.join(text for total, text in parts if total > 0)})"
+
     def to_json(self) -> str:
         """The text that `gridmerge evaluate --json` writes."""
         return self._core.to_json()
@@ -118,6 +142,8 @@ def evaluate(
     strategy: Strategy = "joint",
     threads: int = 0,
     accept: float = _core.DEFAULT_ACCEPT,
+    resolution: float | None = None,
+    literal_thresholds: bool = False,
     progress: Progress | None = None,
 ) -> Evaluation:
     """Matches and merges maps whose truth is known, and holds the answers against it.
@@ -127,6 +153,7 @@ def evaluate(
         negatives: table of pairs with no common place.
         sets: table of sets of maps to merge, with true poses. At least one of the three is needed.
         strategy, threads, accept: as for merge().
+        resolution, literal_thresholds: how map files are read, as for load(); the resolution is that of bare images.
         progress: called now and then, in the calling thread, with the share of the work that is done.
 
     `gridmerge evaluate --help` says what the tables hold; Simulation.save() writes them. Other Python threads run
@@ -142,6 +169,8 @@ def evaluate(
         _arguments.threads(threads),
         _arguments.share("accept", accept),
         _arguments.choice("strategy", strategy, ("joint", "tree")) == "tree",
+        0.0 if resolution is None else to_resolution("resolution", resolution),
+        bool(literal_thresholds),
         _arguments.progress(progress),
     )
     _inputs.warn(core.warnings)

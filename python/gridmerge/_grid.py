@@ -2,20 +2,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arguments, _core
-from ._message import OccupancyGridMessage, read_message
+from . import _arguments, _core, _html
+from ._message import Content, OccupancyGridMessage, Stamp, fill_message, read_message, to_fields
 from ._transform import PoseLike, Transform, to_transform
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _FARTHEST_ORIGIN = 1e9
+
+M = TypeVar("M")
 
 
 class OccupancyGrid:
@@ -36,7 +38,7 @@ class OccupancyGrid:
     begins with the argument's name.
     """
 
-    __slots__ = ("_core", "_source")
+    __slots__ = ("_core", "_frame_id", "_source")
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, data: NDArray[np.int8], resolution: float, origin: PoseLike = (0.0, 0.0, 0.0)) -> None:
@@ -44,6 +46,7 @@ class OccupancyGrid:
         place = _checked_place("", resolution, to_transform("origin", origin))
         self._core = _core.Grid.from_percentages(values, *place)
         self._source: str | None = None
+        self._frame_id: str | None = None
 
     @classmethod
     def from_cells(
@@ -61,8 +64,8 @@ class OccupancyGrid:
         return cls._of(_core.Grid.from_cells(values, *place, probability))
 
     @classmethod
-    def from_msg(cls, msg: OccupancyGridMessage) -> OccupancyGrid:
-        """Of a message like nav_msgs/OccupancyGrid (see OccupancyGridMessage).
+    def from_msg(cls, msg: OccupancyGridMessage | Mapping[str, Any]) -> OccupancyGrid:
+        """Of a message like nav_msgs/OccupancyGrid (see OccupancyGridMessage), or a dict with its fields.
 
         Raises TypeError for a field that is missing or of a wrong type and ValueError for a wrong value, naming the
         field.
@@ -71,19 +74,20 @@ class OccupancyGrid:
 
     @classmethod
     def _from_msg(cls, msg: object, name: str) -> OccupancyGrid:
-        values, resolution, origin = read_message(msg, name)
+        content = read_message(msg, name)
         prefix = f"{name}." if name else ""
-        place = _checked_place(f"{prefix}info.", resolution, origin)
+        place = _checked_place(f"{prefix}info.", content.resolution, content.origin)
         try:
-            return cls._of(_core.Grid.from_percentages(values, *place))
+            return cls._of(_core.Grid.from_percentages(content.values, *place), frame_id=content.frame_id)
         except ValueError as error:
             raise ValueError(f"{prefix}{error}") from None
 
     @classmethod
-    def _of(cls, core: _core.Grid, source: str | None = None) -> OccupancyGrid:
+    def _of(cls, core: _core.Grid, source: str | None = None, frame_id: str | None = None) -> OccupancyGrid:
         grid = cls.__new__(cls)
         grid._core = core
         grid._source = source
+        grid._frame_id = frame_id
         return grid
 
     @property
@@ -138,6 +142,11 @@ class OccupancyGrid:
         return self._source
 
     @property
+    def frame_id(self) -> str | None:
+        """The frame that the message named which the map was made of."""
+        return self._frame_id
+
+    @property
     def _file(self) -> str | None:
         """The same, wherever the program has gone since."""
         files = self._core.files
@@ -158,6 +167,62 @@ class OccupancyGrid:
             )
         return self._core.to_numpy(None if probabilities is None else bool(probabilities))
 
+    @overload
+    def to_msg(
+        self,
+        message_class: None = None,
+        *,
+        frame_id: str | None = None,
+        stamp: Stamp | None = None,
+        probabilities: bool | None = None,
+    ) -> dict[str, Any]: ...
+
+    @overload
+    def to_msg(
+        self,
+        message_class: Callable[[], M],
+        *,
+        frame_id: str | None = None,
+        stamp: Stamp | None = None,
+        probabilities: bool | None = None,
+    ) -> M: ...
+
+    def to_msg(
+        self,
+        message_class: Callable[[], Any] | None = None,
+        *,
+        frame_id: str | None = None,
+        stamp: Stamp | None = None,
+        probabilities: bool | None = None,
+    ) -> Any:
+        """A message that from_msg() makes this map of: of a class like nav_msgs.msg.OccupancyGrid, or a dict.
+
+        Args:
+            message_class: called without arguments, it gives an empty message with the fields of
+                nav_msgs/OccupancyGrid, of ROS 1, ROS 2 or anywhere. Without it the result is a dict of plain values, as
+                JSON and rosbridge have them.
+            frame_id: of the header; by default the one of the message that the map was made of, or "map".
+            stamp: of the header, and the time at which the map was made: what the message class takes for it. By
+                default the header's is as the class makes it.
+            probabilities: as for to_numpy().
+
+        Raises ValueError and TypeError as to_numpy(), and for a frame_id that is no text.
+        """
+        frame = frame_id if frame_id is not None else self._frame_id if self._frame_id is not None else "map"
+        content = Content(
+            self.to_numpy(probabilities=probabilities),
+            self.resolution,
+            self.origin,
+            _arguments.text("frame_id", frame),
+        )
+        if message_class is None:
+            return to_fields(content, stamp)
+        if not callable(message_class):
+            raise TypeError(
+                f"message_class: must be a class of messages, is {_arguments.kind_of(message_class)}"
+            )
+        return fill_message(message_class(), content, stamp)
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draws the map in its frame [m]. Needs matplotlib: ``pip install 'gridmerge[plot]'``."""
         from . import _plot
@@ -173,23 +238,27 @@ class OccupancyGrid:
     def __repr__(self) -> str:
         x, y, theta = self.origin
         source = "" if self.source is None else f", source={self.source!r}"
+        source += "" if self.frame_id is None else f", frame_id={self.frame_id!r}"
         return (
             f"OccupancyGrid({self.width} x {self.height} cells, resolution={self.resolution:g}, "
             f"origin=({x:g}, {y:g}, {theta:g}){source})"
         )
+
+    def _repr_html_(self) -> str:
+        return _html.grid_html(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (
             _unpickle,
             (
                 *(self.cells, self.resolution, tuple(self.origin), self.probability),
-                *(self.source, self.warnings, self._core.files),
+                *(self.source, self.warnings, self._core.files, self.frame_id),
             ),
         )
 
 
-MapLike: TypeAlias = OccupancyGrid | OccupancyGridMessage | str | os.PathLike[str]
-"""A map, a message like nav_msgs/OccupancyGrid, or the path of a map file."""
+MapLike: TypeAlias = OccupancyGrid | OccupancyGridMessage | Mapping[str, Any] | str | os.PathLike[str]
+"""A map, a message like nav_msgs/OccupancyGrid or a dict of its fields, or the path of a map file."""
 
 
 def load(
@@ -203,7 +272,7 @@ def load(
     Raises FileError, an OSError, for a file that cannot be read or is no map.
     """
     name = _arguments.path("path", path)
-    cell = 0.0 if resolution is None else _checked_resolution("resolution", resolution)
+    cell = 0.0 if resolution is None else to_resolution("resolution", resolution)
     return OccupancyGrid._of(_core.load(name, cell, bool(literal_thresholds)), os.fsdecode(name))
 
 
@@ -227,17 +296,19 @@ def _unpickle(
     source: str | None,
     warnings: Sequence[str],
     files: Sequence[bytes],
+    frame_id: str | None = None,
 ) -> OccupancyGrid:
     core = _core.Grid.from_cells(cells, resolution, origin, probability)
     texts = [_arguments.to_bytes(warning) for warning in warnings]
-    return OccupancyGrid._of(core.with_files(texts, files), source)
+    return OccupancyGrid._of(core.with_files(texts, files), source, frame_id)
 
 
 def _checked_array(name: str, data: object, dtype: np.dtype[Any]) -> Any:
     if isinstance(data, np.ma.MaskedArray):
         raise TypeError(f"{name}: masked arrays are not taken; data.filled(-1) makes masked cells unknown")
     if not isinstance(data, np.ndarray):
-        raise TypeError(f"{name}: must be a numpy array of {dtype}, is {_arguments.kind_of(data)}")
+        remedy = f"; np.array({name}, dtype=np.{dtype}) makes one" if isinstance(data, (list, tuple)) else ""
+        raise TypeError(f"{name}: must be a numpy array of {dtype}, is {_arguments.kind_of(data)}{remedy}")
     if data.dtype != dtype:
         remedy = f"; {name}.astype(np.{dtype}) converts it" if data.dtype.kind in "biuf" else ""
         raise TypeError(f"{name}: must be of dtype {dtype}, is {data.dtype}{remedy}")
@@ -246,7 +317,7 @@ def _checked_array(name: str, data: object, dtype: np.dtype[Any]) -> Any:
     return np.require(data, requirements=["ALIGNED"])
 
 
-def _checked_resolution(name: str, value: object) -> float:
+def to_resolution(name: str, value: object) -> float:
     resolution = _arguments.number(name, value)
     if not _core.MIN_RESOLUTION <= resolution <= _core.MAX_RESOLUTION:
         raise ValueError(
@@ -258,7 +329,7 @@ def _checked_resolution(name: str, value: object) -> float:
 def _checked_place(
     prefix: str, resolution: object, origin: Transform
 ) -> tuple[float, tuple[float, float, float]]:
-    cell = _checked_resolution(f"{prefix}resolution", resolution)
+    cell = to_resolution(f"{prefix}resolution", resolution)
     if max(abs(origin.x), abs(origin.y)) > _FARTHEST_ORIGIN:
         raise ValueError(
             f"{prefix}origin: must lie within {_FARTHEST_ORIGIN:g} m, is at {origin.x}, {origin.y}"

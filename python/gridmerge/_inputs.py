@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -26,7 +26,11 @@ def to_map(name: str, value: object) -> OccupancyGrid:
         grid = load(value)
         warn(f"{grid.source}: {warning}" for warning in grid.warnings)
         return grid
-    if hasattr(value, "info") or (hasattr(value, "data") and not hasattr(value, "dtype")):
+    if (
+        isinstance(value, Mapping)
+        or hasattr(value, "info")
+        or (hasattr(value, "data") and not hasattr(value, "dtype"))
+    ):
         return OccupancyGrid._from_msg(value, name)
     if isinstance(value, np.ndarray):
         raise TypeError(f"{name}: is an array; OccupancyGrid(array, resolution=...) makes a map of it")
@@ -37,7 +41,9 @@ def to_map(name: str, value: object) -> OccupancyGrid:
 
 
 def to_maps(name: str, values: object) -> list[OccupancyGrid]:
-    if isinstance(values, (str, bytes, os.PathLike, OccupancyGrid)) or not isinstance(values, Iterable):
+    if isinstance(values, (str, bytes, os.PathLike, OccupancyGrid, Mapping)) or not isinstance(
+        values, Iterable
+    ):
         raise TypeError(f"{name}: must be a sequence of maps, is {_arguments.kind_of(values)}")
     return [to_map(f"{name}[{i}]", value) for i, value in enumerate(values)]
 

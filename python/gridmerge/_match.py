@@ -8,6 +8,7 @@ from . import _arguments, _core
 from ._arguments import Progress
 from ._grid import MapLike
 from ._inputs import to_map
+from ._repr import probability, short_pose
 from ._transform import Transform
 
 Verdict: TypeAlias = Literal["accepted", "refused"]
@@ -32,6 +33,12 @@ class Hypothesis:
     """Log-likelihood ratio "same place" against "unrelated" [nats]; larger is better."""
     probability: float
     """That this pose is the true one."""
+
+    def __repr__(self) -> str:
+        return (
+            f"Hypothesis(transform={short_pose(self.transform)}, score={self.score:.1f}, "
+            f"{probability(self.probability)})"
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +68,14 @@ class MatchResult:
     @property
     def accepted(self) -> bool:
         return self.verdict == "accepted"
+
+    def __repr__(self) -> str:
+        why = "" if self.accepted else f": {self.reason}"
+        return (
+            f"MatchResult({self.verdict}{why}, transform={short_pose(self.transform)}, "
+            f"{probability(self.probability)}, overlap={self.overlap:.2f}, "
+            f"hypotheses: {len(self.hypotheses)})"
+        )
 
 
 def match(

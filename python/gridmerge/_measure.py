@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from . import _arguments, _core
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map, to_maps
+from ._repr import count, probability, short_pose
 from ._transform import PoseLike, Transform, to_pose
 
 CellClass: TypeAlias = Literal["occupied", "free", "unknown"]
@@ -37,6 +38,14 @@ class PsiTerms:
     fixed_moving_free: float | None
     moving_fixed_occupied: float | None
     moving_fixed_free: float | None
+
+    def __repr__(self) -> str:
+        terms = (
+            f"{name}={'None' if value is None else f'{value:.3f}'}"
+            for name in self.__slots__
+            for value in [getattr(self, name)]
+        )
+        return f"PsiTerms({', '.join(terms)})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +82,13 @@ class PoseMeasure:
     figures: Mapping[str, float]
     """What the engine's model looks at, by name: ``gridmerge evaluate --features`` explains them."""
 
+    def __repr__(self) -> str:
+        return (
+            f"PoseMeasure(transform={short_pose(self.transform)}, psi={self.psi:.3f}, agreement={self.agreement}, "
+            f"disagreement={self.disagreement}, omega={self.omega}, acceptance_index={self.acceptance_index:.4f}, "
+            f"{probability(self.probability)})"
+        )
+
     def delta(self, c_lock: float = 0.0) -> float:
         """Delta = psi + c_lock * (disagreement - agreement), which the paper minimises."""
         return self.psi + _arguments.not_negative("c_lock", c_lock) * (self.disagreement - self.agreement)
@@ -88,6 +104,9 @@ class JointMeasure:
     """Cells of the fixed map."""
     pairs: tuple[PoseMeasure, ...]
     """Each moving map on the fixed one, in their order."""
+
+    def __repr__(self) -> str:
+        return f"JointMeasure(omega={self.omega} of {self.cells} cells, {count(len(self.pairs), 'pair')})"
 
 
 def measure(fixed: MapLike, moving: MapLike, pose: PoseLike, *, threads: int = 0) -> PoseMeasure:

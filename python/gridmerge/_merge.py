@@ -6,12 +6,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, TypeAlias, cast
 
-from . import _arguments, _core
+from . import _arguments, _core, _html
 from ._arguments import Progress
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_maps
 from ._known_poses import InitialPoses, MapKey, NamedMaps, to_known_poses
 from ._match import MatchResult, Reason, to_match_result
+from ._repr import count, listed, probability, short_pose, shortened
 from ._transform import Transform
 
 if TYPE_CHECKING:
@@ -37,6 +38,12 @@ class Member:
     sd_theta: float | None
     """Standard deviation of the direction [rad]; 0 for what holds the frame, None up the tree."""
 
+    def __repr__(self) -> str:
+        return (
+            f"Member({shortened(self.name)}, transform={short_pose(self.transform)}, "
+            f"{probability(self.probability)})"
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Component:
@@ -55,6 +62,15 @@ class Component:
     cells differ in size from the merged map's by more than 100 times."""
     in_world_frame: bool
     """Whether the frame is that of the initial poses, because a member's pose is fixed."""
+
+    def __repr__(self) -> str:
+        return (
+            f"Component({count(len(self.members), 'map')}: {listed([member.name for member in self.members])}; "
+            f"{self.grid.width} x {self.grid.height} cells)"
+        )
+
+    def _repr_html_(self) -> str:
+        return self.grid._repr_html_()
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +98,13 @@ class Join:
     match: MatchResult
     """What the two maps say by themselves."""
 
+    def __repr__(self) -> str:
+        why = "" if self.reason is None else f": {self.reason}"
+        return (
+            f"Join({self.fixed}, {self.moving}, {self.outcome}{why}, transform={short_pose(self.transform)}, "
+            f"{probability(self.probability)})"
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
@@ -93,6 +116,9 @@ class LeftOut:
     reason: Reason
     explanation: str
     """The reason as the end of a sentence that begins with the map's name."""
+
+    def __repr__(self) -> str:
+        return f"LeftOut({shortened(self.name)}: {self.explanation})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +144,17 @@ class MergeResult:
     def complete(self) -> bool:
         """Whether all maps are in one component."""
         return len(self.components) == 1 and not self.left_out
+
+    def __repr__(self) -> str:
+        joined = sum(len(component.members) for component in self.components)
+        left_out = f"; left out: {listed([one.name for one in self.left_out])}" if self.left_out else ""
+        return (
+            f"MergeResult({joined} of {count(len(self.maps), 'map')} in "
+            f"{count(len(self.components), 'component')}{left_out})"
+        )
+
+    def _repr_html_(self) -> str:
+        return _html.merge_html(self)
 
     def save(self, directory: str | os.PathLike[str]) -> None:
         """Writes the files that `gridmerge merge` writes: merged.yaml and merged.pgm (and merged_2.yaml and so on for
@@ -157,7 +194,8 @@ def merge(
 
     Args:
         maps: maps, paths of map files, or messages like nav_msgs/OccupancyGrid.
-        names: what to call the maps; by default the paths they were loaded from, or "map 0", "map 1", ...
+        names: what to call the maps; by default the paths they were loaded from, the frames that their messages name
+            (each of which one map alone may have), or "map 0", "map 1", ...
         strategy: "joint", or "tree": pairwise up a tree, as Birk & Carpin (2006).
         init: what is known of the maps' poses: the path of a table, which names the maps' files, or poses by map index,
             name, or path that the map was loaded from.
@@ -196,7 +234,12 @@ def merge(
 
 def to_names(names: Sequence[str] | None, grids: Sequence[OccupancyGrid]) -> list[str]:
     if names is None:
-        return [grid.source or f"map {i}" for i, grid in enumerate(grids)]
+        frames = [grid.frame_id for grid in grids]
+        return [
+            # A frame that several maps are said to be in names none of them.
+            grid.source or (frame if frame and frames.count(frame) == 1 else f"map {i}")
+            for i, (grid, frame) in enumerate(zip(grids, frames, strict=True))
+        ]
     if isinstance(names, (str, bytes)) or not isinstance(names, Iterable):
         raise TypeError(f"names: must be a sequence of strings, is {_arguments.kind_of(names)}")
     called = list(names)

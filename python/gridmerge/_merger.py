@@ -11,6 +11,7 @@ from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map
 from ._known_poses import InitialPose, to_core
 from ._merge import MergeResult, to_merge_result, to_output_resolution
+from ._repr import count
 from ._transform import PoseLike, Transform
 
 _IDENTITY = Transform(0.0, 0.0, 0.0)
@@ -43,6 +44,9 @@ class Merger:
         self._use = threading.Lock()
         self._settled = True  # the engine has the same maps
 
+    def __repr__(self) -> str:
+        return f"Merger({count(len(self._maps), 'map')})"
+
     def add(
         self,
         map: MapLike,
@@ -72,7 +76,9 @@ class Merger:
                 self._holder = map_id
             if known is not None:
                 self._posed.add(map_id)
-            self._maps[map_id] = (grid, name or grid.source or f"map {map_id}")
+            taken = {called for _, called in self._maps.values()}
+            frame = grid.frame_id if grid.frame_id not in taken else None
+            self._maps[map_id] = (grid, name or grid.source or frame or f"map {map_id}")
         return map_id
 
     def update(self, map_id: int, map: MapLike) -> None:

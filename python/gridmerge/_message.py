@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Maps from messages like nav_msgs/OccupancyGrid, whatever made them."""
+"""Maps from messages like nav_msgs/OccupancyGrid, whatever made them, and such messages from maps."""
 
 from __future__ import annotations
 
+import array
 import math
-from typing import Any, Protocol
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +25,7 @@ class OccupancyGridMessage(Protocol):
 
     ``info.width`` and ``info.height`` [cells], ``info.resolution`` [m], ``info.origin.position`` (x, y [m]) and
     ``info.origin.orientation`` (x, y, z, w), and ``data``: width * height values -1 to 100, row 0 at the bottom; an
-    array.array, a list, a tuple or a numpy array.
+    array.array, a list, a tuple or a numpy array. ``header.frame_id`` may be there too; it names the map.
     """
 
     @property
@@ -32,8 +35,25 @@ class OccupancyGridMessage(Protocol):
     def data(self) -> Any: ...
 
 
-def read_message(message: object, name: str = "") -> tuple[NDArray[np.int8], float, Transform]:
-    """Data of shape (height, width), the resolution [m] and the origin of a message.
+Stamp: TypeAlias = Any
+"""A time as a class of messages has it: of ROS 1, of ROS 2, or a dict."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Content:
+    """What a message says of a map."""
+
+    values: NDArray[np.int8]
+    """Of shape (height, width)."""
+    resolution: float
+    """[m]"""
+    origin: Transform
+    frame_id: str | None
+    """None: it has no header, or an empty name."""
+
+
+def read_message(message: object, name: str = "") -> Content:
+    """What a message, or a mapping with its fields, says.
 
     `name` is what to call the message in errors, which name the field: TypeError for one that is missing or of a
     wrong type, ValueError for one with a wrong value.
@@ -52,7 +72,51 @@ def read_message(message: object, name: str = "") -> tuple[NDArray[np.int8], flo
         raise ValueError(
             f"{prefix}data: has {values.size} values, but info.width * info.height is {width * height}"
         )
-    return values.reshape(height, width), resolution, origin
+    return Content(values.reshape(height, width), resolution, origin, fields.frame_id())
+
+
+def to_fields(content: Content, stamp: Stamp | None) -> dict[str, Any]:
+    """The fields of a message as plain values."""
+    height, width = content.values.shape
+    x, y, theta = content.origin
+    no_time = {"sec": 0, "nanosec": 0}
+    return {
+        "header": {"stamp": no_time if stamp is None else stamp, "frame_id": content.frame_id},
+        "info": {
+            "map_load_time": no_time if stamp is None else stamp,
+            "resolution": content.resolution,
+            "width": width,
+            "height": height,
+            "origin": {
+                "position": {"x": x, "y": y, "z": 0.0},
+                "orientation": {"x": 0.0, "y": 0.0, "z": math.sin(0.5 * theta), "w": math.cos(0.5 * theta)},
+            },
+        },
+        "data": content.values.reshape(-1).tolist(),
+    }
+
+
+def fill_message(message: Any, content: Content, stamp: Stamp | None) -> Any:
+    """Sets the fields of an empty message, and returns it."""
+    fields = to_fields(content, stamp)
+    if stamp is None:
+        del fields["header"]["stamp"], fields["info"]["map_load_time"]
+    # What rclpy holds such data in; rospy takes it as well.
+    fields["data"] = array.array("b", content.values.tobytes())
+    _set_fields(message, fields)
+    return message
+
+
+def _set_fields(message: Any, fields: dict[str, Any]) -> None:
+    for field, value in fields.items():
+        if (
+            isinstance(value, dict)
+            and hasattr(message, field)
+            and not isinstance(getattr(message, field), dict)
+        ):
+            _set_fields(getattr(message, field), value)
+        else:
+            setattr(message, field, value)
 
 
 class _Fields:
@@ -63,16 +127,29 @@ class _Fields:
     def get(self, path: str) -> Any:
         value: Any = self._message
         for part in path.split("."):
-            if not hasattr(value, part):
+            if not _has(value, part):
                 raise TypeError(f"{self._prefix}{path}: the message has no such field")
-            value = getattr(value, part)
+            value = _field(value, part)
         return value
+
+    def frame_id(self) -> str | None:
+        if not _has(self._message, "header") or not _has(_field(self._message, "header"), "frame_id"):
+            return None
+        return _arguments.text(f"{self._prefix}header.frame_id", self.get("header.frame_id")) or None
 
     def number(self, path: str) -> float:
         return _arguments.number(f"{self._prefix}{path}", self.get(path))
 
     def error(self, path: str, cause: str) -> ValueError:
         return ValueError(f"{self._prefix}{path}: {cause}")
+
+
+def _has(value: Any, field: str) -> bool:
+    return field in value if isinstance(value, Mapping) else hasattr(value, field)
+
+
+def _field(value: Any, field: str) -> Any:
+    return value[field] if isinstance(value, Mapping) else getattr(value, field)
 
 
 def _yaw(fields: _Fields) -> float:

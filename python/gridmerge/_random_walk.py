@@ -16,6 +16,7 @@ from ._grid import MapLike
 from ._inputs import to_map
 from ._match import MatchResult, to_match_result
 from ._measure import _POSE_COLUMNS, to_table
+from ._repr import count, short_pose
 from ._transform import PoseLike, Transform, to_pose, to_transform
 
 if TYPE_CHECKING:
@@ -58,6 +59,13 @@ class Walk:
     terms are undefined. In a trace of "all", a wide sample that the walk went to later stands there once more.
     """
 
+    def __repr__(self) -> str:
+        return (
+            f"Walk(c_lock={self.c_lock:g}, transform={short_pose(self.transform)}, delta={self.delta:.3f}, "
+            f"acceptance_index={self.acceptance_index:.4f}, proposals={self.proposals}, "
+            f"trace of {count(len(self.trace), 'sample')})"
+        )
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RandomWalkMatch:
@@ -67,6 +75,9 @@ class RandomWalkMatch:
     """As match() has it, but the acceptance index stands for the score and, though it is none, the probability."""
     walks: tuple[Walk, ...]
     """In the order in which they were made."""
+
+    def __repr__(self) -> str:
+        return f"RandomWalkMatch({self.result!r}, {count(len(self.walks), 'walk')})"
 
 
 def match_by_random_walk(

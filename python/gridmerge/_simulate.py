@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from . import _arguments, _core
 from ._arguments import Progress
 from ._grid import OccupancyGrid
+from ._repr import count, short_pose
 from ._transform import Transform
 
 BUILDING_KINDS: tuple[str, ...] = tuple(_core.building_kinds())
@@ -31,6 +32,12 @@ class SimulatedMap:
     path: NDArray[np.float64] = field(repr=False, compare=False)
     """Where it scanned: true poses (x, y, theta) in the building's frame [m, rad], of shape (scans, 3)."""
 
+    def __repr__(self) -> str:
+        return (
+            f"SimulatedMap({self.grid.width} x {self.grid.height} cells, transform={short_pose(self.transform)}, "
+            f"bend={self.bend:.3f})"
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class SimulatedPair:
@@ -49,6 +56,12 @@ class SimulatedPair:
     tier: str
     """How hard the pair is: "A", "B" or "C", by the walls that both have."""
 
+    def __repr__(self) -> str:
+        return (
+            f"SimulatedPair({self.fixed}, {self.moving}, tier={self.tier!r}, transform={short_pose(self.transform)}, "
+            f"overlap={self.overlap:.2f})"
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Simulation:
@@ -66,6 +79,13 @@ class Simulation:
     overlap: float
     """What simulate() was asked for, as it came out."""
     _core: _core.Dataset = field(repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        return (
+            f"Simulation({count(len(self.maps), 'map')} of a building of {self.building.width} x "
+            f"{self.building.height} cells, {count(len(self.pairs), 'pair')}, "
+            f"{count(len(self.strangers), 'pair')} of strangers, {len(self.elsewhere)} elsewhere)"
+        )
 
     def save(self, directory: str | os.PathLike[str], *, probabilities: bool = False) -> None:
         """Writes the files that `gridmerge simulate` writes: robot_1.yaml and so on, elsewhere_1.yaml and so on,

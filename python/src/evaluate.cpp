@@ -43,7 +43,7 @@ EvaluateOptions make_options(int threads, double accept, bool up_the_tree) {
 
 Evaluated evaluate_files(const std::optional<nb::bytes>& pairs, const std::optional<nb::bytes>& negatives,
                          const std::optional<nb::bytes>& sets, int threads, double accept, bool up_the_tree,
-                         const nb::object& progress) {
+                         double resolution, bool literal_thresholds, const nb::object& progress) {
   const std::string pairs_path = path_or_empty(pairs), negatives_path = path_or_empty(negatives),
                     sets_path = path_or_empty(sets);
   return compute_in_worker(progress, [&](const Report& report) {
@@ -57,6 +57,8 @@ Evaluated evaluate_files(const std::optional<nb::bytes>& pairs, const std::optio
     options.progress = [&](std::size_t done, std::size_t total) {
       report(static_cast<double>(done) / static_cast<double>(total));
     };
+    options.load.resolution = resolution;
+    options.load.literal_thresholds = literal_thresholds;
     options.warn = [&](const std::string& warning) { evaluated.warnings.push_back(warning); };
     evaluated.evaluation = evaluate(truth, options);
     return evaluated;
@@ -129,7 +131,7 @@ void bind_evaluate(nb::module_& module) {
       .def("summary", [](const Evaluated& it) { return to_str(summary_table(it.evaluation, it.accept)); });
   module.def("evaluate", &evaluate_files, nb::arg("pairs").none(), nb::arg("negatives").none(),
              nb::arg("sets").none(), nb::arg("threads"), nb::arg("accept"), nb::arg("up_the_tree"),
-             nb::arg("progress").none());
+             nb::arg("resolution"), nb::arg("literal_thresholds"), nb::arg("progress").none());
 }
 
 }  // namespace gridmerge::python

@@ -60,17 +60,32 @@ Map grid_of(const std::shared_ptr<const MergeResult>& result, std::size_t compon
   return {{result, &result->components.at(component).fused.grid}, {}, {}};
 }
 
+std::vector<std::string> to_strings(const std::vector<nb::bytes>& names) {
+  std::vector<std::string> texts;
+  texts.reserve(names.size());
+  for (const nb::bytes& name : names) texts.push_back(to_string(name));
+  return texts;
+}
+
 void save(const Merged& merged, const nb::bytes& directory, const std::vector<nb::bytes>& names,
           const std::vector<nb::bytes>& more_inputs) {
   std::vector<std::filesystem::path> inputs;
   for (const Map& map : merged.maps) inputs.insert(inputs.end(), map.files.begin(), map.files.end());
   for (const nb::bytes& input : more_inputs) inputs.emplace_back(to_string(input));
-  std::vector<std::string> texts;
-  texts.reserve(names.size());
-  for (const nb::bytes& name : names) texts.push_back(to_string(name));
+  const std::vector<std::string> texts = to_strings(names);
   const std::filesystem::path path = to_string(directory);
   const OthersRun meanwhile;
   write_merge_output(path, inputs, texts, grids_of(merged.maps), *merged.result);
+}
+
+// The picture that save() writes.
+nb::bytes preview(const Merged& merged, const std::vector<nb::bytes>& names) {
+  const std::vector<std::string> texts = to_strings(names);
+  const std::string png = [&] {
+    const OthersRun meanwhile;
+    return preview_png(texts, grids_of(merged.maps), *merged.result);
+  }();
+  return nb::bytes(png.data(), png.size());
 }
 
 void bind_results(nb::module_& module) {
@@ -126,10 +141,11 @@ void bind_results(nb::module_& module) {
                      for (std::size_t i = 0; i < merged.result->left_out.size(); ++i) {
                        const Reason reason = merged.result->left_out_reasons[i];
                        left_out.emplace_back(merged.result->left_out[i], name_of(reason),
-                                             explain_left_out(reason));
+                                             explain_left_out(*merged.result, i));
                      }
                      return left_out;
                    })
+      .def("preview", &preview, nb::arg("names"))
       .def("save", &save, nb::arg("directory"), nb::arg("names"), nb::arg("more_inputs"));
 }
 

@@ -61,3 +61,37 @@ def test_errors_are_the_command_lines(cli: Cli, tmp_path: Path) -> None:
         with pytest.raises(gridmerge.FileError) as error:
             gridmerge.evaluate(table)
         assert cli("evaluate", table).stderr == f"gridmerge: {error.value}\n"
+
+
+def test_map_files_are_read_as_the_command_line_reads_them(
+    cli: Cli, robots: list[str], tmp_path: Path
+) -> None:
+    # The gray 205 that savers write for unknown is free by the letter of these files.
+    for i, path in enumerate(robots[:2]):
+        grid = gridmerge.load(path)
+        gridmerge.save(grid, tmp_path / f"{i}.yaml")
+        text = (tmp_path / f"{i}.yaml").read_text()
+        (tmp_path / f"{i}.yaml").write_text(text.replace("free_thresh: 0.196", "free_thresh: 0.25"))
+    truth = gridmerge.match(*robots[:2]).transform
+    row = "\t".join(map(repr, truth))
+    table = tmp_path / "pairs.tsv"
+    table.write_text(f"fixed\tmoving\tx\ty\ttheta\ttolerance\n0.yaml\t1.yaml\t{row}\t0.5\n")
+    with pytest.warns(gridmerge.MapWarning):
+        usual = gridmerge.evaluate(table)
+    assert usual.pairs.accepted_correct == 1
+    with pytest.warns(gridmerge.MapWarning, match="load as free"):
+        literal = gridmerge.evaluate(table, literal_thresholds=True)
+    answer = cli("evaluate", table, "--literal-thresholds", "--json", "-")
+    assert to_bits(without_times(literal.to_json())) == to_bits(without_times(answer.stdout))
+    assert literal.cases[0].probability != usual.cases[0].probability
+
+
+def test_bare_images_need_a_resolution(robots: list[str], tmp_path: Path) -> None:
+    image = Path(robots[0]).with_suffix(".pgm")
+    table = tmp_path / "pairs.tsv"
+    table.write_text(f"fixed\tmoving\tx\ty\ttheta\ttolerance\n{image}\t{image}\t0\t0\t0\t0.1\n")
+    with pytest.raises(gridmerge.FileError, match="resolution"):
+        gridmerge.evaluate(table)
+    assert gridmerge.evaluate(table, resolution=0.05).pairs.accepted_correct == 1
+    with pytest.raises(ValueError, match="^resolution: must be between"):
+        gridmerge.evaluate(table, resolution=0.0)

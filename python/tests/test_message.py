@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import array
+import json
 import math
+import pickle
 from types import SimpleNamespace as Fields
 from typing import Any
 
@@ -178,3 +180,109 @@ def test_what_is_no_message_at_all() -> None:
     nothing: Any = object()
     with pytest.raises(TypeError, match="^info"):
         gridmerge.OccupancyGrid.from_msg(nothing)
+
+
+def empty_message() -> Any:
+    """As the class of a ROS 2 message makes it."""
+    stamp = Fields(sec=0, nanosec=0)
+    origin = Fields(position=Fields(x=0.0, y=0.0, z=0.0), orientation=Fields(x=0.0, y=0.0, z=0.0, w=1.0))
+    info = Fields(map_load_time=Fields(sec=0, nanosec=0), resolution=0.0, width=0, height=0, origin=origin)
+    return Fields(header=Fields(stamp=stamp, frame_id=""), info=info, data=array.array("b"))
+
+
+GRID = gridmerge.OccupancyGrid(np.array(VALUES, dtype=np.int8).reshape(3, 4), 0.05, (1.5, -2.0, 2.5))
+
+
+@pytest.mark.parametrize("message_class", [None, empty_message])
+def test_a_message_of_a_map_gives_the_map(message_class: Any) -> None:
+    back = gridmerge.OccupancyGrid.from_msg(GRID.to_msg(message_class, frame_id="robot_1/map"))
+    np.testing.assert_array_equal(back.to_numpy(), GRID.to_numpy())
+    assert back.resolution == GRID.resolution
+    assert tuple(back.origin) == pytest.approx(tuple(GRID.origin), abs=1e-15)
+    assert back.frame_id == "robot_1/map"
+    assert back.to_msg(message_class) == GRID.to_msg(message_class, frame_id="robot_1/map"), "twice the same"
+
+
+def test_a_message_as_json() -> None:
+    fields = json.loads(json.dumps(GRID.to_msg()))
+    assert fields["header"] == {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "map"}
+    assert (fields["info"]["width"], fields["info"]["height"]) == (4, 3)
+    assert fields["data"] == VALUES
+    assert gridmerge.OccupancyGrid.from_msg(fields).origin.theta == pytest.approx(2.5)
+
+
+def test_a_message_of_a_class_keeps_what_is_not_of_the_map() -> None:
+    filled = GRID.to_msg(empty_message)
+    assert filled.data == array.array("b", VALUES)
+    assert filled.header.stamp.sec == 0
+    stamp = Fields(sec=5, nanosec=7)
+    stamped = GRID.to_msg(empty_message, stamp=stamp)
+    assert stamped.header.stamp is stamp
+    assert stamped.info.map_load_time is stamp
+    assert isinstance(stamped.info.resolution, float)
+
+
+def test_merged_maps_become_messages(robots: list[str]) -> None:
+    merged = gridmerge.merge(robots[:2]).components[0].grid
+    back = gridmerge.OccupancyGrid.from_msg(merged.to_msg())
+    np.testing.assert_array_equal(back.cells, merged.cells)
+    percent = gridmerge.OccupancyGrid.from_msg(merged.to_msg(probabilities=True)).probability
+    assert percent is not None
+    assert merged.probability is not None
+    np.testing.assert_allclose(percent, merged.probability, atol=0.0051)
+
+
+def test_what_no_message_can_be_made_of() -> None:
+    unwritable: Any = 5
+    with pytest.raises(TypeError, match="^frame_id: must be a string, is of type int"):
+        GRID.to_msg(frame_id=unwritable)
+    with pytest.raises(TypeError, match="^message_class: must be a class of messages, is of type str"):
+        GRID.to_msg(unwritable if False else "nav_msgs/OccupancyGrid")  # type: ignore[call-overload]
+    with pytest.raises(ValueError, match="probabilities"):
+        gridmerge.OccupancyGrid(np.zeros((2, 2), dtype=np.int8), 0.1).to_msg(probabilities=True)
+
+
+def named(frame_id: Any, yaw: float) -> Any:
+    one = message(yaw=yaw)
+    one.header = Fields(frame_id=frame_id)
+    return one
+
+
+def test_maps_are_called_by_their_frames() -> None:
+    result = gridmerge.merge([named("robot_1/map", 0.1), message(), named("robot_2/map", 0.2)])
+    assert result.names == ("robot_1/map", "map 1", "robot_2/map")
+    assert gridmerge.merge([named("map", 0.1), named("map", 0.2), named("", 0.3)]).names == (
+        "map 0",
+        "map 1",
+        "map 2",
+    ), "a frame that several are in names none of them"
+    assert gridmerge.merge([named("a", 0.1), named("b", 0.2)], names=["c", "d"]).names == ("c", "d")
+    posed = gridmerge.merge(
+        [named("a", 0.1), named("b", 0.2)], init={"a": (0.0, 0.0, 0.0), "b": (1.0, 0.0, 0.0)}
+    )
+    assert posed.names == ("a", "b")
+    merger = gridmerge.Merger()
+    for frame in ("a", "a", "b"):
+        merger.add(named(frame, 0.1))
+    merger.add(named("c", 0.1), name="d")
+    assert merger.result().names == ("a", "map 1", "b", "d")
+
+
+def test_a_frame_goes_with_its_map() -> None:
+    grid = gridmerge.OccupancyGrid.from_msg(named("robot_1/map", 0.1))
+    assert pickle.loads(pickle.dumps(grid)).frame_id == "robot_1/map"
+    assert grid.to_msg()["header"]["frame_id"] == "robot_1/map"
+    assert gridmerge.OccupancyGrid.from_msg(message()).frame_id is None
+    with pytest.raises(TypeError, match=r"^moving.header.frame_id: must be a string, is of type int"):
+        gridmerge.match(message(), named(7, 0.1))
+    with pytest.raises(ValueError, match=r"^header.frame_id: "):
+        gridmerge.OccupancyGrid.from_msg(named("\ud800", 0.1))
+
+
+def test_a_dict_that_lacks_a_field() -> None:
+    fields = GRID.to_msg()
+    del fields["info"]["origin"]["position"]["y"]
+    with pytest.raises(TypeError, match=r"^fixed.info.origin.position.y: the message has no such field"):
+        gridmerge.match(fields, GRID)
+    with pytest.raises(TypeError, match=r"^maps: must be a sequence of maps, is of type dict"):
+        gridmerge.merge(fields)

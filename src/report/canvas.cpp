@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "font.hpp"
+#include "style.hpp"
 
 namespace gridmerge {
 
 namespace {
-constexpr int kAdvance = kGlyphWidth + 1;
 constexpr std::size_t kChannels = 3;
 
 std::size_t sample_at(const PngImage& image, int x, int y) {
@@ -51,40 +50,24 @@ void Canvas::draw(int x, int y, const Canvas& other) {
   }
 }
 
-void Canvas::write(int x, int y, int scale, std::string_view ascii, Colour colour) {
-  for (const char c : ascii) {
-    const Glyph& glyph = kFont[static_cast<std::size_t>(c - kFirstGlyph)];
-    for (int row = 0; row < kGlyphHeight; ++row) {
-      for (int dot = 0; dot < kGlyphWidth; ++dot) {
-        const bool set = (glyph.rows[static_cast<std::size_t>(row)] >> (kGlyphWidth - 1 - dot) & 1) != 0;
-        if (set) fill(x + dot * scale, y + row * scale, scale, scale, colour);
-      }
+void Canvas::write(int x, int y, TextSize size, std::string_view text, Colour colour) {
+  const Coverage coverage = draw_text(text, size);
+  for (int row = 0; row < coverage.height; ++row) {
+    for (int column = 0; column < coverage.width; ++column) {
+      const std::size_t at = static_cast<std::size_t>(row) * static_cast<std::size_t>(coverage.width) +
+                             static_cast<std::size_t>(column);
+      const auto covered = static_cast<unsigned char>(coverage.values[at]);
+      if (covered != 0) blend(x + coverage.left + column, y + row, colour, covered / 255.0);
     }
-    x += kAdvance * scale;
   }
 }
 
-int text_width(std::string_view ascii, int scale) {
-  return ascii.empty() ? 0 : (static_cast<int>(ascii.size()) * kAdvance - 1) * scale;
-}
-
-int text_height(int scale) {
-  return kGlyphHeight * scale;
-}
-
-std::string to_ascii(std::string_view utf8) {
-  std::string ascii;
-  for (const char c : utf8) {
-    const bool continues = (static_cast<unsigned char>(c) & 0xC0) == 0x80;
-    if (!continues) ascii += c >= kFirstGlyph && c <= kLastGlyph ? c : '?';
-  }
-  return ascii;
-}
-
-std::string fit_width(const std::string& ascii, int scale, int width) {
-  if (text_width(ascii, scale) <= width) return ascii;
-  const int fitting = std::max(2, (width / scale + 1) / kAdvance);
-  return ".." + ascii.substr(ascii.size() - static_cast<std::size_t>(fitting - 2));
+void Canvas::blend(int x, int y, Colour colour, double share) {
+  if (x < 0 || y < 0 || x >= image_.width || y >= image_.height) return;
+  const std::size_t sample = sample_at(image_, x, y);
+  const Colour below{image_.samples[sample], image_.samples[sample + 1], image_.samples[sample + 2]};
+  const Colour blended = mix(below, colour, share);
+  fill(x, y, 1, 1, blended);
 }
 
 }  // namespace gridmerge

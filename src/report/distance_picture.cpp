@@ -33,8 +33,9 @@ Colour shade(std::uint16_t distance, int most) {
 
 void write_number(Canvas& canvas, int x, int y, std::uint16_t distance, Colour background) {
   const std::string number = distance == kNoDistance ? "inf" : std::to_string(distance);
-  canvas.write(x + (kNumberedCell - text_width(number, 1)) / 2, y + (kNumberedCell - text_height(1)) / 2, 1,
-               number, background.red < 128 ? kWhite : kBlack);
+  const int left = (kNumberedCell - text_width(number, TextSize::tiny)) / 2;
+  const int top = (kNumberedCell - line_height(TextSize::tiny)) / 2;
+  canvas.write(x + left, y + top, TextSize::tiny, number, background.red < 128 ? kWhite : kBlack);
 }
 
 }  // namespace

@@ -16,10 +16,6 @@ Json member_json(const std::string& name, const Member& member) {
           {"sd", deviation_json(member.sd)}};
 }
 
-Reason own_reason(const MatchResult& match) {
-  return match.verdict == Verdict::accepted ? Reason::none : match.reason;
-}
-
 Json join_json(const std::string& fixed, const std::string& moving, const Join& join) {
   return {{"fixed", fixed},
           {"moving", moving},
@@ -28,8 +24,7 @@ Json join_json(const std::string& fixed, const std::string& moving, const Join& 
           {"probability", number_json(join.probability)},
           {"outcome", name_of(join.outcome)},
           {"reason", reason_json(join.reason())},
-          {"by_themselves",
-           {{"verdict", name_of(join.match.verdict)}, {"reason", reason_json(own_reason(join.match))}}},
+          {"by_themselves", own_verdict_json(join.match)},
           {"acceptance_index", number_json(join.acceptance_index)},
           {"agreement", join.agreement},
           {"disagreement", join.disagreement},

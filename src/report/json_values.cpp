@@ -43,6 +43,14 @@ Json reason_json(Reason reason) {
   return reason == Reason::none ? Json() : Json(name_of(reason));
 }
 
+Reason own_reason(const MatchResult& match) {
+  return match.verdict == Verdict::accepted ? Reason::none : match.reason;
+}
+
+Json own_verdict_json(const MatchResult& match) {
+  return {{"verdict", name_of(match.verdict)}, {"reason", reason_json(own_reason(match))}};
+}
+
 std::optional<std::size_t> frame_of(const Component& component) {
   if (!component.in_world_frame) return component.members.front().map;
   for (const Member& member : component.members) {

@@ -22,6 +22,12 @@ Json hypotheses_json(const std::vector<Hypothesis>& hypotheses);
 /// null of none.
 Json reason_json(Reason reason);
 
+/// Why two maps are refused by themselves; none of accepted ones.
+Reason own_reason(const MatchResult& match);
+
+/// What two maps say by themselves, whatever a merge makes of it.
+Json own_verdict_json(const MatchResult& match);
+
 /// What outputs keep of the hypotheses of a join: all where it was used or contradicts the others, and of a
 /// refused one the best and those that may well be true. Teams of many maps have mostly refused joins.
 Json hypotheses_json(const Join& join);

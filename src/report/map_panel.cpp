@@ -16,11 +16,10 @@ namespace {
 constexpr int kMaxZoom = 32;
 constexpr int kMargin = 12;  // of unknown space around the maps [pixels]
 
-// What the maps say of a cell: how many call it free or occupied (two stands for more), and the first that
-// does.
+// What the maps say of a cell: how many call it free and occupied, and the first that does.
 struct Sighting {
-  std::uint8_t free = 0;
-  std::uint8_t occupied = 0;
+  std::uint32_t free = 0;
+  std::uint32_t occupied = 0;
   std::uint32_t first_free = 0;
   std::uint32_t first_occupied = 0;
 };
@@ -37,10 +36,10 @@ std::vector<Sighting> sight(const std::vector<PlacedMap>& maps, const Lattice& l
         Sighting& cell =
             sightings[static_cast<std::size_t>(patch.row + row) * static_cast<std::size_t>(lattice.width) +
                       static_cast<std::size_t>(patch.column + column)];
-        std::uint8_t& count = log_odds > 0 ? cell.occupied : cell.free;
+        std::uint32_t& count = log_odds > 0 ? cell.occupied : cell.free;
         if (count == 0)
           (log_odds > 0 ? cell.first_occupied : cell.first_free) = static_cast<std::uint32_t>(i);
-        count = static_cast<std::uint8_t>(std::min(count + 1, 2));
+        ++count;
       }
     }
   }
@@ -48,10 +47,8 @@ std::vector<Sighting> sight(const std::vector<PlacedMap>& maps, const Lattice& l
 }
 
 Colour colour_of(const Sighting& cell, const std::vector<Colour>& colours) {
-  if (cell.free > 0 && cell.occupied > 0) return PreviewColours::kDisagreement;
-  if (cell.occupied > 1) return PreviewColours::kSharedWall;
+  if (cell.free + cell.occupied > 1) return shared_colour(cell.free, cell.occupied);
   if (cell.occupied > 0) return colours[cell.first_occupied];
-  if (cell.free > 1) return PreviewColours::kSharedFree;
   if (cell.free > 0) return free_tint(colours[cell.first_free]);
   return PreviewColours::kUnknown;
 }
@@ -81,18 +78,18 @@ double round_length(double limit) {
   return power;
 }
 
-Canvas draw_scale_bar(double metres_per_pixel, int available, int text_scale) {
+Canvas draw_scale_bar(double metres_per_pixel, int available) {
+  constexpr TextSize kText = TextSize::small;
   const double length = round_length(metres_per_pixel * std::max(available / 4, 1));
   const int bar = std::max(1, static_cast<int>(std::lround(length / metres_per_pixel)));
   const std::string label = fmt::format("{:.6g} m", length);
-  const int gap = 4 * text_scale;
-  const int height = text_height(text_scale);
-  Canvas canvas(bar + gap + text_width(label, text_scale), height, Style::kPage);
-  const int line = text_scale, middle = 3 * text_scale;
-  canvas.fill(0, middle, bar, line, Style::kInk);
-  canvas.fill(0, 0, line, 7 * text_scale, Style::kInk);
-  canvas.fill(bar - line, 0, line, 7 * text_scale, Style::kInk);
-  canvas.write(bar + gap, 0, text_scale, label, Style::kInk);
+  const int gap = gap_of(kText), height = line_height(kText), line = std::max(1, gap / 4);
+  Canvas canvas(bar + gap + text_width(label, kText), height, Style::kPage);
+  const int top = baseline(kText) / 4, bottom = baseline(kText);
+  canvas.fill(0, (top + bottom - line) / 2, bar, line, Style::kInk);
+  canvas.fill(0, top, line, bottom - top, Style::kInk);
+  canvas.fill(bar - line, top, line, bottom - top, Style::kInk);
+  canvas.write(bar + gap, 0, kText, label, Style::kInk);
   return canvas;
 }
 
@@ -105,7 +102,16 @@ Colour free_tint(Colour map) {
   return {lighten(map.red), lighten(map.green), lighten(map.blue)};
 }
 
-Canvas draw_panel(const MapPanel& panel, int text_scale) {
+Colour shared_colour(std::uint32_t free, std::uint32_t occupied) {
+  const Colour agreed = occupied >= free ? PreviewColours::kSharedWall : PreviewColours::kSharedFree;
+  return mix(agreed, PreviewColours::kDisagreement, 2.0 * std::min(free, occupied) / (free + occupied));
+}
+
+int gap_of(TextSize text) {
+  return line_height(text) / 3;
+}
+
+Canvas draw_panel(const MapPanel& panel, TextSize title) {
   // One cell less than there is room for: a coarser lattice need not begin where the maps do.
   const int room = panel.max_side - 2 * kMargin - 1;
   const double coarsening = std::max(1.0, std::ceil(panel.longest_side / room));
@@ -113,15 +119,14 @@ Canvas draw_panel(const MapPanel& panel, int text_scale) {
   const int zoom = std::clamp(panel.min_side / std::max(lattice.width, lattice.height), 1, kMaxZoom);
   const Canvas drawing = draw_maps(panel, lattice, zoom);
   const Canvas scale_bar =
-      draw_scale_bar(lattice.resolution / zoom, std::max(drawing.width(), panel.min_width), text_scale);
+      draw_scale_bar(lattice.resolution / zoom, std::max(drawing.width(), panel.min_width));
   const int width = std::max({drawing.width(), scale_bar.width(), panel.min_width});
-  const std::string title = fit_width(panel.title, text_scale, width);
 
-  const int gap = 3 * text_scale;
-  const int drawing_y = text_height(text_scale) + gap;
-  const int bar_y = drawing_y + drawing.height() + 2 * gap;
+  const int gap = gap_of(title);
+  const int drawing_y = line_height(title) + gap;
+  const int bar_y = drawing_y + drawing.height() + gap;
   Canvas canvas(width, bar_y + scale_bar.height(), Style::kPage);
-  canvas.write(0, 0, text_scale, title, Style::kInk);
+  canvas.write(0, 0, title, fit_width(panel.title, title, width), Style::kInk);
   canvas.draw(0, drawing_y, drawing);
   canvas.draw(0, bar_y, scale_bar);
   return canvas;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,15 @@ struct MapPanel {
 };
 
 /// The panel with its title above and a scale bar below.
-Canvas draw_panel(const MapPanel& panel, int text_scale);
+Canvas draw_panel(const MapPanel& panel, TextSize title);
+
+/// Between a text and what it belongs to [pixels].
+int gap_of(TextSize text);
 
 /// The tint of free space that one map saw.
 Colour free_tint(Colour map);
+
+/// A cell that several maps know: so many call it free, so many occupied. The report page has the same rule.
+Colour shared_colour(std::uint32_t free, std::uint32_t occupied);
 
 }  // namespace gridmerge

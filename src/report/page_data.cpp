@@ -56,6 +56,7 @@ Json join_json(const Join& join) {
           {"moving", join.moving},
           {"outcome", name_of(join.outcome)},
           {"reason", reason_json(join.reason())},
+          {"by_themselves", own_verdict_json(join.match)},
           {"transform", transform_json(join.T_fixed_moving)},
           {"probability", number_json(join.probability)},
           {"acceptance_index", number_json(join.acceptance_index)},
@@ -93,7 +94,7 @@ Json page_data(const std::vector<std::string>& names, const std::vector<Occupanc
     const Reason reason = result.left_out_reasons.at(i);
     left_out.push_back({{"map", result.left_out[i]},
                         {"reason", name_of(reason)},
-                        {"explanation", explain_left_out(reason)}});
+                        {"explanation", explain_left_out(result, i)}});
   }
   return {{"version", GRIDMERGE_VERSION},  {"live", false},
           {"maps", std::move(shown_maps)}, {"components", std::move(components)},

@@ -11,17 +11,18 @@
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/report/json.hpp"
 #include "map_panel.hpp"
+#include "short_names.hpp"
 #include "style.hpp"
 
 namespace gridmerge {
 
 namespace {
 
-constexpr int kGap = 24;  // around and between the parts of the page [pixels]
+constexpr int kGap = 24;       // around and between the parts of the page [pixels]
+constexpr int kLegendGap = 6;  // between its lines [pixels]
 constexpr int kPageMinWidth = 1000, kPageMaxWidth = 2400;
 constexpr int kComponentMinSide = 1400, kComponentMaxSide = kPageMaxWidth - 2 * kGap;
 constexpr int kLeftOutMinSide = 280, kLeftOutMaxSide = 560;
-constexpr int kSmallText = 2, kLargeText = 3;
 constexpr std::size_t kMostLeftOutPanels = 12;
 
 MapPanel component_panel(const std::vector<OccupancyGrid>& maps, const MergeResult& result,
@@ -44,7 +45,7 @@ MapPanel component_panel(const std::vector<OccupancyGrid>& maps, const MergeResu
 
 MapPanel left_out_panel(const std::string& name, const OccupancyGrid& map, std::size_t index) {
   MapPanel panel;
-  panel.title = to_ascii(name);
+  panel.title = name;
   panel.maps = {{&map, {}}};
   panel.colours = {map_colour(index)};
   const OccupancyGrid known = crop_to_known(map);
@@ -57,7 +58,7 @@ MapPanel left_out_panel(const std::string& name, const OccupancyGrid& map, std::
 }
 
 // Puts the parts beside each other, in as many rows as the width asks for.
-Canvas flow(const std::vector<Canvas>& parts, int width, int gap) {
+Canvas flow(const std::vector<Canvas>& parts, int width, int row_gap) {
   struct Spot {
     int x, y;
   };
@@ -66,54 +67,53 @@ Canvas flow(const std::vector<Canvas>& parts, int width, int gap) {
   for (const Canvas& part : parts) {
     if (x > 0 && x + part.width() > width) {
       x = 0;
-      y += row_height + gap;
+      y += row_height + row_gap;
       row_height = 0;
     }
     spots.push_back({x, y});
     used_width = std::max(used_width, x + part.width());
     row_height = std::max(row_height, part.height());
-    x += part.width() + gap;
+    x += part.width() + kGap;
   }
   Canvas canvas(used_width, std::max(1, y + row_height), Style::kPage);
   for (std::size_t i = 0; i < parts.size(); ++i) canvas.draw(spots[i].x, spots[i].y, parts[i]);
   return canvas;
 }
 
-// A label after a sample of what it explains: a wall in free space.
-Canvas legend_entry(Colour wall, Colour free, const std::string& label, int scale, int width) {
-  const int side = 7 * scale;
-  const int text_x = 2 * side + 3 * scale;
-  const std::string text = fit_width(label, scale, width - text_x);
-  Canvas canvas(text_x + text_width(text, scale), text_height(scale), Style::kPage);
-  canvas.fill(0, 0, 2 * side, side, Style::kLine);
-  canvas.fill(1, 1, side - 1, side - 2, wall);
-  canvas.fill(side, 1, side - 1, side - 2, free);
-  canvas.write(text_x, 0, scale, text, Style::kInk);
+// A label after a sample of what it explains: two colours beside each other.
+Canvas legend_entry(Colour left, Colour right, const std::string& label, int width) {
+  constexpr TextSize kSize = TextSize::small;
+  const int side = baseline(kSize) - baseline(kSize) / 4;
+  const int text_x = 2 * side + gap_of(kSize);
+  const std::string text = fit_width(label, kSize, width - text_x);
+  Canvas canvas(text_x + text_width(text, kSize), line_height(kSize), Style::kPage);
+  const int top = baseline(kSize) - side;
+  canvas.fill(0, top, 2 * side, side, Style::kLine);
+  canvas.fill(1, top + 1, side - 1, side - 2, left);
+  canvas.fill(side, top + 1, side - 1, side - 2, right);
+  canvas.write(text_x, 0, kSize, text, Style::kInk);
   return canvas;
 }
 
-std::vector<Canvas> legend(const std::vector<std::string>& names, const MergeResult& result, int scale,
-                           int width) {
+std::vector<Canvas> legend(const std::vector<std::string>& names, const MergeResult& result, int width) {
   std::vector<Canvas> entries;
   for (const Component& component : result.components) {
     for (const Member& member : component.members) {
       const Colour colour = map_colour(member.map);
-      entries.push_back(
-          legend_entry(colour, free_tint(colour), to_ascii(names.at(member.map)), scale, width));
+      entries.push_back(legend_entry(colour, free_tint(colour), names.at(member.map), width));
     }
   }
   if (entries.empty()) return entries;
   using Colours = PreviewColours;
-  entries.push_back(
-      legend_entry(Colours::kSharedWall, Colours::kSharedFree, "in two maps or more", scale, width));
-  entries.push_back(
-      legend_entry(Colours::kDisagreement, Colours::kDisagreement, "maps disagree", scale, width));
+  entries.push_back(legend_entry(Colours::kSharedWall, Colours::kSharedFree, "in two maps or more", width));
+  entries.push_back(legend_entry(Colours::kDisagreement, shared_colour(7, 1),
+                                 "maps disagree: half and half, or one of eight", width));
   return entries;
 }
 
-Canvas heading(const std::string& text, int scale) {
-  Canvas canvas(text_width(text, scale), text_height(scale), Style::kPage);
-  canvas.write(0, 0, scale, text, Style::kInk);
+Canvas heading(const std::string& text, TextSize size) {
+  Canvas canvas(text_width(text, size), line_height(size), Style::kPage);
+  canvas.write(0, 0, size, text, Style::kInk);
   return canvas;
 }
 
@@ -155,25 +155,25 @@ Colour map_colour(std::size_t map) {
 
 std::string preview_png(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
                         const MergeResult& result) {
-  const int text_scale = result.components.empty() ? kSmallText : kLargeText;
+  const std::vector<std::string> called = short_names(names);
+  const TextSize size = result.components.empty() ? TextSize::small : TextSize::large;
   std::vector<Canvas> blocks;
   int width = kPageMinWidth;
   for (std::size_t i = 0; i < result.components.size(); ++i) {
-    blocks.push_back(draw_panel(component_panel(maps, result, i), text_scale));
+    blocks.push_back(draw_panel(component_panel(maps, result, i), size));
     width = std::max(width, blocks.back().width());
   }
-  const std::vector<Canvas> entries = legend(names, result, text_scale, width);
-  if (!entries.empty()) blocks.push_back(flow(entries, width, kGap));
+  const std::vector<Canvas> entries = legend(called, result, width);
+  if (!entries.empty()) blocks.push_back(flow(entries, width, kLegendGap));
 
   std::vector<Canvas> left_out;
   for (const std::size_t map : result.left_out) {
     if (left_out.size() == kMostLeftOutPanels) break;
-    left_out.push_back(draw_panel(left_out_panel(names.at(map), maps.at(map), map), kSmallText));
+    left_out.push_back(draw_panel(left_out_panel(called.at(map), maps.at(map), map), TextSize::small));
   }
   if (!left_out.empty()) {
     const std::size_t more = result.left_out.size() - left_out.size();
-    blocks.push_back(
-        heading(more == 0 ? "Left out" : fmt::format("Left out (and {} more)", more), text_scale));
+    blocks.push_back(heading(more == 0 ? "Left out" : fmt::format("Left out (and {} more)", more), size));
     blocks.push_back(flow(left_out, width, kGap));
   }
   return encode_png(stack(blocks, kGap).image());

@@ -3,10 +3,12 @@
 
 namespace gridmerge {
 
-const char* explain_left_out(Reason reason) {
-  switch (reason) {
-    case Reason::nothing_to_compare:
-      return "there is too little in it to compare";
+const char* explain_left_out(const MergeResult& result, std::size_t index) {
+  switch (result.left_out_reasons.at(index)) {
+    case Reason::nothing_to_compare: {
+      const bool alone = result.components.empty() && result.left_out.size() == 1;
+      return alone ? "there is no other map to merge it with" : "there is too little in it to compare";
+    }
     case Reason::ambiguous:
       return "it fits in more than one way";
     case Reason::contradiction:

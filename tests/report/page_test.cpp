@@ -126,6 +126,7 @@ TEST(ReportPage, HoldsTheJoins) {
                   {"moving", 1},
                   {"outcome", "refused"},
                   {"reason", "ambiguous"},
+                  {"by_themselves", {{"verdict", "refused"}, {"reason", "ambiguous"}}},
                   {"transform", transform(0.5, 0.25, 3.0)},
                   {"probability", 0.0625},
                   {"acceptance_index", 0.8125},

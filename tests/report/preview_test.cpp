@@ -70,6 +70,45 @@ TEST(Preview, ShowsWhoSawWhat) {
   EXPECT_EQ(picture.cells(Colours::kSharedFree), 5u);
 }
 
+TEST(Preview, TheFewerMapsDisagreeTheFainterItIs) {
+  const auto colour_of = [](std::size_t walls, std::size_t frees, bool walls_first) {
+    std::vector<OccupancyGrid> maps;
+    std::vector<Member> members;
+    for (std::size_t i = 0; i < walls + frees; ++i) {
+      maps.push_back(map_from({(i < (walls_first ? walls : frees)) == walls_first ? "#" : "."}));
+      members.push_back({i, {}});
+    }
+    return preview(maps, {members}).at(24 + 12 + 16, 24 + 48 + 12 + 16);  // in the only cell
+  };
+  const auto orange = rgb(Colours::kDisagreement);
+  const auto red = [](Rgb colour) { return std::get<0>(colour); };
+  const auto blue = [](Rgb colour) { return std::get<2>(colour); };
+  EXPECT_EQ(colour_of(3, 3, true), orange);
+  EXPECT_EQ(colour_of(0, 2, true), rgb(Colours::kSharedFree));
+  EXPECT_EQ(colour_of(2, 0, true), rgb(Colours::kSharedWall));
+  EXPECT_EQ(colour_of(1, 7, true), (Rgb{245, 215, 191})) << "a quarter of the way from white";
+  int before = 255;
+  for (std::size_t walls = 1; walls <= 4; ++walls) {
+    const Rgb colour = colour_of(walls, 8 - walls, true);
+    EXPECT_EQ(colour, colour_of(walls, 8 - walls, false)) << "whatever the order";
+    EXPECT_LT(blue(colour), before);
+    before = blue(colour);
+  }
+  before = red(orange);
+  for (std::size_t walls = 5; walls <= 8; ++walls) {
+    const Rgb colour = colour_of(walls, 8 - walls, true);
+    EXPECT_LT(red(colour), before) << "more of them say wall: towards black";
+    before = red(colour);
+  }
+}
+
+TEST(Preview, NamesLackTheFoldersThatAllLieIn) {
+  const std::vector<OccupancyGrid> maps{map_from({"#.."}), map_from({"..#"})};
+  const MergeResult result = test::merged(maps, {{{0, {}}, {1, {}}}});
+  EXPECT_EQ(preview_png({"/a/b/one", "/a/b/two"}, maps, result), preview_png({"one", "two"}, maps, result));
+  EXPECT_NE(preview_png({"a/one", "b/two"}, maps, result), preview_png({"one", "two"}, maps, result));
+}
+
 TEST(Preview, WallsOfTheSecondMapHaveItsColour) {
   const std::vector<OccupancyGrid> maps{map_from({"#.."}), map_from({"...##"})};
   const Picture picture = preview(maps, {{{0, {}}, {1, {1.0, 0.0, 0.0}}}});

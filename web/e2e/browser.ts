@@ -95,13 +95,32 @@ export async function load(place: string, options: BrowserContextOptions = {}): 
     });
   });
   const tab = new Tab(page);
-  await page.goto(place.startsWith("http") ? place : pathToFileURL(join(place, "report.html")).href);
+  await page.goto(/^(http|file):/.test(place) ? place : pathToFileURL(join(place, "report.html")).href);
   return tab;
 }
 
 /** What the page has copied last. */
 export function lastCopied(page: Page): Promise<string> {
   return page.evaluate(() => (window as unknown as { copied: string[] }).copied.at(-1) ?? "");
+}
+
+/** How far two pictures of one size are apart where they differ most, of 255. */
+export function farthestApart(page: Page, a: string, b: string): Promise<number> {
+  return page.evaluate(async (urls) => {
+    const [one, other] = await Promise.all(urls.map(async (url) => {
+      const image = new Image();
+      image.src = url;
+      await image.decode();
+      const canvas = document.createElement("canvas");
+      canvas.width = image.width;
+      canvas.height = image.height;
+      const context = canvas.getContext("2d")!;
+      context.drawImage(image, 0, 0);
+      return context.getImageData(0, 0, image.width, image.height).data;
+    }));
+    if (one.length !== other.length) return 255;
+    return one.reduce((most, value, i) => Math.max(most, Math.abs(value - other[i])), 0);
+  }, [a, b]);
 }
 
 /** Where the pointer is, as the page says: metres. */

@@ -5,9 +5,10 @@ import { rmSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import type { Page } from "playwright-core";
-import { type SE2, normalizeAngle } from "../src/se2";
-import { type Tab, drag, lastCopied, middle, open } from "./browser";
-import { elsewhere, examples, gridmerge, mergeInto, program, source, transforms } from "./reports";
+import type { InputMap } from "../src/report";
+import { type SE2, apply, compose, normalizeAngle } from "../src/se2";
+import { type Tab, cursor, drag, lastCopied, middle, open } from "./browser";
+import { elsewhere, examples, gridmerge, mergeInto, program, reportData, source, transforms } from "./reports";
 
 /** Robots 1 and 3 saw little in common, so that they are refused by themselves. */
 const pair = [examples[0], examples[2]];
@@ -44,11 +45,21 @@ test("a map that was left out is placed by hand, and the saved poses join it", a
   const tab = await open(folder);
   const { page } = tab;
   await takeThird(tab);
-  const far = await score(page);
-  const roughly = { x: truth.x + 0.2, y: truth.y - 0.2, theta: truth.theta + 0.01 };
-  await type(page, roughly);
+  assert.ok(near(await pose(page), truth), "it starts where the best hypothesis has it");
+  assert.match((await page.textContent("#hand-place"))!, /^Place 1 of 1 .* with 1robot_1\.yaml, probability/);
+  await page.waitForSelector("#hand-yardstick:has-text('by chance')");
+  const chance = Number(/up to (\d+) % by chance/.exec((await page.textContent("#hand-yardstick"))!)![1]);
+  const best = await score(page);
+  assert.ok(best > chance + 20, `walls met: ${best} % where the map belongs, ${chance} % by chance`);
+  await type(page, { ...truth, x: truth.x + 9 });
+  const elsewhereMet = await score(page);
+  assert.equal(await page.textContent("#hand-place"), "");
+  await page.click("#hand-next");
+  assert.ok(near(await pose(page), truth), "back to the only likely place");
+  await type(page, { x: truth.x + 0.2, y: truth.y - 0.2, theta: truth.theta + 0.01 });
+  assert.equal(await page.textContent("#hand-place"), "");
   const close = await score(page);
-  assert.ok(close > far + 20 && close > 60, `walls met: ${far} % anywhere, ${close} % where the map belongs`);
+  assert.ok(close > elsewhereMet && close > 60, `walls met: ${elsewhereMet} % elsewhere, ${close} % where the map belongs`);
   await tab.screenshot("by_hand");
   assert.ok(await page.isDisabled("#hand-refine"), "no engine without a server");
 
@@ -68,20 +79,33 @@ test("a map that was left out is placed by hand, and the saved poses join it", a
   rmSync(file);
 });
 
+/** Where a map's middle is on the page when it lies at a pose. */
+async function middleOfMap(page: Page, map: InputMap, at: SE2): Promise<{ x: number; y: number }> {
+  const { x, y } = await middle(page);
+  await page.mouse.move(x - 100, y);
+  const left = await cursor(page);
+  await page.mouse.move(x + 100, y);
+  const right = await cursor(page);
+  const scale = 200 / (right.x - left.x);
+  const p = apply(compose(at, map.origin), { x: (map.width * map.resolution) / 2, y: (map.height * map.resolution) / 2 });
+  return { x: x - 100 + (p.x - left.x) * scale, y: y - (p.y - left.y) * scale };
+}
+
 test("the map in hand is dragged, turned by its handle, and moved by keys", async () => {
-  const tab = await open(mergeInto("four", [...examples, elsewhere]));
+  const folder = mergeInto("four", [...examples, elsewhere]);
+  const tab = await open(folder);
   const { page } = tab;
   await page.click("button:text-is('Place by hand')");
-  const at = await middle(page);
   const start = await pose(page);
+  const at = await middleOfMap(page, reportData(folder).maps[3], start);
   await drag(page, at, 60, 40);
   const dragged = await pose(page);
   assert.ok(dragged.x > start.x && dragged.y < start.y && dragged.theta === start.theta);
   await page.keyboard.down("Shift");
-  await drag(page, { x: at.x + 160, y: at.y + 40 }, 0, -60);
+  await drag(page, { x: at.x + 60 + 70, y: at.y + 40 }, 0, -50);
   await page.keyboard.up("Shift");
   const turned = await pose(page);
-  assert.ok(turned.theta > 0.2, "up on the right turns counter-clockwise");
+  assert.ok(turned.theta > dragged.theta + 0.2, "up on the right turns counter-clockwise");
   await page.focus("canvas");
   await page.keyboard.press("ArrowRight");
   assert.ok(Math.abs((await pose(page)).x - turned.x - 0.05) < 0.002, "by a cell");
@@ -98,6 +122,25 @@ test("the map in hand is dragged, turned by its handle, and moved by keys", asyn
   await page.selectOption("#hand-map", "3");
   await page.click("button:text-is('Put back')");
   assert.ok(!await page.isVisible("#hand-save"));
+  await tab.close();
+});
+
+test("a map is laid at one place after the other that comparisons found", async () => {
+  const tab = await open(mergeInto("four", [...examples, elsewhere]));
+  const { page } = tab;
+  await page.click("button:text-is('Place by hand')");
+  const count = Number(/^Place 1 of (\d+)/.exec((await page.textContent("#hand-place"))!)![1]);
+  assert.ok(count > 1);
+  const first = await pose(page);
+  const own: number[] = [];
+  for (let i = 0; i < count; i++) {
+    assert.match((await page.textContent("#hand-place"))!, new RegExp(`^Place ${i + 1} of ${count} `));
+    own.push(Number(/probability (?:< )?([\d.]+)\.$/.exec((await page.textContent("#hand-place"))!)![1]));
+    assert.ok(i === 0 || !near(await pose(page), first));
+    await page.click("#hand-next");
+  }
+  assert.ok(near(await pose(page), first), "and round again");
+  assert.deepEqual(own, [...own].sort((a, b) => b - a), "the most probable first");
   await tab.close();
 });
 

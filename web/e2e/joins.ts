@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { open } from "./browser";
-import { elsewhere, examples, mergeInto, reportData, six } from "./reports";
+import { eighteen, elsewhere, examples, mergeInto, reportData, six } from "./reports";
 
 test("a join is chosen in the table and shows its two maps, its figures and its hypotheses", async () => {
   const tab = await open(mergeInto("four", [...examples, elsewhere]));
@@ -19,7 +19,7 @@ test("a join is chosen in the table and shows its two maps, its figures and its 
   assert.ok(await tab.changes(() => hypotheses.nth(2).check()), "a runner-up lies elsewhere");
   assert.ok(await hypotheses.nth(2).isChecked());
   await tab.screenshot("runner_up");
-  assert.match((await page.textContent(".chosen-join"))!, /those of the first hypothesis/);
+  assert.match((await page.textContent(".chosen-join"))!, /those of way 1/);
   await page.click("button.back");
   assert.equal(await page.locator("button[data-join='0']:focus").count(), 1, "the focus goes back to the join");
   await page.mouse.move(5, 5);
@@ -97,5 +97,70 @@ test("joins are chosen by keyboard alone", async () => {
   for (let i = 0; i < 12 && await page.locator("button[data-join]:focus").count() === 0; i++) await page.keyboard.press("Tab");
   assert.ok(await tab.changes(() => page.keyboard.press("Enter")));
   assert.equal(await page.locator("button[data-join]:focus").count(), 1, "the focus stays");
+  await tab.close();
+});
+
+test("joins are sorted by each column, either way", async () => {
+  const folder = mergeInto("six", six());
+  const { joins } = reportData(folder);
+  const tab = await open(folder);
+  const { page } = tab;
+  await page.click("#tab-joins");
+  const shown = async () => (await page.locator("button[data-join]").evaluateAll(
+    (buttons) => buttons.map((button) => Number((button as HTMLElement).dataset.join)))).map((index) => joins[index]);
+  for (const [head, keyOf] of [["Probability", "probability"], ["Index", "acceptance_index"], ["Overlap", "overlap"]] as const) {
+    await page.click(`button.sort:has-text('${head}')`);
+    const keys = (await shown()).map((join) => join[keyOf]);
+    assert.equal(keys.length, joins.length);
+    assert.deepEqual(keys, [...keys].sort((a, b) => b - a), head);
+    assert.equal(await page.getAttribute(`th:has-text('${head}')`, "aria-sort"), "descending");
+    await page.keyboard.press("Enter");
+    const upwards = (await shown()).map((join) => join[keyOf]);
+    assert.deepEqual(upwards, [...keys].sort((a, b) => a - b), "the focus stays, and Enter turns the order around");
+  }
+  await page.click("button.sort:has-text('Maps')");
+  const maps = (await shown()).map((join) => [join.fixed, join.moving]);
+  assert.deepEqual(maps, [...maps].sort(([a, b], [c, d]) => a - c || b - d));
+  await tab.close();
+});
+
+test("a rescued join says which way the merge took, and what the other maps say", async () => {
+  const folder = mergeInto("eighteen", eighteen());
+  const index = reportData(folder).joins.findIndex((join) => join.outcome === "rescued");
+  assert.ok(index >= 0);
+  const tab = await open(folder);
+  const { page } = tab;
+  await page.click("#tab-joins");
+  await page.click(`button[data-join='${index}']`);
+  const text = (await page.textContent(".explanation"))!;
+  assert.match(text, /By themselves they would not be joined: too little in common\. The most probable: way 1 \(0\.\d+\)/);
+  assert.match(text, /The merge lays them in (way \d+|a way that is none of theirs), whose own probability is 0\.\d+\./);
+  assert.match(text, /2 other maps are joined to both\. Over them the second map lies off by \d+robot_\d+\.yaml 0\.\d+ m and \d\.\d°, \d+robot_\d+\.yaml /);
+  assert.ok(!/nats/.test((await page.textContent("#panel-joins"))!));
+  assert.match((await page.textContent(".hypothesis"))!, /^1: probability .*, \d+\.\d\d m and \d+\.\d° off/);
+  assert.ok(await page.locator(".explanation").evaluate((list) => list.getBoundingClientRect().top >= 0), "it is in sight");
+  await tab.screenshot("rescued");
+  await tab.close();
+});
+
+test("joins of many maps are a matrix, with a square for each two", async () => {
+  const folder = mergeInto("eighteen", eighteen());
+  const { joins } = reportData(folder);
+  const tab = await open(folder);
+  const { page } = tab;
+  await page.click("#tab-joins");
+  const squares = page.locator(".edge .cell");
+  const used = joins.filter(({ outcome }) => outcome !== "refused").length;
+  assert.equal(await squares.count(), used);
+  await page.click("#outcome-refused");
+  assert.equal(await squares.count(), joins.length);
+  const places = await squares.evaluateAll((all) => all.map((square) => {
+    const { x, y, width, height } = square.getBoundingClientRect();
+    return `${Math.round(x + width / 2)} ${Math.round(y + height / 2)}`;
+  }));
+  assert.equal(new Set(places).size, joins.length, "none lies on another");
+  assert.ok(await tab.changes(() => page.locator(".edge .reach").first().click()));
+  assert.equal(await page.locator(".edge.chosen").count(), 1);
+  await tab.screenshot("matrix");
   await tab.close();
 });

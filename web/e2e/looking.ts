@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import type { Page } from "playwright-core";
 import { apply, inverse } from "../src/se2";
-import { cursor, drag, middle, open } from "./browser";
+import { cursor, drag, farthestApart, lastCopied, middle, open } from "./browser";
 import { elsewhere, examples, mergeInto, reportData } from "./reports";
 
 const folder = () => mergeInto("four", [...examples, elsewhere]);
@@ -147,6 +148,139 @@ test("two fingers zoom", async () => {
   await touch("touchEnd", 100);
   assert.ok(Math.abs(await scale(page) / before - 2) < 0.1);
   await tab.close();
+});
+
+test("the merged map is one click away from everywhere, and covers the maps", async () => {
+  const tab = await open(folder());
+  const { page } = tab;
+  const maps = await tab.picture();
+  assert.ok(await tab.changes(() => page.click("button[data-merged='true']")));
+  await page.mouse.move(5, 5);
+  const merged = await tab.picture();
+  await tab.screenshot("merged_map");
+  await page.click("#layer-0");
+  await page.click("#layer-agreement");
+  await page.mouse.move(5, 5);
+  assert.equal(await tab.picture(), merged, "nothing of the maps is seen");
+  assert.ok(await tab.changes(() => page.fill("input[aria-label*='Merged map']", "50")), "faded it lets them through");
+  await page.fill("input[aria-label*='Merged map']", "100");
+  await page.click("#layer-0");
+  await page.click("#layer-agreement");
+  await page.click("#tab-joins");
+  await page.click("button[data-join='0']");
+  assert.equal(await page.getAttribute("button[data-merged='true']", "aria-pressed"), "false");
+  await page.click("button[data-merged='true']");
+  await page.mouse.move(5, 5);
+  assert.equal(await tab.picture(), merged, "from a join, too");
+  await page.focus("canvas");
+  await page.keyboard.press("m");
+  await page.focus("#tab-joins");
+  assert.equal(await tab.picture(), maps);
+  assert.equal(await page.getAttribute("button[data-merged='false']", "aria-pressed"), "true");
+  await tab.close();
+});
+
+test("lengths are measured, by dragging, by clicks and by keys", async () => {
+  const tab = await open(folder());
+  const { page } = tab;
+  const at = await middle(page);
+  const metre = await scale(page);
+  const before = await tab.picture();
+  const reading = async () => {
+    const [, length, x, y] = /^([\d.]+) m: x (-?[\d.]+) m, y (-?[\d.]+) m/.exec((await page.textContent("#measured"))!) ?? [];
+    return [length, x, y].map(Number);
+  };
+  const isNear = (a: number[], b: number[]) => a.every((value, i) => Math.abs(value - b[i]) < 0.03);
+  await page.click("button[aria-label='Measure']");
+  await drag(page, { x: at.x - 90, y: at.y }, 120, -160);
+  assert.ok(isNear(await reading(), [200 / metre, 120 / metre, 160 / metre]), String(await reading()));
+  await tab.screenshot("measured");
+  await page.mouse.click(at.x, at.y);
+  await page.mouse.move(at.x + 30, at.y);
+  assert.ok(isNear(await reading(), [30 / metre, 30 / metre, 0]), "the end follows");
+  await page.mouse.click(at.x + 50, at.y);
+  await page.mouse.move(at.x, at.y + 100);
+  assert.ok(isNear(await reading(), [50 / metre, 50 / metre, 0]), "and stays where it is put");
+  await page.focus("canvas");
+  await page.keyboard.press("Enter");
+  for (let i = 0; i < 2; i++) await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Enter");
+  assert.ok(isNear(await reading(), [120 / metre, 120 / metre, 0]), "two steps of 60 pixels");
+  await page.keyboard.press("Escape");
+  assert.equal(await page.textContent("#measured"), "");
+  await page.click("button[aria-label='Show all']");
+  await page.mouse.move(5, 5);
+  assert.equal(await tab.picture(), before);
+  await page.focus("canvas");
+  await page.keyboard.press("r");
+  await page.mouse.click(at.x, at.y);
+  await page.selectOption("#scene", { index: 1 });
+  assert.match((await page.textContent("#measured"))!, /^Click/, "another scene, another frame");
+  await tab.close();
+});
+
+test("what is seen is saved as a picture", async () => {
+  const tab = await open(folder());
+  const { page } = tab;
+  await page.click("button[aria-label='Zoom in']");
+  const download = page.waitForEvent("download");
+  await page.click("button[aria-label^='Save what is seen']");
+  const saved = await download;
+  assert.equal(saved.suggestedFilename(), "merged.png");
+  const png = readFileSync(await saved.path());
+  assert.deepEqual([...png.subarray(1, 4)], [..."PNG"].map((letter) => letter.charCodeAt(0)));
+  const size = await page.locator("canvas").evaluate((canvas: HTMLCanvasElement) => [canvas.width, canvas.height]);
+  assert.deepEqual([png.readUInt32BE(16), png.readUInt32BE(20)], size);
+  await page.mouse.move(5, 5);
+  const saved64 = `data:image/png;base64,${png.toString("base64")}`;
+  assert.equal(await farthestApart(page, saved64, await tab.picture()), 0, "it is what the canvas shows");
+  await tab.close();
+});
+
+test("a link to a view restores it", async () => {
+  const tab = await open(folder());
+  const { page } = tab;
+  await page.fill(".layer[data-map='1'] input[type=range]", "30");
+  await page.click("#layer-2");
+  await page.fill("input[type=color][data-map='0']", "#990099");
+  await page.click("button:text-is('Place by hand')");
+  await page.focus("canvas");
+  await page.keyboard.press("Shift+ArrowUp");
+  await page.keyboard.press("Escape");
+  await page.click("#tab-joins");
+  const at = await middle(page);
+  await page.click("button[aria-label='Zoom in']");
+  await drag(page, at, -37, 21);
+  await page.click("button[aria-label='Metre grid']");
+  await page.click("button[aria-label='Measure']");
+  await drag(page, at, 90, 30);
+  await page.mouse.move(5, 5);
+  await page.focus("#tab-joins");
+  await tab.settled();
+  const seen = await tab.picture();
+  await page.click("button[aria-label^='Copy a link']");
+  const link = await lastCopied(page);
+  assert.match(link, /report\.html#at=[\d.,-]+&tab=joins&maps=1:0\.3,2:0&colors=0:990099&placed=3:[\d.,-]+&grid=0&ruler=/);
+  assert.equal(page.url(), link);
+  await tab.close();
+
+  const other = await open(link);
+  await other.page.mouse.move(5, 5);
+  // A letter may lie a hundredth of a pixel beside where it was.
+  assert.ok(await farthestApart(other.page, await other.picture(), seen) < 32);
+  assert.ok(await other.page.isVisible("#panel-joins"));
+  assert.equal(await other.page.inputValue("input[type=color][data-map='0']"), "#990099");
+  await other.page.click("#tab-hand");
+  assert.ok(await other.page.isVisible("#hand-save"), "what was placed by hand can be saved from the link");
+  await other.page.click("#tab-joins");
+  // Another link to the same report, in the same tab.
+  await other.page.evaluate(() => (location.hash = "#show=join-0-1&merged=1"));
+  await other.settled();
+  assert.match((await other.page.textContent("#scene option:checked"))!, /^join: robot_1\.yaml and robot_2\.yaml/);
+  await other.page.evaluate(() => (location.hash = "#show=<script>&at=1,2,nonsense"));
+  await other.page.click("#tab-layers");
+  assert.equal(await other.page.inputValue("#scene"), "0");
+  await other.close();
 });
 
 test("tabs are reached by arrow keys", async () => {

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { test } from "node:test";
 import { lastCopied, open } from "./browser";
-import { examples, mergeInto, transforms } from "./reports";
+import { examples, mergeInto, source, transforms } from "./reports";
 
 test("transforms are copied to the bit", async () => {
   const folder = mergeInto("three", examples);
   const tab = await open(folder);
   const { page } = tab;
   await page.click("#tab-transforms");
+  assert.match((await page.textContent("#panel-transforms .frame"))!, /^In the frame of 1robot_1\.yaml, which is also that of merged\.yaml\./);
+  assert.equal(await page.locator("tr.more:has-text('holds the frame')").count(), 1);
   const expected = transforms(folder).components[0].members.map(({ source, transform }) => ({ map: source, ...transform }));
   const all = page.locator("#panel-transforms > .buttons button");
   await all.nth(1).click();
@@ -28,6 +32,26 @@ test("transforms are copied to the bit", async () => {
   await page.waitForSelector("#panel-transforms button:text-is('Copied')");
   await tab.screenshot("transforms");
   await tab.close();
+});
+
+test("it is told whose frame transforms are in", async () => {
+  const folder = mergeInto("three", examples);
+  const tab = await open(folder);
+  const { page } = tab;
+  await page.click("#tab-joins");
+  await page.locator("button[data-join]").last().click();
+  const [, fixed] = /Show (\S+) and/.exec((await page.locator("button[data-join]").last().getAttribute("aria-label"))!)!;
+  await page.click("#tab-transforms");
+  await tab.settled();
+  assert.match((await page.textContent("#panel-transforms .frame"))!, new RegExp(`^In the frame of \\d${fixed}\\. `));
+  await tab.close();
+  const given = join(source, "build/web/poses_given.tsv");
+  writeFileSync(given, `map\tx\ty\ttheta\n${examples[0]}\t100\t50\t0\n`);
+  const world = await open(mergeInto("world", examples, "--init", given, "--fix", examples[0]));
+  await world.page.click("#tab-transforms");
+  await world.settled();
+  assert.match((await world.page.textContent("#panel-transforms .frame"))!, /^In the frame in which poses were given, which is also that of/);
+  await world.close();
 });
 
 test("without a clipboard the page copies by selection", async () => {

@@ -44,9 +44,10 @@ export function announce(text: string): void {
   requestAnimationFrame(() => (live.textContent = text));
 }
 
-/** Offers text as a file. */
-export function download(fileName: string, text: string): void {
-  const url = URL.createObjectURL(new Blob([text], { type: "text/plain;charset=utf-8" }));
+/** Offers text, or data of any kind, as a file. */
+export function download(fileName: string, content: string | Blob): void {
+  const blob = typeof content === "string" ? new Blob([content], { type: "text/plain;charset=utf-8" }) : content;
+  const url = URL.createObjectURL(blob);
   const link = h("a", { href: url, download: fileName });
   document.body.append(link);
   link.click();

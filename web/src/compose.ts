@@ -15,7 +15,7 @@ export interface Layer {
 
 /** Everything that is drawn from cells. */
 export interface Picture {
-  /** The fused map, in the scene's frame, below the others. */
+  /** The fused map, in the scene's frame, over the others: at an opacity of 1 nothing is seen of them. */
   merged: { grid: Grid; opacity: number } | null;
   layers: Layer[];
   /** How strongly what the layers agree and disagree on is marked, 0 to 1. */
@@ -154,13 +154,13 @@ function mark(out: Uint8ClampedArray, walls: number, frees: number, pixel: numbe
 export function paint(picture: Picture, square: Square): Uint8ClampedArray<ArrayBuffer> {
   const count = square.pixels * square.pixels;
   const out = new Uint8ClampedArray(4 * count);
-  if (picture.merged && picture.merged.opacity > 0) {
-    const { grid, opacity } = picture.merged;
-    sample(grid, identity, square, (pixel, cell) => {
-      const [red, green, blue] = cell === Cell.occupied ? ink : white;
-      over(out, 4 * pixel, red, green, blue, opacity);
-    });
-  }
+  if (!picture.merged || picture.merged.opacity < 1) paintLayers(picture, square, out);
+  if (picture.merged && picture.merged.opacity > 0) cover(picture.merged, square, out);
+  return out;
+}
+
+function paintLayers(picture: Picture, square: Square, out: Uint8ClampedArray): void {
+  const count = square.pixels * square.pixels;
   const votes = emptyVotes(count);
   const visible = picture.layers.filter((layer) => layer.opacity > 0);
   for (const layer of visible) add(votes, layer, square);
@@ -170,5 +170,15 @@ export function paint(picture: Picture, square: Square): Uint8ClampedArray<Array
     layOver(out, votes.wallColor, votes.wallOpacity, pixel);
     if (picture.agreement > 0) mark(out, votes.walls[pixel], votes.frees[pixel], pixel, picture.agreement);
   }
-  return out;
+}
+
+/** Lays a map over what `out` shows; where it knows nothing, that fades as well. */
+function cover({ grid, opacity }: { grid: Grid; opacity: number }, square: Square, out: Uint8ClampedArray): void {
+  const known = new Uint8Array(square.pixels * square.pixels);
+  sample(grid, identity, square, (pixel, cell) => {
+    const [red, green, blue] = cell === Cell.occupied ? ink : white;
+    over(out, 4 * pixel, red, green, blue, opacity);
+    known[pixel] = 1;
+  });
+  for (let pixel = 0; pixel < known.length; pixel++) if (known[pixel] === 0) out[4 * pixel + 3] *= 1 - opacity;
 }

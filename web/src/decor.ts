@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { fixed } from "./numbers";
+import { type Ruler, lengthOf } from "./ruler";
 import { type Viewport, roundStep, toScreen, visibleBox } from "./viewport";
 
 /** Colours of what is drawn over maps, as the page's style has them. */
@@ -105,6 +106,36 @@ export function drawScaleBar(context: CanvasRenderingContext2D, view: Viewport, 
   context.textAlign = "center";
   context.textBaseline = "bottom";
   label(context, colors, `${metres < 1 ? fixed(metres, decimalsOf(metres)) : metres} m`, right - length / 2, bottom - 4);
+  context.restore();
+}
+
+/** What is measured: a line with its length. */
+export function drawRuler(context: CanvasRenderingContext2D, view: Viewport, colors: DecorColors, ruler: Ruler): void {
+  if (!ruler.from) return;
+  const from = toScreen(view, ruler.from);
+  const to = toScreen(view, ruler.to ?? ruler.from);
+  context.save();
+  context.beginPath();
+  context.moveTo(from.x, from.y);
+  context.lineTo(to.x, to.y);
+  strokeOnHalo(context, colors, 2, 5);
+  for (const end of [from, to]) {
+    context.beginPath();
+    context.arc(end.x, end.y, 4, 0, 2 * Math.PI);
+    strokeOnHalo(context, colors, 2, 5);
+  }
+  context.font = "bold 13px system-ui, sans-serif";
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  const pixels = Math.hypot(to.x - from.x, to.y - from.y);
+  if (pixels > 12) {
+    // Beside the middle of the line, on its upper side, as far off as the text is wide there.
+    const text = lengthOf(ruler);
+    const side = to.x >= from.x ? 1 : -1;
+    const across = { x: (side * (to.y - from.y)) / pixels, y: (side * (from.x - to.x)) / pixels };
+    const off = 8 + 6 * Math.abs(across.y) + (context.measureText(text).width / 2) * Math.abs(across.x);
+    label(context, colors, text, (from.x + to.x) / 2 + off * across.x, (from.y + to.y) / 2 + off * across.y);
+  }
   context.restore();
 }
 

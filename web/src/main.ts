@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+import { announce, download } from "./clipboard";
 import { h, replace } from "./dom";
 import { type Grid, unpack } from "./grid";
 import { helpDialog } from "./help";
+import { type Icon, icon } from "./icons";
 import { fixed } from "./numbers";
 import { HandPanel } from "./panel_hand";
 import { JoinsPanel } from "./panel_joins";
 import { LayersPanel } from "./panel_layers";
 import { TransformsPanel } from "./panel_transforms";
 import { type PackedGrid, type Report, summary } from "./report";
+import { describeRuler } from "./ruler";
 import { type SceneId, firstScene } from "./scene";
 import { compose } from "./se2";
+import { SharedState } from "./shared_state";
 import { Stage } from "./stage";
 import { StageInput } from "./stage_input";
 import { State } from "./state";
@@ -42,6 +46,22 @@ function scenePicker(state: State): HTMLElement {
   return h("label", { class: "scene-picker" }, "Showing ", select);
 }
 
+/** The maps over each other, or what they were merged into: one click from everywhere. */
+function mergedSwitch(state: State, toggle: () => void): HTMLElement | null {
+  if (state.report.components.length === 0) return null;
+  const button = (label: string, isMerged: boolean) => h("button", {
+    type: "button", "data-merged": String(isMerged), click: () => {
+      if (isShown() !== isMerged) toggle();
+    },
+  }, label);
+  const buttons = [button("Maps", false), button("Merged map", true)];
+  const isShown = () => state.merged.visible && state.scene.component !== null;
+  const follow = () => buttons.forEach((one, i) => one.setAttribute("aria-pressed", String(isShown() === (i === 1))));
+  for (const topic of ["looks", "scene"] as const) state.on(topic, follow);
+  follow();
+  return h("div", { class: "segments", role: "group", "aria-label": "What is drawn" }, ...buttons);
+}
+
 function cursorReading(state: State): HTMLElement {
   const element = h("output", { class: "cursor", id: "cursor" });
   state.on("cursor", () => {
@@ -51,15 +71,54 @@ function cursorReading(state: State): HTMLElement {
   return element;
 }
 
-function stageButtons(stage: Stage, help: HTMLDialogElement): HTMLElement {
-  const button = (label: string, text: string, click: () => void) =>
-    h("button", { type: "button", "aria-label": label, title: label, click }, text);
+function rulerReading(state: State): HTMLElement {
+  const element = h("output", { class: "measured", id: "measured" });
+  state.on("ruler", () => {
+    element.textContent = state.ruler ? describeRuler(state.ruler) : "";
+  });
+  return element;
+}
+
+interface StageActions {
+  toggleRuler(): void;
+  savePicture(): void;
+  copyLink(): void;
+  help(): void;
+}
+
+function stageButtons(stage: Stage, state: State, actions: StageActions): HTMLElement {
+  const button = (label: string, picture: Icon, click: () => void) =>
+    h("button", { type: "button", "aria-label": label, title: label, click }, icon(picture));
+  const ruler = button("Measure", "ruler", actions.toggleRuler);
+  ruler.setAttribute("aria-pressed", "false");
+  state.on("ruler", () => {
+    ruler.setAttribute("aria-pressed", String(state.ruler !== null));
+    stage.canvas.classList.toggle("measuring", state.ruler !== null);
+  });
   return h("div", { class: "stage-buttons" },
-    button("Zoom in", "+", () => stage.zoom(1.5)),
-    button("Zoom out", "−", () => stage.zoom(1 / 1.5)),
-    button("Show all", "⤢", () => stage.fit()),
-    button("Metre grid", "#", () => stage.toggleGrid()),
-    button("Keys", "?", () => help.showModal()));
+    button("Zoom in", "plus", () => stage.zoom(1.5)),
+    button("Zoom out", "minus", () => stage.zoom(1 / 1.5)),
+    button("Show all", "all", () => stage.fit()),
+    button("Metre grid", "grid", () => stage.toggleGrid()),
+    ruler,
+    button("Save what is seen as a PNG", "picture", actions.savePicture),
+    button("Copy a link to this view", "link", actions.copyLink),
+    button("Keys", "help", actions.help));
+}
+
+/** Says what was done, for a moment. */
+function notice(): { element: HTMLElement; say(text: string): void } {
+  const element = h("div", { class: "notice", "aria-hidden": "true" });
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  return {
+    element,
+    say: (text) => {
+      announce(text);
+      element.textContent = text;
+      clearTimeout(timer);
+      timer = setTimeout(() => (element.textContent = ""), 2500);
+    },
+  };
 }
 
 /** The grids one after the other, those that are seen first first; what they were unpacked from is let go. */
@@ -95,6 +154,7 @@ function build(report: Report): void {
   const state = new State(report);
   const stage = new Stage(state);
   const help = helpDialog();
+  const said = notice();
   const hand = new HandPanel(state, () => stage.view.center);
   const take = (map: number) => {
     tabs.select("hand");
@@ -127,21 +187,54 @@ function build(report: Report): void {
   ], (id) => {
     if (id !== "hand" && state.handled !== null) state.letGo();
   });
+  const toggleMerged = () => {
+    if (state.scene.component === null) {
+      // What is seen has no merged map: the one that was seen last, or else the first.
+      state.merged.visible = false;
+      state.show(state.whole.kind === "component" ? state.whole : firstScene(report));
+    }
+    layers.toggle(state.merged);
+  };
+  const toggleRuler = () => {
+    state.measure(state.ruler ? null : { from: null, to: null, open: false });
+    stage.canvas.focus();
+  };
+  const shared = new SharedState(state, stage, tabs);
+  const actions: StageActions = {
+    toggleRuler,
+    savePicture: () => void stage.picture().then((png) => {
+      if (png) download(`${fileNameOf(state.scene.title)}.png`, png);
+      said.say(png ? "Picture saved" : "The browser could not make a picture");
+    }),
+    copyLink: () => void shared.copyLink().then((copied) => said.say(copied ? "Link copied" : "The link is in the address bar")),
+    help: () => help.showModal(),
+  };
   new StageInput(stage, state, {
     toggleMap: (map) => layers.toggleMap(map),
-    toggleMerged: () => layers.toggle(state.merged),
+    toggleMerged: () => {
+      if (report.components.length > 0) toggleMerged();
+    },
     toggleAgreement: () => layers.toggle(state.agreement),
+    toggleRuler,
     help: () => help.showModal(),
     refine: () => void hand.refine(),
   });
   replace(document.getElementById("app")!,
     h("header", {},
-      h("h1", {}, "Merged maps"), h("p", { id: "summary" }, summary(report)), scenePicker(state)),
+      h("h1", {}, "Merged maps"), h("p", { id: "summary" }, summary(report)), mergedSwitch(state, toggleMerged), scenePicker(state)),
     h("main", {},
-      h("div", { class: "stage" }, stage.canvas, stageButtons(stage, help), cursorReading(state)),
+      h("div", { class: "stage" }, stage.canvas, stageButtons(stage, state, actions), said.element,
+        h("div", { class: "readings" }, rulerReading(state), cursorReading(state))),
       h("aside", {}, tabs.element)),
     help);
+  shared.restore(location.hash);
+  window.addEventListener("hashchange", () => shared.restore(location.hash));
   void unpackAll(state);
+}
+
+/** A title as a file may be called. */
+function fileNameOf(title: string): string {
+  return title.replace(/\.(yaml|yml)$/, "").replace(/[^A-Za-z0-9_.-]+/g, "_").replace(/^[._]+/, "") || "map";
 }
 
 /** The merged map that a map is part of, or else the map by itself. */

@@ -4,18 +4,22 @@ import { announce, copyButton, download } from "./clipboard";
 import { h, replace } from "./dom";
 import { refine } from "./engine";
 import { asInitialPoses, mergeCommand } from "./formats";
+import { Gauge } from "./gauge";
 import type { Grid } from "./grid";
-import { degrees, fixed, percent, probability, radians } from "./numbers";
+import { degrees, fixed, probability, radians } from "./numbers";
+import { type Place, placesOf } from "./places";
 import type { Placed } from "./scene";
 import { Scorer } from "./score";
 import { type SE2, normalizeAngle } from "./se2";
 import type { State } from "./state";
 import { flat } from "./text";
+import { type Yardstick, laid, yardstickOf } from "./yardstick";
 
 const fileName = "poses.tsv";
 /** How well the poses of maps that were not moved are taken to be known, if the merge does not say; and never better than the last. */
 const keptSd = { position: 0.1, theta: 0.01 };
 const leastSd = { position: 0.02, theta: 0.002 };
+const yardstickBudget = 4; // milliseconds a frame
 /** Of those that were, in metres and degrees, unless the user knows better. */
 const handSd = { position: 0.3, degrees: 2 };
 
@@ -32,7 +36,8 @@ export class HandPanel {
   private readonly middleOfView: () => { x: number; y: number };
   private readonly picker = h("select", { id: "hand-map", change: () => this.pick() });
   private readonly tools = h("div");
-  private readonly scoreLine = h("p", { class: "score", id: "hand-score" });
+  private readonly gauge = new Gauge();
+  private readonly placeLine = h("p", { class: "soft", id: "hand-place" });
   private readonly answer = h("p", { class: "answer", role: "status" });
   private readonly saving = h("div", { class: "saving" });
   private readonly sure = h("input", {
@@ -47,6 +52,12 @@ export class HandPanel {
   private toolsOf: number | null = null;
   private scorers = new Map<number, Scorer>();
   private scoring = 0;
+  /** What the score is held against, as far as it is worked out, and for which maps and places. */
+  private yardstick: Generator<undefined, Yardstick> | null = null;
+  private yardstickOf = "";
+  /** Where comparisons have the map in hand, and which of them it was laid at; -1: none. */
+  private places: Place[] = [];
+  private place = -1;
   /** Whether the engine is at work on a pose. */
   private isRefining = false;
 
@@ -63,12 +74,35 @@ export class HandPanel {
     this.rebuild();
   }
 
-  /** Takes a map in hand, and brings it into the scene if it is not there. */
+  /** Takes a map in hand; one that is not in the scene comes to where its best comparison has it. */
   take(map: number): void {
+    const middle = this.state.grids[map]?.middle() ?? { x: 0, y: 0 };
     const to = this.middleOfView();
-    const from = this.state.grids[map]?.middle() ?? { x: 0, y: 0 };
     this.answer.textContent = "";
-    this.state.take(map, { x: to.x - from.x, y: to.y - from.y, theta: 0 });
+    this.places = placesOf(this.state.report, map, middle, this.others(map));
+    this.place = this.state.poseOf(map) ? -1 : 0;
+    this.state.take(map, this.places[0]?.T_scene_map ?? { x: to.x - middle.x, y: to.y - middle.y, theta: 0 });
+  }
+
+  /** Lays the map in hand where another comparison, or another way of the same one, has it. */
+  private toNextPlace(): void {
+    const { handled } = this.state;
+    if (handled === null || this.places.length === 0) return;
+    this.place = (this.place + 1) % this.places.length;
+    this.state.put(handled, this.places[this.place].T_scene_map);
+  }
+
+  /** Which of the places the map in hand lies at, if it has not been moved from there. */
+  private tellPlace(map: number | null, pose: SE2 | null): void {
+    const place = this.places[this.place];
+    const isThere = pose !== null && JSON.stringify(pose) === JSON.stringify(place?.T_scene_map);
+    const isNew = map !== null && !this.state.byHand().has(map) && !this.state.scene.placed.some((placed) => placed.map === map);
+    if (isThere) {
+      replace(this.placeLine, `Place ${this.place + 1} of ${this.places.length} that comparisons found: with `,
+        mapLabel(this.state, place.with), `, probability ${probability(place.probability)}.`);
+    } else {
+      replace(this.placeLine, isNew && !place ? "No comparison says where it may lie: it starts in the middle of the view." : null);
+    }
   }
 
   /** Asks the engine to climb from where the map in hand lies. */
@@ -126,6 +160,7 @@ export class HandPanel {
     for (const input of this.inputs) {
       if (pose && document.activeElement !== input.element) input.element.value = fixed(input.get(pose), 3);
     }
+    this.tellPlace(handled, pose);
     if (this.scoring === 0) this.scoring = requestAnimationFrame(() => this.score());
     this.updateSaving();
   }
@@ -147,12 +182,16 @@ export class HandPanel {
     replace(this.tools,
       h("p", { class: "soft" }, "Drag the map; turn it by its handle, or drag with Shift. Keys: arrows by a cell, q and e by half a degree, with Shift more."),
       h("div", { class: "pose-inputs" }, ...this.inputs.map((input, i) => h("label", {}, labels[i], input.element))),
-      this.scoreLine,
+      this.placeLine, this.gauge.element,
       h("div", { class: "buttons" },
         h("button", {
           type: "button", id: "hand-refine", disabled: !live, click: () => void this.refine(),
           title: live ? "Climb to the best fit near here" : "Needs a running gridmerge: gridmerge view DIR",
         }, "Refine from here"),
+        h("button", {
+          type: "button", id: "hand-next", disabled: this.places.length === 0, click: () => this.toNextPlace(),
+          title: "Lay it where a comparison has it, the most probable place first",
+        }, this.places.length > 1 ? "Next place" : "Likely place"),
         h("button", { type: "button", click: () => this.leave(() => this.state.putBack(map)) }, "Put back"),
         h("button", { type: "button", click: () => this.leave(() => this.state.letGo()) }, "Let go")),
       live ? null : h("p", { class: "soft" }, "To refine with the engine, open this folder with ", h("code", {}, "gridmerge view DIR"), "."),
@@ -184,14 +223,36 @@ export class HandPanel {
     const inHand = this.state.inHand();
     if (!inHand) return;
     const { map, grid, pose } = inHand;
-    const others = this.others(map).flatMap((placed) => {
-      const other = this.state.grids[placed.map];
-      return other ? [{ grid: other, pose: placed.T_scene_map }] : [];
+    const others = laid(this.state.grids, this.others(map));
+    const scorer = this.scorerOf(map, grid);
+    this.gauge.show(scorer.score(pose, others));
+    // Worked out once for the same maps at the same places.
+    const key = JSON.stringify([map, this.others(map), this.state.grids.map((known) => known !== null)]);
+    if (key === this.yardstickOf) return;
+    this.yardstickOf = key;
+    const isRunning = this.yardstick !== null;
+    this.yardstick = yardstickOf(scorer, grid, others, laid(this.state.grids, this.members()));
+    this.gauge.hold(null);
+    if (!isRunning) this.workOutYardstick();
+  }
+
+  /** The maps of the scene as they were merged. */
+  private members(): Placed[] {
+    return this.state.scene.component === null ? [] : this.state.scene.placed;
+  }
+
+  /** A few milliseconds a frame. */
+  private workOutYardstick(): void {
+    requestAnimationFrame(() => {
+      const until = performance.now() + yardstickBudget;
+      while (this.yardstick && performance.now() < until) {
+        const step = this.yardstick.next();
+        if (!step.done) continue;
+        this.yardstick = null;
+        this.gauge.hold(step.value);
+      }
+      if (this.yardstick) this.workOutYardstick();
     });
-    const score = this.scorerOf(map, grid).score(pose, others);
-    this.scoreLine.textContent = score
-      ? `Walls met ${percent(score.wallsMet)} · cells equal ${percent(score.agreement)} · overlap ${percent(score.overlap)}`
-      : "Nothing in common with the other maps here.";
   }
 
   private scorerOf(map: number, grid: Grid): Scorer {

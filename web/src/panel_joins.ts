@@ -1,33 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-import { badge, mapLabel } from "./badge";
+import { mapLabel } from "./badge";
 import { h, replace } from "./dom";
 import { describe } from "./formats";
-import { joinGraph, joinTitle } from "./join_graph";
+import { joinGraph } from "./join_graph";
+import { joinMatrix } from "./join_matrix";
+import { JoinTable } from "./join_table";
+import { ownVerdict, sayOffset, sayWitnesses } from "./join_words";
 import { fixed, percent, probability } from "./numbers";
-import { type Join, type Outcome, isUsed, outcomeMeaning, outcomes } from "./report";
+import { type Join, type Outcome, isUsed, outcomeMeaning, outcomes, reasons } from "./report";
 import type { SE2 } from "./se2";
 import type { State } from "./state";
 import { count } from "./text";
+import { mergedPose, offsetOf, witnessesOf } from "./witnesses";
 
 /** More joins than this crowd the graph: those that were not used are then hidden at first. */
 const crowded = 15;
+/** Of more maps than this, all joined to each other, a graph is a tangle: then there is a matrix. */
+const mostInGraph = 8;
 
-const reasons: Record<string, string> = {
-  ambiguous: "another way to lay them fits nearly as well",
-  contradiction: "too much of what both know contradicts",
-  too_little_overlap: "too little in common",
-  several: "several things speak against it",
-  nothing_to_compare: "nothing to compare",
-  contradicts_others: "contradicts the other maps",
-};
-
-/** Every comparison that the merge made: as a graph, as a table, and one of them in full. */
+/** Every comparison that the merge made: as a graph or a matrix, as a table, and one of them in full. */
 export class JoinsPanel {
   readonly element = h("div", { class: "panel", id: "panel-joins" });
   private readonly state: State;
   private readonly chosen = h("section", { class: "chosen-join" });
   private readonly graph = h("div");
-  private readonly table = h("div", { class: "table" });
+  private readonly table: JoinTable;
   private readonly shown: Set<Outcome>;
   private readonly placeByHand: (map: number, on: number, T_on_map: SE2) => void;
 
@@ -37,9 +34,11 @@ export class JoinsPanel {
     const all = state.report.joins.length <= crowded;
     this.shown = new Set(outcomes.filter((outcome) => all || outcome !== "refused"));
     if (state.report.joins.every((join) => !this.shown.has(join.outcome))) this.shown.add("refused");
-    replace(this.element, this.chosen, this.filters(), this.graph, this.table);
-    state.on("scene", () => this.update());
-    state.on("colors", () => this.update());
+    this.table = new JoinTable(state, this.shown, (join) => this.goTo(join));
+    replace(this.element, this.chosen, this.filters(), this.graph, this.table.element);
+    for (const topic of ["scene", "colors"] as const) state.on(topic, () => this.update());
+    // Distances are told at a map's middle, which is known with its cells.
+    state.on("grids", () => this.showChosen());
     this.update();
   }
 
@@ -61,61 +60,28 @@ export class JoinsPanel {
   }
 
   private update(): void {
-    const choose = (join: number) => this.choose(join);
-    replace(this.graph, joinGraph(this.state, this.shown, choose));
-    replace(this.table, this.makeTable());
+    const isMatrix = this.state.report.maps.length > mostInGraph;
+    const drawing = (isMatrix ? joinMatrix : joinGraph)(this.state, this.shown, (join) => this.goTo(join));
+    replace(this.graph, drawing, isMatrix ? h("p", { class: "soft" },
+      "A square for each two maps: full if accepted, hollow if rescued, broken if not used; the larger, the more they have in common.") : null);
+    this.table.update();
     this.showChosen();
   }
 
   /** A hypothesis of -1: as the merge has it, if that is none of the two maps' own. */
   private choose(join: number, hypothesis = mergedHypothesis(this.state.report.joins[join])): void {
     this.state.show({ kind: "join", join, hypothesis });
-    this.chosen.scrollIntoView({ block: "nearest" });
+  }
+
+  /** What is said of the join stands at the top: most of it is longer than the panel. */
+  private goTo(join: number): void {
+    this.choose(join);
+    this.chosen.scrollIntoView({ block: "start" });
   }
 
   private goBack(join: number): void {
     this.state.show(this.state.whole);
-    this.focusRow(join, true);
-  }
-
-  /** The table has been made anew, and the focus is lost with the old one. */
-  private focusRow(join: number, scroll: boolean): void {
-    this.table.querySelector<HTMLElement>(`button[data-join="${join}"]`)?.focus({ preventScroll: !scroll });
-  }
-
-  private makeTable(): HTMLElement {
-    const { joins } = this.state.report;
-    const rows = joins
-      .map((join, index) => ({ join, index }))
-      .filter(({ join }) => this.shown.has(join.outcome))
-      .sort((a, b) => outcomes.indexOf(a.join.outcome) - outcomes.indexOf(b.join.outcome) ||
-        b.join.probability - a.join.probability)
-      .map(({ join, index }) => this.row(join, index));
-    if (rows.length === 0) return h("p", { class: "soft" }, "No joins of these kinds.");
-    return h("table", {},
-      h("thead", {}, h("tr", {}, ...["Maps", "Outcome", "Probability", "Index", "Overlap"].map(
-        (head, i) => h("th", {
-          class: i > 1 ? "number" : "", scope: "col", title: head === "Index" ? "acceptance index" : head,
-        }, head)))),
-      h("tbody", {}, ...rows));
-  }
-
-  private row(join: Join, index: number): HTMLElement {
-    const { id } = this.state.scene;
-    const isChosen = id.kind === "join" && id.join === index;
-    const button = h("button", {
-      type: "button", class: "link", title: joinTitle(this.state, join), "aria-pressed": String(isChosen), "data-join": index,
-      "aria-label": `Show ${joinTitle(this.state, join)}`, click: () => {
-        this.choose(index);
-        this.focusRow(index, false);
-      },
-    }, badge(this.state, join.fixed), " – ", badge(this.state, join.moving));
-    return h("tr", { class: isChosen ? "chosen" : "" },
-      h("td", {}, button),
-      h("td", { class: `outcome ${join.outcome}` }, join.outcome),
-      h("td", { class: "number" }, probability(join.probability)),
-      h("td", { class: "number" }, fixed(join.acceptance_index, 3)),
-      h("td", { class: "number" }, percent(join.overlap)));
+    this.table.focus(join, true);
   }
 
   private showChosen(): void {
@@ -126,10 +92,11 @@ export class JoinsPanel {
       return;
     }
     const join = this.state.report.joins[id.join];
+    const reason = join.reason ? ` (${reasons[join.reason] ?? join.reason})` : "";
     replace(this.chosen,
       h("h3", {}, mapLabel(this.state, join.fixed), h("span", { class: "soft" }, " and "), mapLabel(this.state, join.moving)),
-      h("p", {}, h("strong", { class: `outcome ${join.outcome}` }, join.outcome), `: ${outcomeMeaning[join.outcome]}`,
-        join.reason ? ` (${reasons[join.reason] ?? join.reason})` : null, "."),
+      h("p", {}, h("strong", { class: `outcome ${join.outcome}` }, join.outcome), `: ${outcomeMeaning[join.outcome]}${reason}.`),
+      join.outcome === "rescued" || join.outcome === "rejected" ? this.explain(join) : null,
       figures(join, id.hypothesis), this.hypotheses(join, id.join, id.hypothesis),
       h("div", { class: "buttons" },
         h("button", { type: "button", class: "back", click: () => this.goBack(id.join) }, "Back to the whole"),
@@ -139,10 +106,22 @@ export class JoinsPanel {
         }, "Place it so by hand")));
   }
 
+  /** Why the merge decides otherwise than the two maps by themselves. */
+  private explain(join: Join): HTMLElement {
+    const merged = mergedHypothesis(join);
+    const way = join.hypotheses.length === 0 ? null : merged >= 0 ? `way ${merged + 1}` : "a way that is none of theirs";
+    const decision = join.outcome === "rescued" ? "The merge lays them in" : "The merge does not lay them in";
+    return h("ul", { class: "explanation" },
+      h("li", {}, ownVerdict(join)),
+      h("li", {}, way === null ? null : `${decision} ${way}, whose own probability is ${probability(join.probability)}.`),
+      h("li", {}, sayWitnesses(this.state, witnessesOf(this.state.report, join, this.middleOf(join.moving)))));
+  }
+
   private hypotheses(join: Join, index: number, current: number): HTMLElement | null {
     if (join.hypotheses.length === 0) return null;
     const merged = mergedHypothesis(join);
-    const option = (hypothesis: number, ...label: (string | HTMLElement)[]) => {
+    const T_merged = mergedPose(this.state.report, join);
+    const option = (hypothesis: number, transform: SE2, ...label: (string | HTMLElement)[]) => {
       const radio = h("input", {
         type: "radio", name: "hypothesis", value: hypothesis, change: () => {
           this.choose(index, hypothesis);
@@ -150,16 +129,19 @@ export class JoinsPanel {
         },
       });
       radio.checked = hypothesis === current;
-      return h("label", { class: "hypothesis" }, radio, h("span", {}, ...label));
+      const off = T_merged ? `, ${sayOffset(offsetOf(transform, T_merged, this.middleOf(join.moving)))} off` : null;
+      return h("label", { class: "hypothesis" }, radio, h("span", {}, ...label, off,
+        h("br"), h("span", { class: "soft" }, describe(transform))));
     };
     return h("fieldset", { class: "hypotheses" },
-      h("legend", {}, "Ways in which they may lie"),
-      merged >= 0 || !isUsed(join) ? null
-        : option(-1, h("strong", {}, "as merged"), h("br"), h("span", { class: "soft" }, describe(join.transform))),
-      ...join.hypotheses.map((hypothesis, i) => option(i,
-        `${i + 1}: probability ${probability(hypothesis.probability)}, score ${fixed(hypothesis.score, 0)} nats`,
-        i === merged && isUsed(join) ? h("strong", {}, " (as merged)") : "",
-        h("br"), h("span", { class: "soft" }, describe(hypothesis.transform)))));
+      h("legend", {}, T_merged ? "Ways, and how far off the merged map" : "Ways in which they may lie"),
+      merged >= 0 || !isUsed(join) ? null : option(-1, join.transform, h("strong", {}, "as merged")),
+      ...join.hypotheses.map(({ transform, probability: own }, i) => option(i, transform,
+        `${i + 1}: probability ${probability(own)}`, i === merged && isUsed(join) ? h("strong", {}, " (as merged)") : "")));
+  }
+
+  private middleOf(map: number): { x: number; y: number } {
+    return this.state.grids[map]?.middle() ?? { x: 0, y: 0 };
   }
 }
 
@@ -169,8 +151,9 @@ function mergedHypothesis(join: Join): number {
   return join.hypotheses.findIndex((hypothesis) => JSON.stringify(hypothesis.transform) === same);
 }
 
-/** The engine counts cells for the best hypothesis alone. */
+/** The engine counts cells for the pose that the merge uses, or would use, alone. */
 function figures(join: Join, shown: number): HTMLElement {
+  const counted = mergedHypothesis(join);
   const pairs: [string, string][] = [
     ["Probability", probability(shown < 0 ? join.probability : join.hypotheses[shown].probability)],
     ["Acceptance index", fixed(join.acceptance_index, 4)],
@@ -179,6 +162,7 @@ function figures(join: Join, shown: number): HTMLElement {
     ["Overlap", percent(join.overlap)],
   ];
   const list = h("dl", { class: "figures" }, ...pairs.flatMap(([term, value]) => [h("dt", {}, term), h("dd", {}, value)]));
-  const isOfBest = shown === 0 || join.hypotheses.length === 0;
-  return h("div", {}, list, isOfBest ? null : h("p", { class: "soft" }, "Index, cells and overlap are those of the first hypothesis."));
+  const whose = counted < 0 ? "the way that is merged" : `way ${counted + 1}`;
+  return h("div", {}, list, shown === counted || join.hypotheses.length === 0 ? null
+    : h("p", { class: "soft" }, `Index, cells and overlap are those of ${whose}.`));
 }

@@ -21,6 +21,7 @@ export class LayersPanel {
   private readonly placeByHand: (map: number) => void;
   private readings = new Map<number, HTMLElement>();
   private readonly boxes = new Map<HTMLInputElement, Look>();
+  private readonly sliders = new Map<HTMLInputElement, Look>();
   private shownMaps = "";
 
   constructor(state: State, actions: { show(map: number): void; placeByHand(map: number): void }) {
@@ -64,7 +65,8 @@ export class LayersPanel {
     this.shownMaps = key;
     const { component } = state.scene;
     replace(this.ownRows,
-      component === null ? null : this.ownRow("merged", "Merged map", state.merged, null, "m"),
+      component === null ? null : this.ownRow("merged", "Merged map", state.merged,
+        h("span", { class: "legend soft" }, "Covers the maps that it is made of."), "m"),
       maps.length < 2 ? null : this.ownRow("agreement", "Agreement", state.agreement, h("span", { class: "legend" },
         legendItem(ink, "walls in two maps or more"), legendItem(white, "floor in two maps or more"),
         legendItem(disagreement, "they contradict each other"),
@@ -114,6 +116,7 @@ export class LayersPanel {
         this.state.changed("looks");
       },
     });
+    this.sliders.set(slider, look);
     return slider;
   }
 
@@ -122,11 +125,18 @@ export class LayersPanel {
       if (box.isConnected) box.checked = look.visible;
       else this.boxes.delete(box);
     }
+    for (const [slider, look] of this.sliders) {
+      if (slider.isConnected) slider.value = String(100 * look.opacity);
+      else this.sliders.delete(slider);
+    }
   }
 
   private recolor(): void {
     for (const row of this.element.querySelectorAll<HTMLElement>("[data-map]")) {
-      row.querySelector(".badge")?.replaceWith(badge(this.state, Number(row.dataset.map)));
+      const map = Number(row.dataset.map);
+      row.querySelector(".badge")?.replaceWith(badge(this.state, map));
+      const picker = row.querySelector<HTMLInputElement>("input[type=color]");
+      if (picker) picker.value = this.state.looks[map].color;
     }
   }
 

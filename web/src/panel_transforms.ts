@@ -36,9 +36,10 @@ export class TransformsPanel {
     const { scene } = state;
     const rows = state.placed().flatMap(({ map }) => this.rows(map));
     replace(this.element,
-      h("p", { class: "soft" }, "A transform takes a point of the map's frame to ",
-        scene.component !== null && state.report.components[scene.component].frame === null
-          ? "the frame in which poses were given" : h("span", {}, "the frame of ", h("bdi", {}, scene.frame)), "."),
+      h("p", { class: "frame" }, "In the frame ",
+        scene.frame === null ? h("strong", {}, "in which poses were given") : h("span", {}, "of ", h("strong", {}, mapLabel(state, scene.frame))),
+        scene.component === null ? "." : h("span", {}, ", which is also that of ", h("bdi", {}, scene.title), "."),
+        h("span", { class: "soft" }, " A transform takes a point of the map's own frame there.")),
       h("div", { class: "table" }, h("table", {},
         h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Map"),
           ...["x [m]", "y [m]", "θ [rad]"].map((head) => h("th", { class: "number", scope: "col" }, head)))),
@@ -57,7 +58,7 @@ export class TransformsPanel {
         number(fixed(pose.x, 3)), number(fixed(pose.y, 3)), number(fixed(pose.theta, 5))),
       h("tr", { class: "more" }, h("td", { colspan: 4 }, h("div", { class: "buttons" },
         ...this.buttons(flat(this.state.names[map]), () => [map]),
-        h("span", { class: "soft" }, `${fixed(degrees(pose.theta), 2)}°`, byHand ? ", placed by hand" : certainty(this.memberOf(map)))))),
+        h("span", { class: "soft" }, `${fixed(degrees(pose.theta), 2)}°`, byHand ? ", placed by hand" : this.certainty(map))))),
     ];
   }
 
@@ -66,24 +67,26 @@ export class TransformsPanel {
     return component === null ? undefined : this.state.report.components[component].members.find((m) => m.map === map);
   }
 
+  private certainty(map: number): string {
+    const member = this.memberOf(map);
+    const parts: string[] = [];
+    if (member?.probability != null) parts.push(`probability ${probability(member.probability)}`);
+    if (map === this.state.scene.frame) parts.push("holds the frame");
+    else if (member?.sd) parts.push(`± ${fixed(member.sd.position, 3)} m, ± ${fixed(degrees(member.sd.theta), 2)}°`);
+    return parts.map((part) => `, ${part}`).join("");
+  }
+
   private buttons(whose: string, maps: () => number[]): HTMLButtonElement[] {
     const { report, scene } = this.state;
     const poses = (): NamedPose[] => maps().map((map) => ({ name: report.maps[map].name, transform: this.state.poseOf(map)! }));
+    const frame = scene.frame === null ? "world" : report.maps[scene.frame].name;
     // The frame that all are in is one more, whatever maps are called.
     const [parent, ...ids] = frameIds([scene.component === null ? "scene" : scene.title, ...report.maps.map((map) => map.name)]);
     const children = () => maps().map((map) => ids[map]);
     return [
-      copyButton("YAML", () => asYaml(scene.frame, poses()), `Copy ${whose} as YAML`),
-      copyButton("JSON", () => asJson(scene.frame, poses()), `Copy ${whose} as JSON`),
+      copyButton("YAML", () => asYaml(frame, poses()), `Copy ${whose} as YAML`),
+      copyButton("JSON", () => asJson(frame, poses()), `Copy ${whose} as JSON`),
       copyButton("TF", () => asStaticTransforms(parent, poses(), children()), `Copy ${whose} for static_transform_publisher`),
     ];
   }
-}
-
-function certainty(member: Member | undefined): string {
-  const parts: string[] = [];
-  if (member?.probability != null) parts.push(`probability ${probability(member.probability)}`);
-  if (member?.sd && member.sd.position === 0) parts.push("holds the frame");
-  else if (member?.sd) parts.push(`± ${fixed(member.sd.position, 3)} m, ± ${fixed(degrees(member.sd.theta), 2)}°`);
-  return parts.map((part) => `, ${part}`).join("");
 }

@@ -46,6 +46,15 @@ export const outcomeMeaning: Record<Outcome, string> = {
   refused: "not believed",
 };
 
+export const reasons: Record<string, string> = {
+  ambiguous: "another way to lay them fits nearly as well",
+  contradiction: "too much of what both know contradicts",
+  too_little_overlap: "too little in common",
+  several: "several things speak against it",
+  nothing_to_compare: "nothing to compare",
+  contradicts_others: "contradicts the other maps",
+};
+
 export interface Hypothesis {
   transform: SE2;
   score: number;
@@ -56,7 +65,11 @@ export interface Join {
   fixed: number;
   moving: number;
   outcome: Outcome;
+  /** Why the merge does not use it. */
   reason: string | null;
+  /** What the two maps alone say. */
+  by_themselves: { verdict: "accepted" | "refused"; reason: string | null };
+  /** The pose that the merge uses, or the best hypothesis; the figures below are this pose's. */
   transform: SE2;
   probability: number;
   acceptance_index: number;

@@ -17,8 +17,8 @@ export interface Placed {
 export interface Scene {
   id: SceneId;
   title: string;
-  /** Whose frame coordinates are in: the full name of a map, or "world". */
-  frame: string;
+  /** The map whose frame coordinates are in; null: the world's, in which poses were given. */
+  frame: number | null;
   placed: Placed[];
   /** Index of the component whose fused map belongs to it. */
   component: number | null;
@@ -44,7 +44,7 @@ export function makeScene(report: Report, id: SceneId): Scene {
       return {
         id,
         title: component.file,
-        frame: component.frame === null ? "world" : report.maps[component.frame].name,
+        frame: component.frame,
         placed: component.members.map((member) => ({ map: member.map, T_scene_map: member.transform })),
         component: id.component,
       };
@@ -55,7 +55,7 @@ export function makeScene(report: Report, id: SceneId): Scene {
       return {
         id,
         title: `${names[join.fixed]} and ${names[join.moving]}`,
-        frame: report.maps[join.fixed].name,
+        frame: join.fixed,
         placed: [{ map: join.fixed, T_scene_map: identity }, { map: join.moving, T_scene_map: transform }],
         component: null,
       };
@@ -64,7 +64,7 @@ export function makeScene(report: Report, id: SceneId): Scene {
       return {
         id,
         title: names[id.map],
-        frame: report.maps[id.map].name,
+        frame: id.map,
         placed: [{ map: id.map, T_scene_map: identity }],
         component: null,
       };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { parseColor } from "./color";
 import type { Picture } from "./compose";
-import { type DecorColors, drawAxes, drawCrosshair, drawGrid, drawScaleBar } from "./decor";
+import { type DecorColors, drawAxes, drawCrosshair, drawGrid, drawRuler, drawScaleBar } from "./decor";
 import { h } from "./dom";
 import type { Grid } from "./grid";
 import { placeOf } from "./scene";
@@ -13,11 +13,17 @@ import { type Viewport, boxAround, fit, panned, toScene, zoomed } from "./viewpo
 
 const paintBudget = 9; // milliseconds a frame
 
+/** Where a view looks: the point in its middle, and how many metres its shorter side shows. */
+export interface Aim {
+  center: Point;
+  metres: number;
+}
+
 /** The canvas that shows a scene: what is drawn, and from where it is looked at. */
 export class Stage {
   readonly canvas: HTMLCanvasElement;
   view: Viewport = { width: 1, height: 1, center: { x: 0, y: 0 }, scale: 20 };
-  private gridShown = true;
+  gridShown = true;
   /** Keyboard users point with the middle of the canvas. */
   crosshair = false;
   private readonly state: State;
@@ -29,6 +35,9 @@ export class Stage {
   private ratio = 1;
   private frame = 0;
   private touched = false;
+  private sized = false;
+  /** What is to be looked at as soon as the canvas has a size. */
+  private awaited: Aim | null = null;
   /** Where the cursor is on the canvas. */
   private pixel: Point | null = null;
   /** The picture is to be made again before it is drawn; only for the same place do tiles stand in until then. */
@@ -45,7 +54,7 @@ export class Stage {
     state.on("scene", () => this.arrange());
     state.on("grids", () => this.arrange());
     for (const topic of ["looks", "colors", "hand"] as const) state.on(topic, () => this.recompose());
-    state.on("spotlight", () => this.redraw());
+    for (const topic of ["spotlight", "ruler"] as const) state.on(topic, () => this.redraw());
     new ResizeObserver(() => this.resize()).observe(this.canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
   }
@@ -58,6 +67,26 @@ export class Stage {
     this.touched = false;
   }
 
+  /** Null where the view shows all of the scene, however large it is. */
+  get aim(): Aim | null {
+    const { center, width, height, scale } = this.view;
+    return this.touched ? { center, metres: Math.min(width, height) / scale } : null;
+  }
+
+  /** Null: all of the scene. */
+  lookAt(aim: Aim | null): void {
+    const { width, height } = this.view;
+    this.awaited = this.sized ? null : aim;
+    if (!aim) this.fit();
+    else this.look({ width, height, center: aim.center, scale: Math.min(width, height) / aim.metres });
+  }
+
+  /** What is seen, as a PNG, when all of it is drawn. */
+  picture(): Promise<Blob | null> {
+    this.draw(Infinity);
+    return new Promise((done) => this.canvas.toBlob(done, "image/png"));
+  }
+
   pan(dx: number, dy: number): void {
     this.look(panned(this.view, dx, dy));
   }
@@ -67,7 +96,11 @@ export class Stage {
   }
 
   toggleGrid(): void {
-    this.gridShown = !this.gridShown;
+    this.showGrid(!this.gridShown);
+  }
+
+  showGrid(shown: boolean): void {
+    this.gridShown = shown;
     this.redraw();
   }
 
@@ -78,8 +111,10 @@ export class Stage {
   }
 
   private readCursor(): void {
-    this.state.cursor = this.pixel && toScene(this.view, this.pixel);
-    this.state.changed("cursor");
+    const { state } = this;
+    state.cursor = this.pixel && toScene(this.view, this.pixel);
+    state.changed("cursor");
+    if (state.ruler?.open && state.cursor) state.measure({ ...state.ruler, to: state.cursor });
   }
 
   redraw(): void {
@@ -100,7 +135,9 @@ export class Stage {
     this.canvas.width = Math.round(width * this.ratio);
     this.canvas.height = Math.round(height * this.ratio);
     this.view = { ...this.view, width, height };
-    if (!this.touched) this.fit();
+    this.sized = true;
+    if (this.awaited) this.lookAt(this.awaited);
+    else if (!this.touched) this.fit();
     this.redraw();
   }
 
@@ -159,7 +196,8 @@ export class Stage {
     return { line: of("--grid"), text: of("--ink"), halo: of("--halo"), unknown: of("--unknown") };
   }
 
-  private draw(): void {
+  private draw(budget = paintBudget): void {
+    cancelAnimationFrame(this.frame);
     this.frame = 0;
     if (this.stale !== "no") this.compose();
     const { context, view, ratio } = this;
@@ -167,12 +205,13 @@ export class Stage {
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.fillStyle = colors.unknown;
     context.fillRect(0, 0, this.canvas.width, this.canvas.height);
-    const complete = this.tiles.draw(context, scaledBy(view, ratio), paintBudget);
+    const complete = this.tiles.draw(context, scaledBy(view, ratio), budget);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.drawStamps();
     if (this.gridShown) drawGrid(context, view, colors);
     if (this.gridShown) drawAxes(context, view, colors);
     drawScaleBar(context, view, colors);
+    if (this.state.ruler) drawRuler(context, view, colors, this.state.ruler);
     if (this.crosshair) drawCrosshair(context, view, colors);
     this.canvas.dataset.complete = String(complete);
     if (!complete) this.redraw();

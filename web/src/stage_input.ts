@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 import { radians } from "./numbers";
 import { type Point, apply, moved } from "./se2";
+import { put } from "./ruler";
 import type { Stage } from "./stage";
 import { handleOf, inside, outline } from "./stamp";
 import type { State } from "./state";
 import { toScene, toScreen } from "./viewport";
 
 /** What the pointer that went down does until it goes up. */
-type Grip = "view" | "shift" | "turn";
+type Grip = "view" | "shift" | "turn" | "measure";
 
 const panStep = 60; // pixels
 const zoomStep = 1.3;
+const dragged = 4; // pixels: a pointer that moves less has clicked
 
 /** What the keyboard asks for that is not the stage's own business. */
 export interface KeyActions {
   toggleMap(map: number): void;
   toggleMerged(): void;
   toggleAgreement(): void;
+  toggleRuler(): void;
   help(): void;
   refine(): void;
 }
@@ -28,6 +31,8 @@ export class StageInput {
   private readonly actions: KeyActions;
   private readonly pointers = new Map<number, Point>();
   private grip: Grip = "view";
+  /** Where the pointer went down. */
+  private start: Point = { x: 0, y: 0 };
 
   constructor(stage: Stage, state: State, actions: KeyActions) {
     this.stage = stage;
@@ -53,8 +58,12 @@ export class StageInput {
     this.stage.canvas.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, pixelOf(event));
     this.setCrosshair(false);
-    this.grip = this.pointers.size === 1 ? this.gripAt(pixelOf(event), event.shiftKey) : "view";
-    this.stage.canvas.classList.add("grabbing");
+    this.start = pixelOf(event);
+    if (this.pointers.size > 1) this.grip = "view";
+    else if (this.state.ruler && event.button === 0) this.grip = "measure";
+    else this.grip = this.gripAt(this.start, event.shiftKey);
+    if (this.grip === "measure") this.putRuler(this.start);
+    else this.stage.canvas.classList.add("grabbing");
   }
 
   private gripAt(pixel: Point, turning: boolean): Grip {
@@ -80,6 +89,7 @@ export class StageInput {
   }
 
   private drag(from: Point, to: Point): void {
+    if (this.grip === "measure") return; // an end of the ruler follows the cursor
     if (this.grip === "view") {
       this.stage.pan(to.x - from.x, to.y - from.y);
       return;
@@ -107,8 +117,16 @@ export class StageInput {
     this.stage.zoom(after / before, { x: (to.x + other.x) / 2, y: (to.y + other.y) / 2 });
   }
 
+  /** Puts an end of the ruler at a pixel. */
+  private putRuler(pixel: Point): void {
+    if (this.state.ruler) this.state.measure(put(this.state.ruler, toScene(this.stage.view, pixel)));
+  }
+
   private up(event: PointerEvent): void {
     this.pointers.delete(event.pointerId);
+    const at = pixelOf(event);
+    const wasDragged = Math.hypot(at.x - this.start.x, at.y - this.start.y) > dragged;
+    if (this.grip === "measure" && wasDragged && this.state.ruler?.open) this.putRuler(at);
     // The finger that stays after a pinch moves the view, whatever it is on.
     this.grip = "view";
     if (this.pointers.size === 0) this.stage.canvas.classList.remove("grabbing");
@@ -137,7 +155,17 @@ export class StageInput {
 
   private key(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (this.handKey(event) || this.viewKey(event) || this.layerKey(event)) event.preventDefault();
+    if (this.rulerKey(event) || this.handKey(event) || this.viewKey(event) || this.layerKey(event)) event.preventDefault();
+  }
+
+  /** With the ruler, Enter puts an end in the middle of the view. */
+  private rulerKey(event: KeyboardEvent): boolean {
+    if (event.key.toLowerCase() === "r" || (event.key === "Escape" && this.state.ruler)) this.actions.toggleRuler();
+    else if (event.key === "Enter" && this.state.ruler) {
+      this.setCrosshair(true);
+      this.putRuler({ x: this.stage.view.width / 2, y: this.stage.view.height / 2 });
+    } else return false;
+    return true;
   }
 
   /** With a map in hand the arrows move it, by a cell, or with Shift by ten. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Grid } from "./grid";
 import type { Report } from "./report";
+import type { Ruler } from "./ruler";
 import { type Placed, type Scene, type SceneId, firstScene, makeScene } from "./scene";
 import type { Point, SE2 } from "./se2";
 import { shortNames } from "./text";
@@ -17,9 +18,9 @@ export interface MapLook extends Look {
 
 /**
  * What has changed: which scene, how layers look, in which colours, which map is pointed out, where the cursor is, what is
- * placed by hand, which cells are there.
+ * measured, what is placed by hand, which cells are there.
  */
-export type Topic = "scene" | "looks" | "colors" | "spotlight" | "cursor" | "hand" | "grids";
+export type Topic = "scene" | "looks" | "colors" | "spotlight" | "cursor" | "ruler" | "hand" | "grids";
 
 /** The map in hand, whose cells are there. */
 export interface InHand {
@@ -43,6 +44,8 @@ export class State {
   spotlight: number | null = null;
   /** In the scene's frame. */
   cursor: Point | null = null;
+  /** Null while nothing is to be measured. */
+  ruler: Ruler | null = null;
   /** The map that can be dragged now. */
   handled: number | null = null;
   /** The scene that was shown last and is no join. */
@@ -76,6 +79,8 @@ export class State {
     if (id.kind !== "join") this.whole = id;
     this.handled = this.offered = null;
     this.spotlight = null;
+    // Another frame: what was measured in the old one means nothing.
+    if (this.ruler) this.measure({ from: null, to: null, open: false });
     this.changed("scene");
   }
 
@@ -106,6 +111,11 @@ export class State {
     const grid = map === null ? null : this.grids[map];
     const pose = map === null ? null : this.poseOf(map);
     return map !== null && grid && pose ? { map, grid, pose } : null;
+  }
+
+  measure(ruler: Ruler | null): void {
+    this.ruler = ruler;
+    this.changed("ruler");
   }
 
   point(map: number | null): void {

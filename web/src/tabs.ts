@@ -30,6 +30,14 @@ export class Tabs {
     this.select(tabs[0].id);
   }
 
+  get ids(): string[] {
+    return this.tabs.map((tab) => tab.id);
+  }
+
+  get selected(): string {
+    return this.tabs.find((tab) => !tab.panel.hidden)!.id;
+  }
+
   select(id: string): void {
     this.tabs.forEach((tab, i) => {
       const selected = tab.id === id;

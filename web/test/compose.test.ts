@@ -56,10 +56,19 @@ test("the fewer maps say otherwise, the fainter is the contradiction", () => {
   assert.ok(blueOf(vote(9, 1)) > blueOf(vote(7, 3)) && vote(9, 1)[0] < vote(7, 3)[0], "from black to vermilion");
 });
 
-test("the merged map lies below", () => {
+test("the merged map covers the layers", () => {
   const merged = { grid: one(Cell.occupied), opacity: 1 };
   assert.deepEqual(pixel({ merged }), [...ink, 255]);
-  assert.deepEqual(pixel({ merged, layers: [layer(one(Cell.occupied))] }), [...blue, 255]);
+  assert.deepEqual(pixel({ merged, layers: [layer(one(Cell.free))], agreement: 1 }), [...ink, 255]);
+  const knowsNothing = { grid: one(Cell.unknown), opacity: 1 };
+  assert.deepEqual(pixel({ merged: knowsNothing, layers: [layer(one(Cell.occupied))] }), [0, 0, 0, 0], "nor do they shine through");
+});
+
+test("a faded merged map lets the layers through as far as it is faded", () => {
+  const half = (cell: number) => pixel({ merged: { grid: one(cell), opacity: 0.5 }, layers: [layer(one(Cell.occupied))] });
+  half(Cell.free).forEach((value, i) => assert.ok(Math.abs(value - ([...blue, 255][i] + 255) / 2) <= 1));
+  assert.deepEqual(half(Cell.unknown), [...blue, 128], "they fade where it knows nothing, too");
+  assert.deepEqual(pixel({ merged: { grid: one(Cell.free), opacity: 0 }, layers: [layer(one(Cell.occupied))] }), [...blue, 255]);
 });
 
 test("the order of the layers does not matter", () => {

@@ -23,8 +23,9 @@ struct PreviewColours {
   static constexpr Colour kUnknown{221, 221, 217};
   static constexpr Colour kSharedFree{255, 255, 255};  ///< free in two maps or more
   static constexpr Colour kSharedWall{32, 32, 36};     ///< occupied in two maps or more
-  static constexpr Colour kDisagreement{213, 94,
-                                        0};  ///< free in one map, occupied in another; nothing else has it
+  /// Free in as many maps as occupied; nothing else has it. The fewer say otherwise than the rest, the nearer
+  /// to what the rest say.
+  static constexpr Colour kDisagreement{213, 94, 0};
 };
 
 /// The colour of input map i, of its walls. The first six are distinct to colour-blind eyes too; further maps
@@ -34,7 +35,8 @@ Colour map_colour(std::size_t map);
 /// A PNG that shows a merge: each component with its maps in their own colours, what they share and where
 /// they disagree, a scale bar in metres, and the colours' meaning; below, the maps that were left out, each
 /// by itself in its own frame. Small maps are magnified, large ones drawn at a coarser resolution: the
-/// picture is at most 2400 pixels wide, and no map in it higher. `names[i]` is what to call map i; `maps` and
+/// picture is at most 2400 pixels wide, and no map in it higher. `names[i]` is what to call map i, in UTF-8;
+/// folders that all of them lie in are not shown. `maps` and
 /// `result` as given to and returned by merge(). Throws std::out_of_range when there are fewer names than
 /// maps.
 std::string preview_png(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/font.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "report/font_characters.hpp"
+
+namespace gridmerge {
+namespace {
+
+constexpr TextSize kSizes[] = {TextSize::large, TextSize::small, TextSize::tiny};
+
+std::string utf8(char32_t character) {
+  const auto byte = [](char32_t bits) { return static_cast<char>(bits); };
+  if (character < 0x80) return {byte(character)};
+  if (character < 0x800) return {byte(0xC0 | character >> 6), byte(0x80 | (character & 0x3F))};
+  return {byte(0xE0 | character >> 12), byte(0x80 | (character >> 6 & 0x3F)),
+          byte(0x80 | (character & 0x3F))};
+}
+
+/// How much ink a text takes, in fully covered pixels.
+double ink(std::string_view text, TextSize size) {
+  const Coverage drawn = draw_text(text, size);
+  return std::accumulate(drawn.values.begin(), drawn.values.end(), 0.0,
+                         [](double sum, char value) { return sum + static_cast<unsigned char>(value); }) /
+         255.0;
+}
+
+TEST(Font, EveryCharacterThatItListsHasAWidthAndALookOfItsOwn) {
+  const std::string unknown = draw_text("\ufffd", TextSize::large).values;
+  for (const auto& [first, last] : kFontCharacters) {
+    for (char32_t character = first; character <= last; ++character) {
+      const std::string text = utf8(character);
+      EXPECT_GT(text_width(text, TextSize::tiny), 0) << static_cast<int>(character);
+      const bool blank = character == ' ' || character == 0xa0;
+      EXPECT_EQ(ink(text, TextSize::large) == 0.0, blank) << static_cast<int>(character);
+      if (character != 0xfffd) {
+        EXPECT_NE(draw_text(text, TextSize::large).values, unknown);
+      }
+    }
+  }
+}
+
+TEST(Font, SizesAreTheSameLettersReduced) {
+  for (const std::string_view text : {"robot_1.yaml", "Gänge, Ωμέγα, карта"}) {
+    const double whole = ink(text, TextSize::large) * 4;
+    for (const TextSize size : kSizes) {
+      const int factor = static_cast<int>(size);
+      EXPECT_NEAR(ink(text, size) * factor * factor / whole, 1.0, 0.03) << text;
+      EXPECT_NEAR(text_width(text, size) * factor, text_width(text, TextSize::large) * 2, factor + 2);
+      EXPECT_LT(baseline(size), line_height(size));
+    }
+  }
+}
+
+TEST(Font, LettersStandOnTheBaseline) {
+  for (const TextSize size : kSizes) {
+    const Coverage drawn = draw_text("HE", size);
+    const auto inked = std::find_if(drawn.values.rbegin(), drawn.values.rend(),
+                                    [](char value) { return static_cast<unsigned char>(value) > 127; });
+    const int lowest = static_cast<int>(drawn.values.rend() - inked - 1) / drawn.width;
+    EXPECT_NEAR(lowest + 1, baseline(size), 1);
+  }
+}
+
+TEST(Font, WhatIsNoTextOrNotInTheFontIsTheReplacement) {
+  const Coverage expected = draw_text("\ufffd", TextSize::small);
+  for (const std::string_view text : {"\xff", "\xc3", "\x80", "\xc1\xa1", "\xe0\x81\xa1", "\xe4\xb8\x80",
+                                      "\n", "\xe2\x80\xae", "\xf0\x9f\xa4\x96"}) {
+    EXPECT_EQ(draw_text(text, TextSize::small).values, expected.values) << testing::PrintToString(text);
+  }
+  EXPECT_EQ(text_width("", TextSize::small), 0);
+  EXPECT_EQ(ink("", TextSize::small), 0.0);
+}
+
+TEST(Font, FittedTextIsTheLongestEndThatFits) {
+  const std::vector<std::string> letters{"a", "/", "W", ".", "ü", "я", "\xff", "_", "1"};
+  std::mt19937 random(7);
+  for (int i = 0; i < 300; ++i) {
+    std::vector<std::string> text(random() % 30);
+    for (std::string& letter : text) letter = letters[random() % letters.size()];
+    const std::string whole = std::accumulate(text.begin(), text.end(), std::string());
+    const TextSize size = kSizes[random() % 3];
+    const int width = text_width("…", size) + static_cast<int>(random() % 400);
+    const std::string fitted = fit_width(whole, size, width);
+    EXPECT_LE(text_width(fitted, size), width);
+    if (text_width(whole, size) <= width) {
+      EXPECT_EQ(fitted, whole);
+      continue;
+    }
+    std::string longest = "…";
+    for (std::size_t kept = 0; kept <= text.size(); ++kept) {
+      const std::string end =
+          std::accumulate(text.end() - static_cast<long>(kept), text.end(), std::string());
+      if (text_width("…" + end, size) <= width) longest = "…" + end;
+    }
+    EXPECT_EQ(fitted, longest);
+  }
+}
+
+}  // namespace
+}  // namespace gridmerge

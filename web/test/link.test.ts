@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { type SharedView, defaultView, fromHash, toHash } from "../src/link";
+import { randomNumbers } from "./random";
+import { join, reportOf } from "./reports";
+
+const at = { x: 0, y: 0, theta: 0 };
+const ways = [1, 2, 3].map((probability) => ({ transform: at, score: 0, probability }));
+const report = reportOf([at, at, at], [join(0, 1, at, { hypotheses: ways }), join(0, 2, at)]);
+const tabs = ["layers", "joins", "transforms", "hand"];
+
+test("a report as it is opened needs no hash", () => {
+  assert.equal(toHash(defaultView(report), report), "");
+  assert.deepEqual(fromHash("", report, tabs), defaultView(report));
+});
+
+test("any view comes back from its link", () => {
+  const random = randomNumbers(31);
+  const thousandths = (size: number) => Math.round((random() - 0.5) * size * 1000) / 1000;
+  const share = () => Math.round(random() * 1000) / 1000;
+  const point = () => ({ x: thousandths(500), y: thousandths(500) });
+  const scenes: SharedView["scene"][] = [{ kind: "component", component: 0 }, { kind: "map", map: 2 },
+    { kind: "join", join: 0, hypothesis: 2 }, { kind: "join", join: 1, hypothesis: -1 }];
+  for (let i = 0; i < 200; i++) {
+    const isAimed = random() < 0.8;
+    const view: SharedView = {
+      scene: scenes[Math.floor(random() * 4)], center: isAimed ? point() : null, metres: isAimed ? 0.001 + share() * 100 : 0,
+      tab: tabs[Math.floor(random() * 4)], merged: share(), agreement: share(),
+      maps: new Map(random() < 0.5 ? [[0, share() / 2], [2, 0]] : []), grid: random() < 0.5,
+      colors: new Map(random() < 0.5 ? [[1, "#0a00ff"]] : []),
+      placed: new Map(random() < 0.5 ? [[1, { ...point(), theta: thousandths(6) }], [2, { ...point(), theta: 0 }]] : []),
+      ruler: random() < 0.5 ? { from: point(), to: point() } : null,
+    };
+    view.metres = Math.round(view.metres * 1000) / 1000;
+    for (const [map, opacity] of view.maps) view.maps.set(map, Math.round(opacity * 1000) / 1000);
+    const hash = toHash(view, report);
+    assert.match(hash, /^[a-z0-9=&:;,.-]*$/, "nothing that a mail or a chat would break");
+    assert.deepEqual(fromHash(`#${hash}`, report, tabs), view);
+  }
+});
+
+test("what is damaged, or of another report, is left as it is", () => {
+  for (const hash of ["#", "#show=join-0-3", "#show=join-0", "#show=join-9-0", "#show=merged-1", "#show=map-3", "#show=map--1", "#at=1,2",
+    "#at=1,2,0", "#at=1,2,-5", "#at=1e999,2,3", "#at=NaN,0,1", "#at=Infinity,0,1", "#at=9999999999,0,1", "#tab=evil", "#merged=2",
+    "#merged=-1", "#maps=7:0.5", "#colors=0:red", "#colors=9:00ff00", "#colors=0:00ff00ff", "#placed=9:1,2,3", "#placed=0:1,2", "#placed=0:1,2,x", "#maps=0:x", "#maps=__proto__:0", "#ruler=1,2,3", "#%00", "#grid", "#====&&&&", "#show=<script>"]) {
+    assert.deepEqual(fromHash(hash, report, tabs), defaultView(report), hash);
+  }
+  assert.equal(fromHash("#tab=joins&at=oops&merged=1", report, tabs).merged, 1, "the rest holds");
+});

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { Component, Join, Report } from "../src/report";
+import { type SE2, compose, identity, inverse } from "../src/se2";
+
+export function join(fixed: number, moving: number, transform: SE2, more: Partial<Join> = {}): Join {
+  return {
+    fixed, moving, transform, outcome: "accepted", reason: null, by_themselves: { verdict: "accepted", reason: null }, probability: 1,
+    acceptance_index: 1, agreement: 1, disagreement: 0, overlap: 1, hypotheses: [], ...more,
+  };
+}
+
+/** A report of maps of which nothing is known, in one merged map at `poses`, with a true join of each two. */
+export function reportOf(poses: SE2[], joins: Join[] = trueJoins(poses)): Report {
+  const grid = { width: 0, height: 0, resolution: 1, origin: identity, cells: "" };
+  const component: Component = {
+    ...grid, file: "merged.yaml", frame: 0, agreeing: 0, conflicting: 0,
+    members: poses.map((transform, map) => ({ map, transform, probability: null, sd: null })),
+  };
+  return {
+    version: "", live: false, maps: poses.map((_, i) => ({ ...grid, name: `${i}.yaml`, color: "#000000" })), components: [component],
+    joins, left_out: [],
+  };
+}
+
+function trueJoins(poses: SE2[]): Join[] {
+  return poses.flatMap((pose, moving) => poses.slice(0, moving).map((on, fixed) => join(fixed, moving, compose(inverse(on), pose))));
+}
