@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/io/file_error.hpp"
 
 namespace gridmerge {
@@ -46,6 +47,7 @@ const std::string& FileReader::read_up_to(std::size_t count) {
     bytes_.resize(held + step);
     const ssize_t got = ::read(descriptor_, bytes_.data() + held, step);
     if (got < 0 && errno != EINTR) throw_errno(path_);
+    throw_if_cancelled();  // a pipe may never bring anything
     bytes_.resize(held + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
     if (got == 0) break;
   }

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "add_map.hpp"
 #include "file_reader.hpp"
 #include "image.hpp"
 #include "interpret.hpp"
@@ -150,25 +151,33 @@ std::vector<std::uint8_t> to_percentages(const OccupancyGrid& grid) {
   return pixels;
 }
 
-std::vector<StagedFile> stage_files(const OccupancyGrid& grid, MapMode mode,
-                                    const std::vector<std::uint8_t>& pixels,
-                                    const std::filesystem::path& yaml_path) {
-  if (yaml_path.extension() != ".yaml" && yaml_path.extension() != ".yml") {
-    throw FileError(yaml_path, "cannot be written: a map's name must end in .yaml or .yml");
-  }
-  const std::filesystem::path image_path = std::filesystem::path(yaml_path).replace_extension(".pgm");
-  const std::string yaml_text = blaming(yaml_path, [&] {
+void check_name(const std::filesystem::path& yaml) {
+  if (yaml.extension() != ".yaml" && yaml.extension() != ".yml")
+    throw FileError(yaml, "cannot be written: a map's name must end in .yaml or .yml");
+}
+
+void add_files(FileSet& files, const OccupancyGrid& grid, MapMode mode,
+               const std::vector<std::uint8_t>& pixels, const std::filesystem::path& yaml_name) {
+  check_name(yaml_name);
+  const std::string image_name = std::filesystem::path(yaml_name).replace_extension(".pgm").string();
+  const std::string yaml_text = blaming(yaml_name, [&] {
     MapYaml yaml;
-    yaml.image = image_path.filename().string();
+    yaml.image = image_name;
     yaml.mode = mode;
     yaml.resolution = grid.resolution;
     yaml.origin = grid.origin;
     return format_map_yaml(yaml);
   });
-  std::vector<StagedFile> files;
-  files.emplace_back(image_path, encode_pgm(grid.width, grid.height, pixels));
-  files.emplace_back(yaml_path, yaml_text);
-  return files;
+  files.add(image_name, encode_pgm(grid.width, grid.height, pixels));
+  files.add(yaml_name.string(), yaml_text);
+}
+
+template <typename Add>
+void save(const std::filesystem::path& yaml_path, const Add& add) {
+  check_name(yaml_path);
+  FileSet files(yaml_path.parent_path());
+  add(files, yaml_path.filename());
+  files.commit();
 }
 
 }  // namespace
@@ -186,19 +195,23 @@ std::vector<std::filesystem::path> map_files(const std::filesystem::path& path) 
 }
 
 void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path) {
-  for (StagedFile& file : stage_map(grid, yaml_path)) file.commit();
+  save(yaml_path, [&](FileSet& files, const std::filesystem::path& name) { add_map(files, grid, name); });
 }
 
-std::vector<StagedFile> stage_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path) {
+void save_probability_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path) {
+  save(yaml_path,
+       [&](FileSet& files, const std::filesystem::path& name) { add_probability_map(files, grid, name); });
+}
+
+void add_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name) {
   validate(grid);
-  return stage_files(grid, MapMode::trinary, to_pixels(grid), yaml_path);
+  add_files(files, grid, MapMode::trinary, to_pixels(grid), yaml_name);
 }
 
-std::vector<StagedFile> stage_probability_map(const OccupancyGrid& grid,
-                                              const std::filesystem::path& yaml_path) {
+void add_probability_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name) {
   validate(grid);
   if (grid.probability.empty()) throw std::invalid_argument("the map has no probabilities");
-  return stage_files(grid, MapMode::raw, to_percentages(grid), yaml_path);
+  add_files(files, grid, MapMode::raw, to_percentages(grid), yaml_name);
 }
 
 }  // namespace gridmerge

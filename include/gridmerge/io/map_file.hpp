@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
-#include "gridmerge/io/atomic_file.hpp"
 #include "gridmerge/io/file_error.hpp"
 
 namespace gridmerge {
@@ -88,20 +87,14 @@ std::vector<std::filesystem::path> map_files(const std::filesystem::path& path);
 /// .yaml or .yml. Loading gives the same cells, resolution and origin, to the bit; probabilities are not
 /// kept.
 ///
-/// Both files are complete on disk before either takes its place, the image first. Throws FileError, then
-/// nothing is left behind (but a new image if only the YAML cannot take its place), or std::invalid_argument
-/// for a grid that `validate` refuses.
+/// Both files take their places at one point of time, even if the program is killed. A link of such a name is
+/// replaced, not followed. Throws FileError, then the old files are there and nothing is left behind, or
+/// std::invalid_argument for a grid that `validate` refuses.
 void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
 
-/// The files of a map with its probabilities, staged as stage_map()'s: mode `raw`, a pixel the occupancy in
-/// percent, 255 unknown. Loading gives the probabilities, rounded to a percent, and the cells that follow
-/// from them with thresholds 0.65 and 0.196. Throws as save_map(), and std::invalid_argument for a grid
-/// without probabilities.
-std::vector<StagedFile> stage_probability_map(const OccupancyGrid& grid,
-                                              const std::filesystem::path& yaml_path);
-
-/// The files that save_map() writes, staged: the image, then the YAML. For a map that belongs to other
-/// outputs.
-std::vector<StagedFile> stage_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
+/// Writes the map with its probabilities: mode `raw`, a pixel the occupancy in percent, 255 unknown. Loading
+/// gives the probabilities, rounded to a percent, and the cells that follow from them with thresholds 0.65
+/// and 0.196. Throws as save_map(), and std::invalid_argument for a grid without probabilities.
+void save_probability_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
 
 }  // namespace gridmerge
