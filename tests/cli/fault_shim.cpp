@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Preloaded into the program, this counts each call that changes what is on the disk, and at the one that
 // GRIDMERGE_FAULT names ("kill 3", "fail 3 28", "signal 3 15") kills the program, lets the call fail with an
-// errno, or sends a signal first. "refuse 1" lets every symbolic link fail with EPERM, as FAT does. The
-// number of calls is written to the file that GRIDMERGE_FAULT_COUNT names when the program ends.
+// errno, or sends a signal first. "refuse 0" lets every symbolic link fail with EPERM, as FAT does; with
+// "hang 0" no connection is ever ended. The number of calls is written to the file that
+// GRIDMERGE_FAULT_COUNT names when the program ends.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -112,6 +113,10 @@ int rmdir(const char* path) noexcept {
 }
 int unlink(const char* path) noexcept {
   return call("unlink", path);
+}
+int shutdown(int socket, int how) noexcept {
+  while (plan().is("hang")) ::pause();
+  return next<int(int, int)>("shutdown")(socket, how);
 }
 int unlinkat(int at, const char* path, int flags) noexcept {
   return call("unlinkat", at, path, flags);

@@ -174,10 +174,10 @@ Outcome run(const std::vector<std::string>& arguments, const RunOptions& options
   return outcome;
 }
 
-RunningProgram::RunningProgram(const std::vector<std::string>& arguments) {
+RunningProgram::RunningProgram(const std::vector<std::string>& arguments, const RunOptions& options) {
   Channel out = open_channel(false);
   Channel err = open_channel(false);
-  child_ = start(arguments, {}, out, err);
+  child_ = start(arguments, options, out, err);
   out.close_write_end();
   err.close_write_end();
   out_ = out.read_end;

@@ -33,7 +33,7 @@ Outcome run(const std::vector<std::string>& arguments, const RunOptions& options
 /// A run of the program that goes on beside the test. Ended with SIGKILL if need be when the object goes.
 class RunningProgram {
  public:
-  explicit RunningProgram(const std::vector<std::string>& arguments);
+  explicit RunningProgram(const std::vector<std::string>& arguments, const RunOptions& options = {});
   ~RunningProgram();
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
