@@ -25,12 +25,19 @@ namespace {
 
 }  // namespace
 
-FileReader::FileReader(std::filesystem::path path)
-    : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC)) {
+FileReader::FileReader(std::filesystem::path path, NamedBy named_by)
+    : path_(std::move(path)),
+      // A pipe without a writer would be waited for already here.
+      descriptor_(
+          ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | (named_by == NamedBy::file ? O_NONBLOCK : 0))) {
   if (descriptor_ < 0) throw_errno(path_);
   struct stat status {};
-  if (::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode)) {
+  const bool is_known = ::fstat(descriptor_, &status) == 0;
+  if (is_known && S_ISREG(status.st_mode)) {
     size_hint_ = static_cast<std::size_t>(status.st_size);
+  } else if (named_by == NamedBy::file && !S_ISDIR(status.st_mode)) {  // of a directory the system says so
+    ::close(descriptor_);
+    throw FileError(path_, "is not a regular file, which a file that another one names has to be");
   }
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <new>
 #include <stdexcept>
 #include <system_error>
@@ -25,12 +24,8 @@ namespace {
 
 constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20;
 
-// No sensible image takes more: 8 bytes a pixel are RGBA of 16 bits, uncompressed.
-std::size_t max_image_bytes(const LoadOptions& options) {
-  constexpr std::size_t kBytesPerPixel = 8, kRest = std::size_t{1} << 20;
-  constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
-  return options.max_cells > (kMost - kRest) / kBytesPerPixel ? kMost
-                                                              : options.max_cells * kBytesPerPixel + kRest;
+NamedBy named_by(const LoadOptions& options) {
+  return options.regular_files_only ? NamedBy::file : NamedBy::user;
 }
 
 // Calls `parse`, and tells which file it was about when that fails.
@@ -46,10 +41,12 @@ auto blaming(const std::filesystem::path& path, const Parse& parse) {
 }
 
 MapImage read_image(FileReader& file, const LoadOptions& options) {
-  // What is no image, a device without end for one, is not worth reading further.
-  const std::string& head = file.read_up_to(kTellingBytes);
-  return decode_image(looks_like_image(head) ? file.read_all(max_image_bytes(options)) : head,
-                      options.max_cells);
+  // What is no image, a device without end for one, is not worth reading further, nor is what follows the
+  // pixels that the header promises.
+  if (!looks_like_image(file.read_up_to(kTellingBytes)))
+    return decode_image(file.read_up_to(kTellingBytes), options.max_cells);
+  const std::size_t most = most_image_bytes(file.read_up_to(kHeaderBytes), options.max_cells);
+  return decode_image(file.read_up_to(most), options.max_cells);
 }
 
 LoadedMap load_bare_image(const std::filesystem::path& path, FileReader& file, const LoadOptions& options) {
@@ -106,7 +103,7 @@ LoadedMap load_image_of(const MapYaml& yaml, const std::filesystem::path& yaml_p
                         const LoadOptions& options) {
   const std::filesystem::path path = image_of(yaml, yaml_path);
   try {
-    FileReader file(path);
+    FileReader file(path, NamedBy::file);
     LoadedMap map =
         blaming(path, [&] { return interpret(yaml, read_image(file, options), options.literal_thresholds); });
     map.files = {yaml_path, path};
@@ -183,13 +180,13 @@ void save(const std::filesystem::path& yaml_path, const Add& add) {
 }  // namespace
 
 LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options) {
-  FileReader file(path);
+  FileReader file(path, named_by(options));
   if (looks_like_image(file.read_up_to(kTellingBytes))) return load_bare_image(path, file, options);
   return load_image_of(read_yaml(path, file), path, options);
 }
 
-std::vector<std::filesystem::path> map_files(const std::filesystem::path& path) {
-  FileReader file(path);
+std::vector<std::filesystem::path> map_files(const std::filesystem::path& path, const LoadOptions& options) {
+  FileReader file(path, named_by(options));
   if (looks_like_image(file.read_up_to(kTellingBytes))) return {path};
   return {path, image_of(read_yaml(path, file), path)};
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,14 @@ bool is_merge_output(const std::filesystem::path& name);
 /// replace or remove. Leaves everything as it was: a directory that is made to try is removed again.
 void prepare_merge_output(const std::filesystem::path& directory,
                           const std::vector<std::filesystem::path>& inputs);
+
+/// Makes sure, before long work, that what comes of the maps can be written: throws FileError, naming the
+/// map, when one alone has more than 2^28 cells of `resolution` [m] (0: that of the finest map that is
+/// placed, so that nothing is sure yet), or lies so far from zero that the merged map may begin further off
+/// than a map file can say. Returns a resolution to choose where the merged map may have more cells than
+/// that, as all maps side by side have; else nothing. O(cells).
+std::optional<double> check_merged_size(const std::vector<std::string>& names,
+                                        const std::vector<OccupancyGrid>& maps, double resolution);
 
 /// Writes what a merge gives to `directory`, which is made if need be, with its parents: `merged.yaml` with
 /// `merged.pgm` for the first component, `merged_2.yaml` and so on for further ones, `preview.png`,
