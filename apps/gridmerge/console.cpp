@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "gridmerge/io/atomic_file.hpp"
+
 namespace gridmerge::cli {
 
 namespace {

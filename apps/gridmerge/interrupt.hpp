@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+
 namespace gridmerge::cli {
 
-/// Waits for Ctrl-C (SIGINT) or SIGTERM. While it lives, the first of these does not end the program; a
-/// second one does, the same or the other. One at a time.
+/// Runs the work of a command, and returns what it does. Ctrl-C (SIGINT), SIGTERM and SIGHUP cancel it, so
+/// that it takes away files that are half written; the program ends by that signal then, as who sent it
+/// expects. A second signal ends it at once. One that the program was started to ignore is ignored.
+int run_interruptibly(const std::function<int()>& work);
+
+/// Waits for Ctrl-C (SIGINT), SIGTERM or SIGHUP. While it lives, the first of these does not end the program;
+/// a second one does, the same or another. One at a time.
 class Interrupt {
  public:
   /// Throws std::runtime_error when the system denies it.

@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "interrupt.hpp"
 
 namespace {
 
@@ -79,7 +80,7 @@ int run(int argc, char** argv) {
     print_error(explain(app, error) + " (see " + help_command(app) + ")");
     return kUsage;
   }
-  return action();
+  return run_interruptibly(action);
 }
 
 }  // namespace

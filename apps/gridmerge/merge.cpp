@@ -91,7 +91,8 @@ MergeResult merge_up_tree_named(const std::vector<OccupancyGrid>& maps, const Me
 
 MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
                        const std::vector<std::optional<KnownPose>>& known_poses,
-                       const MergeCommandOptions& options, PairMatcher& matcher, Console& console) {
+                       const MergeCommandOptions& options, PairMatcher& matcher,
+                       const std::optional<double>& coarser, Console& console) {
   const auto progress = [&](std::size_t done, std::size_t total) {
     if (done < total) {
       console.progress("matching pairs", static_cast<double>(done) / static_cast<double>(total));
@@ -109,7 +110,9 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
     engine.progress = progress;
     return merge(maps, engine, known_poses);
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one
-    throw FileError(options.output, error.what());
+    throw FileError(
+        options.output,
+        coarser ? fmt::format("{}: try --output-resolution {:.2g}", error.what(), *coarser) : error.what());
   }
 }
 
@@ -223,9 +226,16 @@ int run_merge(const MergeCommandOptions& options) {
   Inputs inputs = load_inputs(options, console);
   if (!options.known.init.empty()) inputs.files.emplace_back(options.known.init);
   prepare_merge_output(options.output, inputs.files);
+  const std::optional<double> coarser =
+      check_merged_size(options.maps, inputs.maps, options.output_resolution);
+  if (coarser)
+    console.warn(
+        fmt::format("the merged map may have more than 2^28 cells, and is not written then: "
+                    "--output-resolution {:.2g} makes it smaller",
+                    *coarser));
   PairMatcher matcher(options.common, options.search);
   if (!options.search.trace.empty()) try_trace(options, inputs.files);
-  const MergeResult result = merge_maps(inputs.maps, known_poses.poses(), options, matcher, console);
+  const MergeResult result = merge_maps(inputs.maps, known_poses.poses(), options, matcher, coarser, console);
   console.progress("writing the result");
   write_merge_output(options.output, inputs.files, options.maps, inputs.maps, result);
   matcher.write_trace();

@@ -37,7 +37,9 @@ void add_saved_merge_options(CLI::App& command, SavedMergeOptions& options) {
 SavedMerge load_saved_merge(const SavedMergeOptions& options, Console& console) {
   MergeRecord record = read_merge_record(options.directory);
   SavedMerge merge;
-  MapReader reader(options.load, console);
+  LoadOptions load = options.load;
+  load.regular_files_only = true;
+  MapReader reader(load, console);
   for (const std::string& name : record.names) {
     LoadedMap map = load_map_of(name, options, reader);
     merge.maps.push_back(std::move(map.grid));

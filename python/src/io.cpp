@@ -28,9 +28,7 @@ Map load(const nb::bytes& path, double resolution, bool literal_thresholds) {
 void save(const Map& map, const nb::bytes& path, bool probabilities) {
   const std::filesystem::path file = to_string(path);
   const OthersRun meanwhile;
-  std::vector<StagedFile> files =
-      probabilities ? stage_probability_map(*map.grid, file) : stage_map(*map.grid, file);
-  for (StagedFile& one : files) one.commit();
+  probabilities ? save_probability_map(*map.grid, file) : save_map(*map.grid, file);
 }
 
 }  // namespace

@@ -5,12 +5,9 @@
 
 #include <algorithm>
 #include <string>
-#include <system_error>
-#include <utility>
 
 #include "gridmerge/evaluate/truth.hpp"
-#include "gridmerge/io/atomic_file.hpp"
-#include "gridmerge/io/map_file.hpp"
+#include "io/add_map.hpp"
 
 namespace gridmerge {
 
@@ -62,28 +59,22 @@ std::vector<TrueSet> sets(const Simulation& simulation) {
 
 void write_dataset(const fs::path& directory, const Simulation& simulation,
                    const std::vector<Simulation>& elsewhere, const DatasetOptions& options) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw FileError(directory, "cannot be created: " + error.message());
-
-  std::vector<StagedFile> files;
-  const auto stage = [&](const OccupancyGrid& grid, const std::string& name, bool probabilities) {
-    for (StagedFile& file :
-         probabilities ? stage_probability_map(grid, directory / name) : stage_map(grid, directory / name))
-      files.push_back(std::move(file));
+  FileSet files(directory, FileSet::IfMissing::make);
+  const auto add = [&](const OccupancyGrid& grid, const std::string& name, bool probabilities) {
+    probabilities ? add_probability_map(files, grid, name) : add_map(files, grid, name);
   };
   for (std::size_t i = 0; i < simulation.maps.size(); ++i)
-    stage(simulation.maps[i].grid, robot_map(i).name, options.probabilities);
+    add(simulation.maps[i].grid, robot_map(i).name, options.probabilities);
   std::size_t others = 0;
   for (const Simulation& other : elsewhere) {
     for (const SimulatedMap& map : other.maps)
-      stage(map.grid, elsewhere_map(others++).name, options.probabilities);
+      add(map.grid, elsewhere_map(others++).name, options.probabilities);
   }
-  stage(draw_building(simulation.building, 0.05), "building.yaml", false);
-  files.emplace_back(directory / "pairs.tsv", format_pairs(true_pairs(simulation)));
-  files.emplace_back(directory / "negatives.tsv", format_negatives(negatives(simulation, others)));
-  files.emplace_back(directory / "sets.tsv", format_sets(sets(simulation)));
-  for (StagedFile& file : files) file.commit();
+  add(draw_building(simulation.building, 0.05), "building.yaml", false);
+  files.add("pairs.tsv", format_pairs(true_pairs(simulation)));
+  files.add("negatives.tsv", format_negatives(negatives(simulation, others)));
+  files.add("sets.tsv", format_sets(sets(simulation)));
+  files.commit();
 }
 
 }  // namespace gridmerge

@@ -12,11 +12,27 @@ namespace gridmerge {
 
 namespace {
 
+/// Calls `read` of a map, and tells which line asked for it when that fails.
+template <typename Read>
+auto named(const TruthMap& map, const Read& read) {
+  try {
+    return read();
+  } catch (const FileError& error) {
+    if (map.named_at.empty()) throw;
+    throw FileError(std::string(error.what()) + " (" + map.named_at + " names it)");
+  }
+}
+
+LoadOptions of_named_files(LoadOptions options) {
+  options.regular_files_only = true;
+  return options;
+}
+
 class Evaluator {
  public:
   Evaluator(const Truth& truth, const EvaluateOptions& options)
       : options_(options),
-        maps_(options.load, options.cache_bytes, options.warn),
+        maps_(of_named_files(options.load), options.cache_bytes, options.warn),
         total_(truth.pairs.size() + truth.negatives.size() + truth.sets.size()) {
     if (!options_.matcher) {
       options_.matcher = [](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
@@ -29,8 +45,8 @@ class Evaluator {
   }
 
   MatchOutcome evaluate_pair(const TruePair& pair) {
-    const auto fixed = maps_.get(pair.fixed.path);
-    const auto moving = maps_.get(pair.moving.path);
+    const auto fixed = get(pair.fixed);
+    const auto moving = get(pair.moving);
     const MatchResult result = match_named(pair.fixed, *fixed, pair.moving, *moving);
     MatchOutcome outcome = describe(pair.fixed, pair.moving, result);
     outcome.tier = pair.tier;
@@ -45,8 +61,8 @@ class Evaluator {
   }
 
   MatchOutcome evaluate_negative(const NegativePair& pair) {
-    const auto fixed = maps_.get(pair.fixed.path);
-    const auto moving = maps_.get(pair.moving.path);
+    const auto fixed = get(pair.fixed);
+    const auto moving = get(pair.moving);
     return describe(pair.fixed, pair.moving, match_named(pair.fixed, *fixed, pair.moving, *moving));
   }
 
@@ -54,7 +70,7 @@ class Evaluator {
     std::vector<OccupancyGrid> grids;
     std::vector<KnownMoments> moments;
     for (const TrueMember& member : set.members) {
-      EvaluatedMap map = maps_.read(member.map.path);
+      EvaluatedMap map = named(member.map, [&] { return maps_.read(member.map.path); });
       grids.push_back(std::move(map.grid));
       moments.push_back(map.moments);
     }
@@ -71,6 +87,10 @@ class Evaluator {
   }
 
  private:
+  std::shared_ptr<const EvaluatedMap> get(const TruthMap& map) {
+    return named(map, [&] { return maps_.get(map.path); });
+  }
+
   MatchResult match_named(const TruthMap& fixed, const EvaluatedMap& fixed_map, const TruthMap& moving,
                           const EvaluatedMap& moving_map) const {
     try {
@@ -101,19 +121,23 @@ class Evaluator {
 }  // namespace
 
 std::vector<std::filesystem::path> input_files(const Truth& truth) {
-  std::set<std::filesystem::path> maps;
-  const auto add_pair = [&](const auto& pair) {
-    maps.insert(pair.fixed.path);
-    maps.insert(pair.moving.path);
+  std::set<std::filesystem::path> maps, files;
+  const auto add = [&](const TruthMap& map) {
+    if (!maps.insert(map.path).second) return;
+    for (const std::filesystem::path& file :
+         named(map, [&] { return map_files(map.path, of_named_files({})); }))
+      files.insert(file);
   };
-  std::for_each(truth.pairs.begin(), truth.pairs.end(), add_pair);
-  std::for_each(truth.negatives.begin(), truth.negatives.end(), add_pair);
-  for (const TrueSet& set : truth.sets) {
-    for (const TrueMember& member : set.members) maps.insert(member.map.path);
+  for (const TruePair& pair : truth.pairs) {
+    add(pair.fixed);
+    add(pair.moving);
   }
-  std::set<std::filesystem::path> files;
-  for (const std::filesystem::path& map : maps) {
-    for (const std::filesystem::path& file : map_files(map)) files.insert(file);
+  for (const NegativePair& pair : truth.negatives) {
+    add(pair.fixed);
+    add(pair.moving);
+  }
+  for (const TrueSet& set : truth.sets) {
+    for (const TrueMember& member : set.members) add(member.map);
   }
   return {files.begin(), files.end()};
 }

@@ -23,7 +23,7 @@ class TruthRows {
     // The system would read the name up to there, and open another file than the one that messages show.
     if (name.find('\0') != std::string::npos)
       table_.fail(row, std::string(column) + " holds a NUL character");
-    return {name, directory_ / name};
+    return {name, directory_ / name, table_.place(row)};
   }
 
   SE2 transform(std::size_t row) const {

@@ -6,9 +6,11 @@
 // of ours.
 #include "gridmerge/grid/parallel.hpp"
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 
 #include "cancellation_scope.hpp"
@@ -21,7 +23,9 @@ void with_threads(int threads, const std::function<void()>& work) {
   std::atomic<int> ended{0};
   const std::atomic<bool>* const cancellation = current_cancellation();
   begun.store(1, std::memory_order_release);
-  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : threads);
+  // It has no more threads than cores, and prints a warning when it is asked for more.
+  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic
+                                     : std::min(threads, tbb::info::default_concurrency()));
   arena.execute([&] {
     (void)begun.load(std::memory_order_acquire);
     const CancellationScope scope(cancellation);

@@ -114,6 +114,11 @@ bool looks_like_bmp(std::string_view bytes) {
          bytes.substr(kHeaderSizeAt + 1, 3) == std::string_view("\0\0\0", 3);
 }
 
+ImageSize bmp_size(std::string_view head) {
+  const Header header = read_header(Bytes(head));
+  return {header.width, header.height};
+}
+
 MapImage decode_bmp(std::string_view text, std::size_t max_pixels) {
   if (!looks_like_bmp(text)) throw ParseError("not a BMP image");
   const Bytes bytes(text);

@@ -32,7 +32,20 @@ std::string escape_controls(std::string_view text) {
   return line;
 }
 
-FileError::FileError(std::string_view message) : std::runtime_error(escape_controls(message)) {}
+namespace {
+
+// Names and values are quoted from files, which may hold a megabyte of them; nobody reads that. What is cut
+// is the middle, as the file stands first and the cause last. No path that can be opened is longer than 4096.
+std::string shorten(std::string text) {
+  constexpr std::size_t kMost = 10'000, kShown = 300;
+  if (text.size() <= kMost) return text;
+  return fmt::format("{} [... {} bytes ...] {}", text.substr(0, kShown), text.size() - 2 * kShown,
+                     text.substr(text.size() - kShown));
+}
+
+}  // namespace
+
+FileError::FileError(std::string_view message) : std::runtime_error(shorten(escape_controls(message))) {}
 
 FileError::FileError(const std::filesystem::path& file, std::string_view cause)
     : FileError(fmt::format("{}: {}", file.string(), cause)) {}

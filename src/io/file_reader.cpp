@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/io/file_error.hpp"
 
 namespace gridmerge {
@@ -24,12 +25,19 @@ namespace {
 
 }  // namespace
 
-FileReader::FileReader(std::filesystem::path path)
-    : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC)) {
+FileReader::FileReader(std::filesystem::path path, NamedBy named_by)
+    : path_(std::move(path)),
+      // A pipe without a writer would be waited for already here.
+      descriptor_(
+          ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | (named_by == NamedBy::file ? O_NONBLOCK : 0))) {
   if (descriptor_ < 0) throw_errno(path_);
   struct stat status {};
-  if (::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode)) {
+  const bool is_known = ::fstat(descriptor_, &status) == 0;
+  if (is_known && S_ISREG(status.st_mode)) {
     size_hint_ = static_cast<std::size_t>(status.st_size);
+  } else if (named_by == NamedBy::file && !S_ISDIR(status.st_mode)) {  // of a directory the system says so
+    ::close(descriptor_);
+    throw FileError(path_, "is not a regular file, which a file that another one names has to be");
   }
 }
 
@@ -46,6 +54,7 @@ const std::string& FileReader::read_up_to(std::size_t count) {
     bytes_.resize(held + step);
     const ssize_t got = ::read(descriptor_, bytes_.data() + held, step);
     if (got < 0 && errno != EINTR) throw_errno(path_);
+    throw_if_cancelled();  // a pipe may never bring anything
     bytes_.resize(held + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
     if (got == 0) break;
   }

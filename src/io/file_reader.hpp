@@ -7,11 +7,16 @@
 
 namespace gridmerge {
 
-/// Reads a file in steps, so that its first bytes can decide how many more are worth having. Pipes work too.
+/// Who names a file. A user may name a pipe; where a file names one, the program would wait for what may
+/// never come.
+enum class NamedBy { user, file };
+
+/// Reads a file in steps, so that its first bytes can decide how many more are worth having.
 class FileReader {
  public:
-  /// Throws FileError when `path` is missing, unreadable or a directory.
-  explicit FileReader(std::filesystem::path path);
+  /// Throws FileError when `path` is missing, unreadable or a directory, and, named by a file, when it is no
+  /// regular file.
+  explicit FileReader(std::filesystem::path path, NamedBy named_by = NamedBy::user);
   ~FileReader();
   FileReader(const FileReader&) = delete;
   FileReader& operator=(const FileReader&) = delete;

@@ -5,12 +5,13 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "bmp.hpp"
-#include "gridmerge/io/png.hpp"
 #include "jpeg.hpp"
 #include "parse_error.hpp"
+#include "png_map.hpp"
 #include "pnm.hpp"
 
 namespace gridmerge {
@@ -19,52 +20,19 @@ namespace {
 
 constexpr const char* kImagesRead = "PGM, PPM, PNG, BMP or JPEG";
 
-bool looks_like_png(std::string_view bytes) {
-  return bytes.starts_with("\x89PNG\r\n\x1a\n");
-}
-
-// `Depth` is the number of bytes of a channel, `Colors` the number of colour channels before an alpha
-// channel.
-template <int Depth, int Colors>
-void convert_pixels(const PngImage& png, MapImage& image) {
-  const auto sample = [&](std::size_t index) -> std::uint32_t {
-    if constexpr (Depth == 1) return png.samples[index];
-    return static_cast<std::uint32_t>(png.samples[2 * index] << 8 | png.samples[2 * index + 1]);
-  };
-  const bool has_alpha = png.channels > Colors;
-  for (std::size_t pixel = 0; pixel < image.lightness.size(); ++pixel) {
-    const std::size_t first = pixel * static_cast<std::size_t>(png.channels);
-    std::uint32_t sum = 0;
-    for (int channel = 0; channel < Colors; ++channel) sum += sample(first + channel);
-    if constexpr (Depth == 2 && Colors == 3)
-      sum = (sum + 1) / 3;  // three of 16 bits do not fit; round the mean
-    image.lightness[pixel] = static_cast<std::uint16_t>(sum);
-    if (has_alpha) {
-      const std::uint32_t alpha = sample(first + Colors);
-      image.alpha[pixel] = static_cast<std::uint8_t>(Depth == 1 ? alpha : alpha * 255 / 65535);
-    }
-  }
-}
-
-MapImage convert_png(const PngImage& png) {
-  MapImage image;
-  image.width = png.width;
-  image.height = png.height;
-  const std::size_t size = static_cast<std::size_t>(png.width) * static_cast<std::size_t>(png.height);
-  image.lightness.resize(size);
-  if (png.channels % 2 == 0) image.alpha.resize(size);
-  const bool color = png.channels >= 3;
-  if (png.bit_depth == 16) {
-    image.white = 65535;
-    color ? convert_pixels<2, 3>(png, image) : convert_pixels<2, 1>(png, image);
-  } else {
-    image.white = color ? 3 * 255 : 255;
-    color ? convert_pixels<1, 3>(png, image) : convert_pixels<1, 1>(png, image);
-  }
-  return image;
-}
-
 }  // namespace
+
+std::size_t most_image_bytes(std::string_view head, std::size_t max_pixels) {
+  constexpr std::size_t kBytesPerPixel = 8, kRest = std::size_t{8} << 20;
+  const std::optional<ImageSize> size = looks_like_png(head)    ? png_size(head)
+                                        : looks_like_pnm(head)  ? pnm_size(head)
+                                        : looks_like_bmp(head)  ? bmp_size(head)
+                                        : looks_like_jpeg(head) ? jpeg_size(head)
+                                                                : std::nullopt;
+  if (!size) return head.size();
+  check_image_size(size->width, size->height, max_pixels);
+  return size->width * size->height * kBytesPerPixel + kRest;
+}
 
 bool looks_like_image(std::string_view bytes) {
   return looks_like_png(bytes) || looks_like_pnm(bytes) || looks_like_bmp(bytes) || looks_like_jpeg(bytes);
@@ -103,7 +71,7 @@ void refuse_other_kinds(std::string_view bytes) {
 
 MapImage decode_image(std::string_view bytes, std::size_t max_pixels) {
   if (bytes.empty()) throw ParseError("the file is empty");
-  if (looks_like_png(bytes)) return convert_png(decode_png(bytes, max_pixels));
+  if (looks_like_png(bytes)) return decode_png_map(bytes, max_pixels);
   if (looks_like_pnm(bytes)) return decode_pnm(bytes, max_pixels);
   if (looks_like_bmp(bytes)) return decode_bmp(bytes, max_pixels);
   if (looks_like_jpeg(bytes)) return decode_jpeg(bytes, max_pixels);

@@ -23,6 +23,19 @@ struct MapImage {
 /// So many first bytes of a file tell what it is.
 inline constexpr std::size_t kTellingBytes = 64;
 
+/// The header of an image lies within so many first bytes.
+inline constexpr std::size_t kHeaderBytes = std::size_t{1} << 20;
+
+struct ImageSize {
+  std::uint64_t width = 0;
+  std::uint64_t height = 0;
+};
+
+/// So many bytes of a file are worth reading that begins with `head` (kHeaderBytes of it, or all): 8 a pixel,
+/// which are RGBA of 16 bits, uncompressed, and some more for the rest. Those of `head` where it does not
+/// tell the size. Throws ParseError for an image of more than `max_pixels`.
+std::size_t most_image_bytes(std::string_view head, std::size_t max_pixels);
+
 /// Whether the bytes begin as an image of a kind that decode_image() reads.
 bool looks_like_image(std::string_view bytes);
 

@@ -81,6 +81,27 @@ bool looks_like_jpeg(std::string_view bytes) {
   return bytes.starts_with("\xff\xd8\xff");
 }
 
+std::optional<ImageSize> jpeg_size(std::string_view head) {
+  const auto byte = [&](std::size_t at) { return static_cast<std::uint8_t>(head[at]); };
+  const auto number = [&](std::size_t at) {
+    return static_cast<std::uint64_t>(byte(at) << 8 | byte(at + 1));
+  };
+  // Parts begin with 0xff and their kind, then their length, which counts itself.
+  for (std::size_t at = 2; at + 9 <= head.size();) {
+    if (byte(at) != 0xff || byte(at + 1) == 0xff) {  // bytes between the parts, as libjpeg passes over them
+      ++at;
+      continue;
+    }
+    const std::uint8_t kind = byte(at + 1);
+    constexpr std::string_view kNoFrame = "\xc4\xc8\xcc";  // tables, and one that is reserved
+    if (kind >= 0xc0 && kind <= 0xcf && kNoFrame.find(static_cast<char>(kind)) == std::string_view::npos)
+      return ImageSize{number(at + 7), number(at + 5)};
+    const bool has_length = kind > 0x01 && (kind < 0xd0 || kind > 0xd9);
+    at += has_length ? 2 + number(at + 2) : 2;
+  }
+  return std::nullopt;
+}
+
 MapImage decode_jpeg(std::string_view bytes, std::size_t max_pixels) {
   Reader reader;
   jpeg_decompress_struct& jpeg = reader.jpeg;

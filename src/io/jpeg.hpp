@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string_view>
 
 #include "image.hpp"
@@ -10,6 +11,9 @@ namespace gridmerge {
 
 /// Whether the bytes begin as a JPEG does.
 bool looks_like_jpeg(std::string_view bytes);
+
+/// What the frame's header tells; nothing where it is not in `head`.
+std::optional<ImageSize> jpeg_size(std::string_view head);
 
 /// Reads a JPEG, gray or in colours, baseline or progressive. Throws ParseError when the bytes are broken or
 /// end early, the image has more than `max_pixels` pixels or more than 8 bits a channel, or is of a kind that

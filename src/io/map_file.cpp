@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <new>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
+#include "add_map.hpp"
 #include "file_reader.hpp"
 #include "image.hpp"
 #include "interpret.hpp"
@@ -24,12 +24,8 @@ namespace {
 
 constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20;
 
-// No sensible image takes more: 8 bytes a pixel are RGBA of 16 bits, uncompressed.
-std::size_t max_image_bytes(const LoadOptions& options) {
-  constexpr std::size_t kBytesPerPixel = 8, kRest = std::size_t{1} << 20;
-  constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
-  return options.max_cells > (kMost - kRest) / kBytesPerPixel ? kMost
-                                                              : options.max_cells * kBytesPerPixel + kRest;
+NamedBy named_by(const LoadOptions& options) {
+  return options.regular_files_only ? NamedBy::file : NamedBy::user;
 }
 
 // Calls `parse`, and tells which file it was about when that fails.
@@ -45,10 +41,12 @@ auto blaming(const std::filesystem::path& path, const Parse& parse) {
 }
 
 MapImage read_image(FileReader& file, const LoadOptions& options) {
-  // What is no image, a device without end for one, is not worth reading further.
-  const std::string& head = file.read_up_to(kTellingBytes);
-  return decode_image(looks_like_image(head) ? file.read_all(max_image_bytes(options)) : head,
-                      options.max_cells);
+  // What is no image, a device without end for one, is not worth reading further, nor is what follows the
+  // pixels that the header promises.
+  if (!looks_like_image(file.read_up_to(kTellingBytes)))
+    return decode_image(file.read_up_to(kTellingBytes), options.max_cells);
+  const std::size_t most = most_image_bytes(file.read_up_to(kHeaderBytes), options.max_cells);
+  return decode_image(file.read_up_to(most), options.max_cells);
 }
 
 LoadedMap load_bare_image(const std::filesystem::path& path, FileReader& file, const LoadOptions& options) {
@@ -105,7 +103,7 @@ LoadedMap load_image_of(const MapYaml& yaml, const std::filesystem::path& yaml_p
                         const LoadOptions& options) {
   const std::filesystem::path path = image_of(yaml, yaml_path);
   try {
-    FileReader file(path);
+    FileReader file(path, NamedBy::file);
     LoadedMap map =
         blaming(path, [&] { return interpret(yaml, read_image(file, options), options.literal_thresholds); });
     map.files = {yaml_path, path};
@@ -150,55 +148,67 @@ std::vector<std::uint8_t> to_percentages(const OccupancyGrid& grid) {
   return pixels;
 }
 
-std::vector<StagedFile> stage_files(const OccupancyGrid& grid, MapMode mode,
-                                    const std::vector<std::uint8_t>& pixels,
-                                    const std::filesystem::path& yaml_path) {
-  if (yaml_path.extension() != ".yaml" && yaml_path.extension() != ".yml") {
-    throw FileError(yaml_path, "cannot be written: a map's name must end in .yaml or .yml");
-  }
-  const std::filesystem::path image_path = std::filesystem::path(yaml_path).replace_extension(".pgm");
-  const std::string yaml_text = blaming(yaml_path, [&] {
+void check_name(const std::filesystem::path& yaml) {
+  if (yaml.extension() != ".yaml" && yaml.extension() != ".yml")
+    throw FileError(yaml, "cannot be written: a map's name must end in .yaml or .yml");
+}
+
+void add_files(FileSet& files, const OccupancyGrid& grid, MapMode mode,
+               const std::vector<std::uint8_t>& pixels, const std::filesystem::path& yaml_name) {
+  check_name(yaml_name);
+  const std::string image_name = std::filesystem::path(yaml_name).replace_extension(".pgm").string();
+  const std::string yaml_text = blaming(yaml_name, [&] {
     MapYaml yaml;
-    yaml.image = image_path.filename().string();
+    yaml.image = image_name;
     yaml.mode = mode;
     yaml.resolution = grid.resolution;
     yaml.origin = grid.origin;
     return format_map_yaml(yaml);
   });
-  std::vector<StagedFile> files;
-  files.emplace_back(image_path, encode_pgm(grid.width, grid.height, pixels));
-  files.emplace_back(yaml_path, yaml_text);
-  return files;
+  files.add(image_name, encode_pgm(grid.width, grid.height, pixels));
+  files.add(yaml_name.string(), yaml_text);
+}
+
+template <typename Add>
+void save(const std::filesystem::path& yaml_path, const Add& add) {
+  check_name(yaml_path);
+  FileSet files(yaml_path.parent_path());
+  add(files, yaml_path.filename());
+  files.commit();
 }
 
 }  // namespace
 
 LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options) {
-  FileReader file(path);
+  FileReader file(path, named_by(options));
   if (looks_like_image(file.read_up_to(kTellingBytes))) return load_bare_image(path, file, options);
   return load_image_of(read_yaml(path, file), path, options);
 }
 
-std::vector<std::filesystem::path> map_files(const std::filesystem::path& path) {
-  FileReader file(path);
+std::vector<std::filesystem::path> map_files(const std::filesystem::path& path, const LoadOptions& options) {
+  FileReader file(path, named_by(options));
   if (looks_like_image(file.read_up_to(kTellingBytes))) return {path};
   return {path, image_of(read_yaml(path, file), path)};
 }
 
 void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path) {
-  for (StagedFile& file : stage_map(grid, yaml_path)) file.commit();
+  save(yaml_path, [&](FileSet& files, const std::filesystem::path& name) { add_map(files, grid, name); });
 }
 
-std::vector<StagedFile> stage_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path) {
+void save_probability_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path) {
+  save(yaml_path,
+       [&](FileSet& files, const std::filesystem::path& name) { add_probability_map(files, grid, name); });
+}
+
+void add_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name) {
   validate(grid);
-  return stage_files(grid, MapMode::trinary, to_pixels(grid), yaml_path);
+  add_files(files, grid, MapMode::trinary, to_pixels(grid), yaml_name);
 }
 
-std::vector<StagedFile> stage_probability_map(const OccupancyGrid& grid,
-                                              const std::filesystem::path& yaml_path) {
+void add_probability_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name) {
   validate(grid);
   if (grid.probability.empty()) throw std::invalid_argument("the map has no probabilities");
-  return stage_files(grid, MapMode::raw, to_percentages(grid), yaml_path);
+  add_files(files, grid, MapMode::raw, to_percentages(grid), yaml_name);
 }
 
 }  // namespace gridmerge

@@ -2,13 +2,14 @@
 #include "map_yaml.hpp"
 
 #include <fmt/format.h>
-#include <yaml-cpp/depthguard.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
+#include <sstream>
 #include <string>
 
 #include "gridmerge/io/map_file.hpp"
@@ -18,9 +19,6 @@
 namespace gridmerge {
 
 namespace {
-
-// Far beyond any map, and still far from where a double stops resolving micrometres.
-constexpr double kMaxOrigin = 1e9;
 
 constexpr std::array<const char*, 3> kModeNames{"trinary", "scale", "raw"};
 
@@ -37,11 +35,45 @@ std::string to_lower(std::string text) {
   return text;
 }
 
+// Knows how deep it is in a document, and no more. yaml-cpp calls itself for each level, and its own limit is
+// hundreds of them: more than a thread with a small stack can bear.
+class DepthGuard : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    descend();
+  }
+  void OnSequenceEnd() override { --depth_; }
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    descend();
+  }
+  void OnMapEnd() override { --depth_; }
+
+ private:
+  void descend() {
+    constexpr int kMost = 16;  // a map file has two
+    if (++depth_ > kMost) throw ParseError("not valid YAML: nested too deeply");
+  }
+
+  int depth_ = 0;
+};
+
+void check_depth(std::string_view text) {
+  std::istringstream stream{std::string(text)};
+  YAML::Parser parser(stream);
+  DepthGuard guard;
+  parser.HandleNextDocument(guard);
+}
+
 YAML::Node load_yaml(std::string_view text) {
   try {
+    check_depth(text);
     return YAML::Load(std::string(text));
-  } catch (const YAML::DeepRecursion&) {  // whose own words are "bad file"
-    throw ParseError("not valid YAML: nested too deeply");
   } catch (const YAML::Exception& error) {
     throw ParseError(fmt::format("not valid YAML: line {}: {}", error.mark.line + 1, error.msg));
   }

@@ -4,18 +4,26 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <functional>
+#include <new>
 #include <stdexcept>
+#include <vector>
 
 #include "image.hpp"
 #include "parse_error.hpp"
+#include "png_rows.hpp"
 
 namespace gridmerge {
 
 namespace {
+
+// A row of 2^24 pixels takes 128 MB, and libpng holds some of them; so many rows take seconds.
+constexpr std::uint32_t kMaxSide = 1U << 24;
 
 // libpng's simplified interface would spare us the longjmp below, but it takes 16-bit samples for linear
 // light and changes them.
@@ -64,7 +72,9 @@ void guarded(const Reader& reader, const Calls& calls) {
 
 }  // namespace
 
-PngImage decode_png(std::string_view bytes, std::size_t max_pixels) {
+void read_png(std::string_view bytes, std::size_t max_pixels,
+              const std::function<void(const PngFormat&)>& begin,
+              const std::function<void(const PngRow&)>& row) {
   Reader reader(bytes);
   const png_structp png = reader.png;
   const png_infop info = reader.info;
@@ -74,8 +84,11 @@ PngImage decode_png(std::string_view bytes, std::size_t max_pixels) {
                         PNG_UINT_31_MAX);  // check_image_size decides, as for any format
     png_read_info(png, info);
   });
-  const std::size_t height = png_get_image_height(png, info);
-  check_image_size(png_get_image_width(png, info), height, max_pixels);
+  const std::uint32_t width = png_get_image_width(png, info), height = png_get_image_height(png, info);
+  check_image_size(width, height, max_pixels);
+  if (std::max(width, height) > kMaxSide)
+    throw ParseError(
+        fmt::format("a side of {} pixels exceeds the limit of {}", std::max(width, height), kMaxSide));
   // Deflate cannot shrink data more than 1032 times: a small file cannot make us take memory for a large
   // image.
   if (png_get_rowbytes(png, info) * height / 1032 > bytes.size())
@@ -83,21 +96,50 @@ PngImage decode_png(std::string_view bytes, std::size_t max_pixels) {
 
   guarded(reader, [&] {
     png_set_expand(png);
-    png_set_interlace_handling(png);
     png_read_update_info(png, info);  // takes memory for a row, hence not before the checks
   });
+  begin({static_cast<int>(width), static_cast<int>(height), png_get_channels(png, info),
+         png_get_bit_depth(png, info)});
+  std::vector<std::uint8_t> samples(png_get_rowbytes(png, info));
+  const auto read_row = [&] { guarded(reader, [&] { png_read_row(png, samples.data(), nullptr); }); };
+  if (png_get_interlace_type(png, info) == PNG_INTERLACE_NONE) {
+    for (std::uint32_t y = 0; y < height; ++y) {
+      read_row();
+      row({static_cast<int>(y), 0, 1, static_cast<int>(width), samples.data()});
+    }
+  } else {
+    for (int pass = 0; pass < PNG_INTERLACE_ADAM7_PASSES; ++pass) {
+      const int columns = static_cast<int>(PNG_PASS_COLS(width, pass));
+      if (columns == 0) continue;  // libpng passes over it as well
+      const int first = PNG_PASS_START_COL(pass), step = 1 << PNG_PASS_COL_SHIFT(pass);
+      for (std::uint32_t i = 0; i < PNG_PASS_ROWS(height, pass); ++i) {
+        read_row();
+        row({static_cast<int>(PNG_ROW_FROM_PASS_ROW(i, pass)), first, step, columns, samples.data()});
+      }
+    }
+  }
+  guarded(reader, [&] { png_read_end(png, nullptr); });
+}
+
+PngImage decode_png(std::string_view bytes, std::size_t max_pixels) {
   PngImage image;
-  image.width = static_cast<int>(png_get_image_width(png, info));
-  image.height = static_cast<int>(height);
-  image.channels = png_get_channels(png, info);
-  image.bit_depth = png_get_bit_depth(png, info);
-  const std::size_t row_bytes = png_get_rowbytes(png, info);
-  image.samples.resize(row_bytes * height);
-  std::vector<png_bytep> rows(height);
-  for (std::size_t row = 0; row < height; ++row) rows[row] = image.samples.data() + row * row_bytes;
-  guarded(reader, [&] {
-    png_read_image(png, rows.data());
-    png_read_end(png, nullptr);
+  std::size_t pixel_bytes = 0;
+  const auto begin = [&](const PngFormat& format) {
+    image.width = format.width;
+    image.height = format.height;
+    image.channels = format.channels;
+    image.bit_depth = format.bit_depth;
+    pixel_bytes = format.pixel_bytes();
+    image.samples.resize(pixel_bytes * static_cast<std::size_t>(image.width) *
+                         static_cast<std::size_t>(image.height));
+  };
+  read_png(bytes, max_pixels, begin, [&](const PngRow& row) {
+    std::size_t target = (static_cast<std::size_t>(row.y) * static_cast<std::size_t>(image.width) +
+                          static_cast<std::size_t>(row.first)) *
+                         pixel_bytes;
+    for (int i = 0; i < row.count; ++i, target += static_cast<std::size_t>(row.step) * pixel_bytes)
+      std::memcpy(&image.samples[target], row.samples + static_cast<std::size_t>(i) * pixel_bytes,
+                  pixel_bytes);
   });
   return image;
 }

@@ -120,6 +120,12 @@ bool looks_like_pnm(std::string_view bytes) {
          (is_space(bytes[2]) || bytes[2] == '#');
 }
 
+ImageSize pnm_size(std::string_view head) {
+  Scanner scanner(head.substr(2));
+  const std::uint32_t width = scanner.number("width");
+  return {width, scanner.number("height")};
+}
+
 MapImage decode_pnm(std::string_view bytes, std::size_t max_pixels) {
   if (!looks_like_pnm(bytes)) throw ParseError("not a PGM (P2 or P5) or PPM (P3 or P6) image");
   Scanner scanner(bytes.substr(2));

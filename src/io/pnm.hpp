@@ -14,6 +14,9 @@ namespace gridmerge {
 /// Whether the bytes begin as a PGM (P2 plain, P5 raw) or PPM (P3, P6) does.
 bool looks_like_pnm(std::string_view bytes);
 
+/// What the header tells. Throws ParseError when it is malformed.
+ImageSize pnm_size(std::string_view head);
+
 /// Reads a PGM or PPM, plain or raw, of any maximum from 1 to 65535, with comments. Bytes after the last
 /// pixel are ignored (the format allows further images there). Throws ParseError when the header is
 /// malformed, the image has more than `max_pixels` pixels, data is missing, or a value exceeds the maximum.

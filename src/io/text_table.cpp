@@ -95,6 +95,10 @@ double TextTable::number(std::size_t row, std::string_view column) const {
   return value;
 }
 
+std::string TextTable::place(std::size_t row) const {
+  return path_.string() + ":" + std::to_string(rows_[row].line);
+}
+
 void TextTable::fail(std::size_t row, const std::string& cause) const {
   fail_at_line(rows_[row].line, cause);
 }

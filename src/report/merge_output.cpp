@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/report/merge_output.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <set>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
-#include "gridmerge/io/atomic_file.hpp"
+#include "gridmerge/grid/resample.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/page.hpp"
 #include "gridmerge/report/preview.hpp"
+#include "io/add_map.hpp"
+#include "io/made_directories.hpp"
 
 namespace gridmerge {
 
@@ -25,43 +29,6 @@ namespace fs = std::filesystem;
 constexpr const char* kPreview = "preview.png";
 constexpr const char* kReport = "report.html";
 constexpr const char* kTransforms = "transforms.json";
-
-// A directory that can be written to, made if need be with its parents. What was made is removed with this
-// object unless there is something in it by then, so that work that fails leaves no empty directory behind.
-class OutputDirectory {
- public:
-  explicit OutputDirectory(const fs::path& directory) : missing_(missing_parts(directory)) {
-    std::error_code error;
-    fs::create_directories(directory, error);
-    if (error) {
-      remove_empty();
-      throw FileError(directory, "cannot be created: " + error.message());
-    }
-    if (::access(directory.c_str(), W_OK | X_OK) != 0) {
-      throw FileError(directory, "cannot be written to: " + std::generic_category().message(errno));
-    }
-  }
-  ~OutputDirectory() { remove_empty(); }
-  OutputDirectory(const OutputDirectory&) = delete;
-  OutputDirectory& operator=(const OutputDirectory&) = delete;
-
- private:
-  // The innermost first.
-  static std::vector<fs::path> missing_parts(const fs::path& directory) {
-    std::vector<fs::path> missing;
-    std::error_code error;
-    for (fs::path part = directory; !part.empty() && !fs::exists(part, error); part = part.parent_path()) {
-      missing.push_back(part);
-    }
-    return missing;
-  }
-
-  void remove_empty() const {
-    for (const fs::path& part : missing_) ::rmdir(part.c_str());
-  }
-
-  std::vector<fs::path> missing_;
-};
 
 // merged.yaml, merged_<number>.yaml, and the same as .pgm.
 bool is_merged_map(const fs::path& file) {
@@ -94,7 +61,8 @@ std::vector<fs::path> outputs_in(const fs::path& directory) {
   return outputs;
 }
 
-void remove_stale_maps(const fs::path& directory, std::size_t components) {
+// Maps of an earlier run that this one has none for.
+void remove_stale_maps(FileSet& files, const fs::path& directory, std::size_t components) {
   std::set<fs::path> current;
   for (std::size_t i = 0; i < components; ++i) {
     const fs::path yaml = directory / component_file(i);
@@ -102,11 +70,9 @@ void remove_stale_maps(const fs::path& directory, std::size_t components) {
     current.insert(fs::path(yaml).replace_extension(".pgm"));
   }
   for (const fs::path& path : outputs_in(directory)) {
-    if (!is_merged_map(path.filename()) || current.contains(path)) continue;
     std::error_code error;
-    if (fs::is_directory(path, error)) continue;  // no map of ours
-    fs::remove(path, error);
-    if (error) throw FileError(path, "is of an earlier run and cannot be removed: " + error.message());
+    if (!is_merged_map(path.filename()) || current.contains(path)) continue;
+    if (!fs::is_directory(path, error)) files.remove(path.filename().string());  // or it is no map of ours
   }
 }
 
@@ -125,35 +91,72 @@ void protect(const std::vector<fs::path>& inputs, const fs::path& directory) {
 
 }  // namespace
 
+std::optional<double> check_merged_size(const std::vector<std::string>& names,
+                                        const std::vector<OccupancyGrid>& maps, double resolution) {
+  constexpr double kMaxCells = 268435456.0;  // 2^28, as fuse() has it
+  if (maps.empty()) return std::nullopt;
+  double diagonals = 0.0, finest = maps.front().resolution;
+  for (const OccupancyGrid& map : maps) {
+    diagonals += std::hypot(map.width, map.height) * map.resolution;
+    finest = std::min(finest, map.resolution);
+  }
+  const bool is_asked_for = resolution != 0.0;
+  if (!is_asked_for) resolution = finest;
+  // With room to spare, in two digits.
+  const auto fitting = [&](double cells) {
+    const double least = resolution * std::sqrt(2.0 * cells / kMaxCells);
+    const double digit = std::pow(10.0, std::floor(std::log10(least)) - 1.0);
+    return std::ceil(least / digit) * digit;
+  };
+  double cells = 0.0;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const OccupancyGrid& map = maps[i];
+    if (std::max(std::abs(map.origin.x), std::abs(map.origin.y)) + diagonals > kMaxOrigin)
+      throw FileError(
+          names[i],
+          fmt::format("lies too far from zero: with the other maps it may reach beyond {} m", kMaxOrigin));
+    const double ratio = map.resolution / resolution;
+    double own = static_cast<double>(map.cells.size()) * ratio * ratio;
+    if (own > kMaxCells && count_cells(map).known() > 0)
+      own = static_cast<double>(crop_to_known(map).cells.size()) * ratio * ratio;
+    if (own > kMaxCells && is_asked_for)
+      throw FileError(names[i],
+                      fmt::format("alone has {:.3g} cells of {:.4g} m, and a merged map may have 2^28: "
+                                  "choose an output resolution of {:.2g} m (--output-resolution)",
+                                  own, resolution, fitting(own)));
+    cells += own;
+  }
+  return cells > kMaxCells ? std::optional(fitting(cells)) : std::nullopt;
+}
+
 void prepare_merge_output(const fs::path& directory, const std::vector<fs::path>& inputs) {
-  const OutputDirectory output(directory);
+  const MadeDirectories made(directory);
+  if (::access(directory.c_str(), W_OK | X_OK) != 0)
+    throw FileError(directory, "cannot be written to: " + std::generic_category().message(errno));
   protect(inputs, directory);
 }
 
 void write_merge_output(const fs::path& directory, const std::vector<fs::path>& inputs,
                         const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
                         const MergeResult& result) {
-  const OutputDirectory output(directory);
+  FileSet files(directory, FileSet::IfMissing::make);
   protect(inputs, directory);
-  std::vector<StagedFile> files;
-  for (std::size_t i = 0; i < result.components.size(); ++i) {
-    for (StagedFile& file : stage_map(result.components[i].fused.grid, directory / component_file(i))) {
-      files.push_back(std::move(file));
-    }
-  }
-  files.emplace_back(directory / kPreview, preview_png(names, maps, result));
-  files.emplace_back(directory / kReport, report_page(names, maps, result));
-  files.emplace_back(directory / kTransforms, transforms_json(names, result));
-
-  for (StagedFile& file : files) file.commit();
-  remove_stale_maps(directory, result.components.size());
+  for (std::size_t i = 0; i < result.components.size(); ++i)
+    add_map(files, result.components[i].fused.grid, component_file(i));
+  files.add(kPreview, preview_png(names, maps, result));
+  files.add(kReport, report_page(names, maps, result));
+  files.add(kTransforms, transforms_json(names, result));
+  remove_stale_maps(files, directory, result.components.size());
+  files.commit();
 }
 
 void write_report(const fs::path& directory, const std::vector<fs::path>& inputs,
                   const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
                   const MergeResult& result) {
+  FileSet files(directory);
   protect(inputs, directory);
-  write_file_atomically(directory / kReport, report_page(names, maps, result));
+  files.add(kReport, report_page(names, maps, result));
+  files.commit();
 }
 
 }  // namespace gridmerge

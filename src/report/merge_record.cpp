@@ -263,7 +263,7 @@ MergeRecord read_merge_record(const std::filesystem::path& directory) {
   std::error_code error;
   if (!std::filesystem::exists(file, error))
     throw FileError(directory, "holds no transforms.json: it is not what 'gridmerge merge' has written to");
-  FileReader reader(file);
+  FileReader reader(file, NamedBy::file);
   return parse_transforms(file, reader.read_all(kMaxBytes));
 }
 
@@ -275,7 +275,7 @@ std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<Occup
   for (std::size_t i = 0; i < record.result.components.size(); ++i) {
     Component& component = record.result.components[i];
     const std::filesystem::path file = directory / component_file(i);
-    const OccupancyGrid merged = load_map(file).grid;
+    const OccupancyGrid merged = load_map(file, {.regular_files_only = true}).grid;
     std::vector<PlacedMap> placed;
     for (const Member& member : component.members) {
       const PlacedMap one{&maps[member.map], member.T_component_map};

@@ -48,23 +48,52 @@ Channel open_channel(bool terminal) {
   return {ends[0], ends[1]};
 }
 
-// Lowers the limit for the children that are started while it lives.
-class FileSizeLimit {
+// Lowers a limit for the children that are started while it lives.
+class Limit {
  public:
-  explicit FileSizeLimit(std::size_t bytes) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
+  Limit(__rlimit_resource resource, std::size_t bytes) : resource_(resource) {
+    ::getrlimit(resource_, &before_);
     if (bytes == 0) return;
     rlimit limit = before_;
     limit.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &limit);
+    ::setrlimit(resource_, &limit);
   }
-  ~FileSizeLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+  ~Limit() { ::setrlimit(resource_, &before_); }
+  Limit(const Limit&) = delete;
+  Limit& operator=(const Limit&) = delete;
 
  private:
+  __rlimit_resource resource_;
   rlimit before_{};
 };
+
+// With their usual effect in the child, even if this program was started to ignore them.
+class UsualSignals {
+ public:
+  UsualSignals() {
+    sigset_t signals;
+    ::sigemptyset(&signals);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&signals, signal);
+    ::posix_spawnattr_init(&attributes_);
+    ::posix_spawnattr_setsigdefault(&attributes_, &signals);
+    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF);
+  }
+  ~UsualSignals() { ::posix_spawnattr_destroy(&attributes_); }
+  UsualSignals(const UsualSignals&) = delete;
+  UsualSignals& operator=(const UsualSignals&) = delete;
+
+  const posix_spawnattr_t* get() const { return &attributes_; }
+
+ private:
+  posix_spawnattr_t attributes_;
+};
+
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
 
 pid_t start(const std::vector<std::string>& arguments, const RunOptions& options, const Channel& out,
             const Channel& err) {
@@ -88,13 +117,14 @@ pid_t start(const std::vector<std::string>& arguments, const RunOptions& options
 
   std::vector<std::string> words = {GRIDMERGE_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
+  std::vector<std::string> variables = options.environment;
+  for (char** variable = environ; *variable != nullptr; ++variable) variables.emplace_back(*variable);
+  const std::vector<char*> argv = pointers_to(words), environment = pointers_to(variables);
 
   pid_t child = 0;
-  const FileSizeLimit limit(options.file_size_limit);
-  const int error = ::posix_spawn(&child, argv[0], &actions, nullptr, argv.data(), environ);
+  const Limit file_size(RLIMIT_FSIZE, options.file_size_limit), stack(RLIMIT_STACK, options.stack_limit);
+  const UsualSignals signals;
+  const int error = ::posix_spawn(&child, argv[0], &actions, signals.get(), argv.data(), environment.data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw std::runtime_error("cannot start " + words[0]);
   return child;
@@ -120,11 +150,12 @@ void drain(Channel& out, std::string& out_text, Channel& err, std::string& err_t
   }
 }
 
-int exit_code_of(pid_t child) {
+void wait_for(pid_t child, Outcome& outcome) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  outcome.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
 }
 
 }  // namespace
@@ -139,14 +170,14 @@ Outcome run(const std::vector<std::string>& arguments, const RunOptions& options
 
   Outcome outcome;
   drain(out, outcome.out, err, outcome.err);
-  outcome.exit_code = exit_code_of(child);
+  wait_for(child, outcome);
   return outcome;
 }
 
-RunningProgram::RunningProgram(const std::vector<std::string>& arguments) {
+RunningProgram::RunningProgram(const std::vector<std::string>& arguments, const RunOptions& options) {
   Channel out = open_channel(false);
   Channel err = open_channel(false);
-  child_ = start(arguments, {}, out, err);
+  child_ = start(arguments, options, out, err);
   out.close_write_end();
   err.close_write_end();
   out_ = out.read_end;
@@ -173,7 +204,7 @@ Outcome RunningProgram::end_with(int signal) {
   Outcome outcome;
   Channel out{out_, -1}, err{err_, -1};
   drain(out, outcome.out, err, outcome.err);
-  outcome.exit_code = exit_code_of(child_);
+  wait_for(child_, outcome);
   child_ = 0;
   return outcome;
 }

@@ -184,7 +184,8 @@ TEST_F(RandomWalk, ResolutionsTooFarApartAreAnErrorThatNamesTheMaps) {
   const std::string fine = write_map(directory, "fine", map);
   expect_error(run({"match", whole, fine, "--search", "random-walk"}), fine, "resolutions");
   const std::string output = (directory.path() / "out").string();
-  expect_error(run({"merge", whole, fine, "-o", output, "--search", "random-walk"}), fine, "resolutions");
+  expect_error(run({"merge", whole, fine, "-o", output, "-q", "--search", "random-walk"}), fine,
+               "resolutions");
 }
 
 class WrongWalk : public testing::TestWithParam<std::vector<std::string>> {};

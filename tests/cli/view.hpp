@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <arpa/inet.h>
-#include <httplib.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "fixture.hpp"
+#include "http_client.hpp"
 
 namespace gridmerge::test {
 
@@ -30,12 +25,7 @@ class View : public CliTest {
     host = "127.0.0.1:" + std::to_string(port);
   }
 
-  /// It waits for as long as a busy machine may take under sanitizers.
-  httplib::Client client() const {
-    httplib::Client client("127.0.0.1", port);
-    client.set_read_timeout(100);
-    return client;
-  }
+  HttpClient client() const { return HttpClient(port); }
 
   /// A question about the second map, displaced from where it lies on the first.
   Json question() const {
@@ -49,29 +39,13 @@ class View : public CliTest {
             {"fixed", {{{"map", 0}, {"transform", members.at(0).at("transform")}}}}};
   }
 
-  int connect() const {
-    const int connection = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_EQ(::connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-    return connection;
-  }
+  Connection connect() const { return Connection(port); }
 
   /// What the server answers to raw bytes.
   std::string exchange(const std::string& bytes) const {
-    const int connection = connect();
-    EXPECT_EQ(::send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL),
-              static_cast<ssize_t>(bytes.size()));
-    const timeval patience{10, 0};
-    ::setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    std::string answer;
-    std::array<char, 4096> block{};
-    for (ssize_t count = 0; (count = ::recv(connection, block.data(), block.size(), 0)) > 0;)
-      answer.append(block.data(), static_cast<std::size_t>(count));
-    ::close(connection);
-    return answer;
+    const Connection connection = connect();
+    EXPECT_TRUE(connection.send(bytes));
+    return connection.receive(10);
   }
 
   /// The head of a question, but for what it says of its body's length.
@@ -80,7 +54,7 @@ class View : public CliTest {
   }
 
   void expect_alive() const {
-    const auto page = client().Get("/");
+    const auto page = client().get("/");
     ASSERT_TRUE(page);
     EXPECT_EQ(page->status, 200);
   }

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <httplib.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <functional>
 #include <thread>
 #include <vector>
 
@@ -24,21 +19,20 @@ TEST_F(ViewEnds, WithCtrlC) {
 }
 
 TEST_F(ViewEnds, WithCtrlCWhileSomebodyIsConnectedAndSilent) {
-  const int connection = connect();
+  const Connection connection = connect();
   EXPECT_EQ(server->end_with(SIGTERM).exit_code, 0);
-  ::close(connection);
 }
 
 /// Connections, as many as are served at once, that send a byte now and then for some ten seconds, or until
 /// the server is gone.
 class Dribble {
  public:
-  explicit Dribble(const std::function<int()>& connect) {
-    for (int i = 0; i < 8; ++i) connections_.push_back(connect());
+  explicit Dribble(int port) {
+    for (int i = 0; i < 8; ++i) connections_.emplace_back(port);
     sender_ = std::thread([this] {
       for (int byte = 0; byte < 12 && !ended_; ++byte) {
-        for (const int connection : connections_) {
-          if (::send(connection, "A", 1, MSG_NOSIGNAL) != 1) ended_ = true;
+        for (const Connection& connection : connections_) {
+          if (!connection.send("A")) ended_ = true;
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(800));
       }
@@ -46,7 +40,6 @@ class Dribble {
   }
   ~Dribble() {
     if (sender_.joinable()) sender_.join();
-    for (const int connection : connections_) ::close(connection);
   }
   Dribble(const Dribble&) = delete;
   Dribble& operator=(const Dribble&) = delete;
@@ -58,7 +51,7 @@ class Dribble {
   }
 
  private:
-  std::vector<int> connections_;
+  std::vector<Connection> connections_;
   std::atomic<bool> ended_ = false;
   std::thread sender_;
 };
@@ -68,7 +61,7 @@ void wait_a_little() {
 }
 
 TEST_F(ViewEnds, WithCtrlCWhileItsTimeIsWasted) {
-  Dribble dribble([&] { return connect(); });
+  Dribble dribble(port);
   wait_a_little();
   const Outcome outcome = server->end_with(SIGINT);
   EXPECT_EQ(outcome.exit_code, 0);
@@ -77,11 +70,23 @@ TEST_F(ViewEnds, WithCtrlCWhileItsTimeIsWasted) {
 }
 
 TEST_F(ViewEnds, AtOnceWithASecondSignalOfAnotherKind) {
-  const Dribble dribble([&] { return connect(); });
+  RunOptions options;  // where it would not end by itself: it has to wait for the system
+  options.environment = {"LD_PRELOAD=" GRIDMERGE_FAULT_SHIM, "GRIDMERGE_FAULT=hang 0",
+                         "ASAN_OPTIONS=verify_asan_link_order=0"};
+  RunningProgram stalled({"view", output}, options);
+  const std::string line = stalled.read_line();
+  const Connection connection(std::stoi(line.substr(line.rfind(':') + 1)));
+  ASSERT_TRUE(connection.send("GET / HTTP/1.1\r\n\r\n"));
   wait_a_little();
-  server->send(SIGINT);
+  stalled.send(SIGINT);
   wait_a_little();
-  EXPECT_EQ(server->end_with(SIGTERM).exit_code, -1);
+  EXPECT_EQ(stalled.end_with(SIGTERM).signal, SIGTERM);
+}
+
+TEST_F(ViewEnds, WhenItsTerminalIsClosed) {
+  const Outcome outcome = server->end_with(SIGHUP);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "");
 }
 
 TEST_F(ViewEnds, WithCtrlCWhileAnAnswerIsMade) {
@@ -90,9 +95,7 @@ TEST_F(ViewEnds, WithCtrlCWhileAnAnswerIsMade) {
   body["fixed"].push_back({{"map", 2}, {"transform", {{"x", 400}, {"y", 400}, {"theta", 0}}}});
   int status = -1;
   std::thread asker([&] {
-    httplib::Client patient = client();
-    patient.set_read_timeout(100);
-    const auto answer = patient.Post("/refine", body.dump(), kJson);
+    const auto answer = client().post("/refine", body.dump(), kJson);
     if (answer) status = answer->status;
   });
   wait_a_little();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view.hpp"
 
-#include <httplib.h>
 #include <ifaddrs.h>
 #include <netdb.h>
 #include <sys/socket.h>
@@ -17,12 +16,12 @@ namespace gridmerge::test {
 namespace {
 
 TEST_F(View, ServesTheLivePage) {
-  const auto page = client().Get("/");
+  const auto page = client().get("/");
   ASSERT_TRUE(page);
   EXPECT_EQ(page->status, 200);
-  EXPECT_EQ(page->get_header_value("Content-Type"), "text/html; charset=utf-8");
-  EXPECT_EQ(page->get_header_value("X-Content-Type-Options"), "nosniff");
-  EXPECT_EQ(page->get_header_value("Content-Security-Policy"), "frame-ancestors 'none'");
+  EXPECT_EQ(page->header("Content-Type"), "text/html; charset=utf-8");
+  EXPECT_EQ(page->header("X-Content-Type-Options"), "nosniff");
+  EXPECT_EQ(page->header("Content-Security-Policy"), "frame-ancestors 'none'");
   EXPECT_FALSE(page->has_header("Access-Control-Allow-Origin"));
   EXPECT_NE(page->body.find("connect-src 'self'; "), std::string::npos);
   // But for these two it is the page that the merge wrote.
@@ -33,11 +32,11 @@ TEST_F(View, ServesTheLivePage) {
 }
 
 TEST_F(View, RefinesAPoseThatWasLaidByHand) {
-  const auto answer = client().Post("/refine", question().dump(), kJson);
+  const auto answer = client().post("/refine", question().dump(), kJson);
   ASSERT_TRUE(answer);
   ASSERT_EQ(answer->status, 200) << answer->body;
-  EXPECT_EQ(answer->get_header_value("Content-Type"), kJson);
-  EXPECT_EQ(answer->get_header_value("X-Content-Type-Options"), "nosniff");
+  EXPECT_EQ(answer->header("Content-Type"), kJson);
+  EXPECT_EQ(answer->header("X-Content-Type-Options"), "nosniff");
   EXPECT_FALSE(answer->has_header("Access-Control-Allow-Origin"));
   const Json json = Json::parse(answer->body);
   expect_keys(json, {"transform", "score", "probability", "acceptance_index", "agreement", "disagreement",
@@ -53,7 +52,7 @@ TEST_F(View, OfAMapThatDoesNotBelongItSaysSo) {
   Json body = question();
   body["fixed"].push_back({{"map", 1}, {"transform", body.at("transform")}});
   body["moving"] = 2;
-  const auto answer = client().Post("/refine", body.dump(), "application/json; charset=utf-8");
+  const auto answer = client().post("/refine", body.dump(), "application/json; charset=utf-8");
   ASSERT_TRUE(answer);
   ASSERT_EQ(answer->status, 200) << answer->body;
   EXPECT_LT(Json::parse(answer->body).at("probability"), 0.1);
@@ -61,7 +60,7 @@ TEST_F(View, OfAMapThatDoesNotBelongItSaysSo) {
 
 TEST_F(View, NamesWhatIsWrongWithABody) {
   const auto expect_bad = [&](const std::string& body, const std::string& error) {
-    const auto answer = client().Post("/refine", body, kJson);
+    const auto answer = client().post("/refine", body, kJson);
     ASSERT_TRUE(answer) << body;
     EXPECT_EQ(answer->status, 400) << body << answer->body;
     const Json json = Json::parse(answer->body);
@@ -97,12 +96,12 @@ TEST_F(View, NamesWhatIsWrongWithABody) {
 }
 
 TEST_F(View, TakesNoMoreThanAMebibyte) {
-  const auto answer = client().Post("/refine", std::string((1u << 20) + 1, ' '), kJson);
+  const auto answer = client().post("/refine", std::string((1u << 20) + 1, ' '), kJson);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->status, 413);
   // A few bytes that unfold to many are not unfolded.
-  httplib::Headers headers{{"Content-Encoding", "gzip"}};
-  const auto folded = client().Post("/refine", headers, "\x1f\x8b", kJson);
+  HttpHeaders headers{{"Content-Encoding", "gzip"}};
+  const auto folded = client().post("/refine", "\x1f\x8b", kJson, headers);
   ASSERT_TRUE(folded);
   EXPECT_EQ(folded->status, 415);
   expect_alive();
@@ -151,21 +150,21 @@ TEST_F(View, ServesNoFile) {
   for (const char* path :
        {"/report.html", "/transforms.json", "/merged.pgm", "/../left.yaml", "/..%2fleft.yaml",
         "/%2e%2e/%2e%2e/etc/passwd", "//etc/passwd", "/./", "/refine", "/%00", "/index.html"}) {
-    const auto answer = client().Get(path);
+    const auto answer = client().get(path);
     ASSERT_TRUE(answer) << path;
     EXPECT_EQ(answer->status, 404) << path;
     EXPECT_EQ(answer->body, "{\"error\":\"there is nothing here\"}\n") << path;
   }
-  EXPECT_EQ(client().Post("/", "{}", kJson)->status, 404);
-  EXPECT_EQ(client().Delete("/")->status, 404);
-  EXPECT_EQ(client().Options("/refine")->status, 404);
-  EXPECT_EQ(client().Put("/refine", "{}", kJson)->status, 404);
+  EXPECT_EQ(client().post("/", "{}", kJson)->status, 404);
+  EXPECT_EQ(client().ask("DELETE", "/")->status, 404);
+  EXPECT_EQ(client().ask("OPTIONS", "/refine")->status, 404);
+  EXPECT_EQ(client().ask("PUT", "/refine", {{"Content-Type", kJson}}, "{}")->status, 404);
 }
 
 TEST_F(View, AnswersItsOwnPageAlone) {
   const std::string body = question().dump();
-  const auto status = [&](const httplib::Headers& headers, const char* type = kJson) {
-    const auto answer = client().Post("/refine", headers, body, type);
+  const auto status = [&](const HttpHeaders& headers, const char* type = kJson) {
+    const auto answer = client().post("/refine", body, type, headers);
     return answer ? answer->status : -1;
   };
   const std::string at = host.substr(host.find(':'));
@@ -176,8 +175,8 @@ TEST_F(View, AnswersItsOwnPageAlone) {
        {std::string("example.org"), "example.org" + at, std::string("localhost"), std::string("localhost:1"),
         "localhost" + at + ".example.org", "127.0.0.1.example.org" + at, std::string("")}) {
     EXPECT_EQ(status({{"Host", foreign}}), 403) << foreign;
-    httplib::Headers headers{{"Host", foreign}};
-    EXPECT_EQ(client().Get("/", headers)->status, 403) << foreign;
+    HttpHeaders headers{{"Host", foreign}};
+    EXPECT_EQ(client().get("/", headers)->status, 403) << foreign;
   }
   for (const std::string& foreign :
        {std::string("http://example.org"), "https://127.0.0.1" + at, std::string("null"),
@@ -216,7 +215,7 @@ TEST_F(View, AnswersSeveralAtOnce) {
   std::vector<std::thread> askers;
   for (std::string& answer : answers) {
     askers.emplace_back([&] {
-      const auto found = client().Post("/refine", body, kJson);
+      const auto found = client().post("/refine", body, kJson);
       answer = found ? found->body : "";
     });
   }
@@ -257,7 +256,7 @@ TEST_F(View, WarnsOfOthersWhereOthersCanReachIt) {
     // Browsers spell the address in their own way.
     const int at = std::atoi(line.substr(start.size()).c_str());
     if (address.starts_with("127")) {
-      EXPECT_EQ(httplib::Client("127.0.0.1", at).Get("/")->status, 200);
+      EXPECT_EQ(HttpClient(at).get("/")->status, 200);
     }
     return program.end_with(SIGTERM).err;
   };

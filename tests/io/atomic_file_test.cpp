@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -63,10 +64,11 @@ TEST(AtomicFile, DisappearsWithoutCommit) {
 TEST(AtomicFile, ManyAreStagedAtOnce) {
   const TemporaryDirectory directory;
   {
-    std::vector<StagedFile> staged;
-    for (const char* name : {"a", "b", "c"}) staged.emplace_back(directory.file(name), name);
-    staged[0].commit();
-    staged[1].commit();
+    StagedFile a(directory.file("a"), "a");
+    StagedFile b(directory.file("b"), "b");
+    const StagedFile c(directory.file("c"), "c");
+    a.commit();
+    b.commit();
   }
   EXPECT_EQ(directory.names(), (Names{"a", "b"}));
   EXPECT_EQ(read_file(directory.file("a")), "a");
@@ -150,6 +152,23 @@ TEST(AtomicFile, LeavesAllAsItWasWhenItCannotTakeItsPlace) {
     EXPECT_TRUE(contains(test::message_of<FileError>([&] { staged.commit(); }), "a: cannot be written: "));
   }
   EXPECT_EQ(directory.names(), Names{"a"});
+}
+
+TEST(AtomicFile, RemovesWhatAKilledProgramHasLeft) {
+  const TemporaryDirectory directory;
+  const Names others{".gridmerge-1-2.tmp.txt", ".gridmerge-x-1.tmp", ".gridmerge-12.tmp", ".gridmerge.tmp"};
+  for (const std::string& name : others) directory.write(name, "mine");
+  directory.write(".gridmerge-999999-0.tmp", "left");
+  directory.write(".gridmerge-1-12.tmp", "left");
+  {
+    const StagedFile unfinished(directory.file("a"), "new");  // of a program that still runs
+    write_file_atomically(directory.file("b"), "new");
+    EXPECT_EQ(directory.names().size(), others.size() + 2);
+  }
+  Names expected = others;
+  expected.emplace_back("b");
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(directory.names(), expected);
 }
 
 TEST(AtomicFile, LeavesAllAsItWasOnAFullDisk) {

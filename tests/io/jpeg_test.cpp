@@ -55,6 +55,25 @@ TEST(Jpeg, ReadsColorsBaselineAndProgressive) {
   }
 }
 
+TEST(Jpeg, TellsItsSizeInItsFirstBytes) {
+  for (const bool progressive : {false, true}) {
+    std::string image = test::rgb_jpeg(33, 17, halves(33, 17, 3, 254, 0), progressive);
+    const std::string note = std::string("\xff\xfe\xc3\x50", 4) + std::string(49998, '\xc0');  // a comment
+    image.insert(2, note + "stray");
+    const std::optional<ImageSize> size = jpeg_size(image);
+    ASSERT_TRUE(size);
+    EXPECT_EQ(size->width, 33U);
+    EXPECT_EQ(size->height, 17U);
+    EXPECT_EQ(decode_jpeg(image, kLimit).width, 33);
+    for (const std::size_t length : {2U, 3U, 10U, 50000U}) EXPECT_FALSE(jpeg_size(image.substr(0, length)));
+  }
+}
+
+RC_GTEST_PROP(Jpeg, AnyBytesHaveASizeOrNone, (const std::string& bytes)) {
+  const std::optional<ImageSize> size = jpeg_size("\xff\xd8\xff" + bytes);
+  RC_ASSERT(!size || size->width < 65536);
+}
+
 TEST(Jpeg, RefusesWhatIsCutShort) {
   for (const bool progressive : {false, true}) {
     const std::string whole = test::rgb_jpeg(64, 64, halves(64, 64, 3, 254, 0), progressive);

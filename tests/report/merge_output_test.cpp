@@ -161,6 +161,24 @@ TEST(MergeOutput, SaysWhereItMayNotWrite) {
                        "cannot be written to"));
 }
 
+TEST(MergeOutput, ForeseesTheSizeOfTheMergedMap) {
+  EXPECT_FALSE(check_merged_size(kNames, kMaps, 0.0));
+  EXPECT_FALSE(check_merged_size({}, {}, 0.0));
+  // 150 million cells each.
+  const std::optional<double> coarser = check_merged_size(kNames, kMaps, 1e-5);
+  ASSERT_TRUE(coarser);
+  EXPECT_NEAR(*coarser, 2.2e-5, 1e-9);
+  EXPECT_FALSE(check_merged_size(kNames, kMaps, *coarser));
+  EXPECT_TRUE(contains(message_of<FileError>([] { check_merged_size(kNames, kMaps, 5e-6); }),
+                       "a.yaml: alone has 6e+08 cells"));
+  std::vector<OccupancyGrid> far = kMaps;
+  far[2].origin.y = 1e9 - 0.1;
+  EXPECT_TRUE(
+      contains(message_of<FileError>([&] { check_merged_size(kNames, far, 0.0); }), "c.yaml: lies too far"));
+  far[2].origin.y = 1e9 - 10.0;
+  EXPECT_FALSE(check_merged_size(kNames, far, 0.0));
+}
+
 TEST(MergeOutput, AFullDiskLeavesTheDirectoryAsItWas) {
   const TemporaryDirectory directory;
   write_merge_output(directory.path(), kInputs, kNames, kMaps, two_components());

@@ -18,7 +18,7 @@ struct DatasetOptions {
 /// `sets.tsv`. The maps of `elsewhere`, which are of other buildings, become `elsewhere_1.yaml` and so on,
 /// each of them a negative with every robot's map. Negatives are also the strangers of the simulation.
 ///
-/// All files are complete on the disk before the first takes its place, the tables last. Throws FileError.
+/// All files take their places at one point of time, even if the program is killed. Throws FileError.
 void write_dataset(const std::filesystem::path& directory, const Simulation& simulation,
                    const std::vector<Simulation>& elsewhere, const DatasetOptions& options = {});
 

@@ -13,6 +13,7 @@ namespace gridmerge {
 struct TruthMap {
   std::string name;            ///< as the file writes it
   std::filesystem::path path;  ///< a relative name is taken relative to the truth file's directory
+  std::string named_at = {};   ///< "pairs.tsv:3": the truth file and the line, for messages
 };
 
 /// Two maps of one place.

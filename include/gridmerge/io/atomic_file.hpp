@@ -9,9 +9,9 @@
 namespace gridmerge {
 
 /// A file in two steps: the constructor writes the bytes to a temporary file in the same directory and
-/// flushes them to the disk; commit() renames it into place. Without commit the temporary file disappears
-/// with this object. Outputs that belong together are staged first and committed after, so that a full disk
-/// leaves none of them.
+/// flushes them to the disk; commit() renames it into place and flushes the directory. Without commit the
+/// temporary file disappears with this object. What a killed program has left is removed by the next file
+/// that is staged in the same directory; a lock tells it from the file of a program that still runs.
 ///
 /// An existing file is replaced as a whole (of a symbolic link, the file that it leads to); readers see the
 /// old bytes or the new ones. A link that leads to nothing is itself replaced by the file. Anything else that
@@ -22,17 +22,17 @@ class StagedFile {
   /// Throws FileError; then nothing is left behind.
   StagedFile(std::filesystem::path path, std::string_view bytes);
   ~StagedFile();
-  StagedFile(StagedFile&& other) noexcept;
   StagedFile(const StagedFile&) = delete;
   StagedFile& operator=(const StagedFile&) = delete;
-  StagedFile& operator=(StagedFile&&) = delete;
 
-  /// Once only. Throws FileError; then the destination is as it was.
+  /// Once only. Throws FileError: the destination is as it was, or, if the directory alone cannot be flushed,
+  /// it is the new file.
   void commit();
 
  private:
   std::filesystem::path path_;
   std::filesystem::path temporary_;  // empty once it is gone
+  int descriptor_ = -1;              // open, as it holds the lock
 };
 
 /// One file, staged and committed. Throws FileError.

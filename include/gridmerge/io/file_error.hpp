@@ -14,7 +14,7 @@ std::string escape_controls(std::string_view text);
 
 /// A file that cannot be read or written. The message names the file and the cause, "a.yaml: missing key
 /// 'origin'", on one line: control characters (file names and file contents are not ours to choose) are shown
-/// as escapes.
+/// as escapes. Of one above 10,000 bytes the middle is left out.
 class FileError : public std::runtime_error {
  public:
   explicit FileError(std::string_view message);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
-#include "gridmerge/io/atomic_file.hpp"
 #include "gridmerge/io/file_error.hpp"
 
 namespace gridmerge {
@@ -16,12 +15,19 @@ namespace gridmerge {
 inline constexpr double kMinResolution = 1e-6;
 inline constexpr double kMaxResolution = 1e3;
 
+/// [m] Origins further from zero are no map's: far beyond any, and still far from where a double stops
+/// resolving micrometres.
+inline constexpr double kMaxOrigin = 1e9;
+
 struct LoadOptions {
   double resolution = 0.0;           ///< [m/cell] of a bare image; 0 = a bare image is an error
   std::size_t max_cells = 1u << 28;  ///< larger maps are refused before memory is taken for them
   /// Read thresholds to the letter: in trinary mode the gray that map savers write for unknown is then
   /// whatever the thresholds make of it.
   bool literal_thresholds = false;
+  /// For a map that another file names: a pipe or a device is an error, as it may never end. A map's image
+  /// always has to be a regular file.
+  bool regular_files_only = false;
 };
 
 /// What a warning about a map's file is about. Warnings of one kind differ in their figures only.
@@ -75,33 +81,28 @@ struct LoadedMap {
 ///
 /// Refused: resolutions outside [kMinResolution, kMaxResolution], origins that are not finite or beyond 1e9
 /// m, thresholds outside [0, 1] or crossed, YAML above 1 MiB, images with less data than their header
-/// promises (more is tolerated). Throws FileError. O(pixels); peak memory is the file, its decoded pixels and
-/// 3 to 8 bytes a cell.
+/// promises (more is tolerated). Throws FileError. O(pixels); peak memory is the file and 3
+/// to 8 bytes a cell, of a progressive JPEG up to 6 more.
 LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// The files that load_map(path) reads: the YAML and its image, or a bare image alone. The image is not
 /// opened, and need not be there. Throws FileError for a YAML that load_map refuses. O(bytes of the YAML).
-std::vector<std::filesystem::path> map_files(const std::filesystem::path& path);
+std::vector<std::filesystem::path> map_files(const std::filesystem::path& path,
+                                             const LoadOptions& options = {});
 
 /// Writes the map for map_server: the YAML, and beside it the image, of the same name but for its ending
 /// `.pgm` (trinary: occupied 0, free 254, unknown 205; thresholds 0.65 and 0.196). `yaml_path` must end in
 /// .yaml or .yml. Loading gives the same cells, resolution and origin, to the bit; probabilities are not
 /// kept.
 ///
-/// Both files are complete on disk before either takes its place, the image first. Throws FileError, then
-/// nothing is left behind (but a new image if only the YAML cannot take its place), or std::invalid_argument
-/// for a grid that `validate` refuses.
+/// Both files take their places at one point of time, even if the program is killed. A link of such a name is
+/// replaced, not followed. Throws FileError, then the old files are there and nothing is left behind, or
+/// std::invalid_argument for a grid that `validate` refuses.
 void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
 
-/// The files of a map with its probabilities, staged as stage_map()'s: mode `raw`, a pixel the occupancy in
-/// percent, 255 unknown. Loading gives the probabilities, rounded to a percent, and the cells that follow
-/// from them with thresholds 0.65 and 0.196. Throws as save_map(), and std::invalid_argument for a grid
-/// without probabilities.
-std::vector<StagedFile> stage_probability_map(const OccupancyGrid& grid,
-                                              const std::filesystem::path& yaml_path);
-
-/// The files that save_map() writes, staged: the image, then the YAML. For a map that belongs to other
-/// outputs.
-std::vector<StagedFile> stage_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
+/// Writes the map with its probabilities: mode `raw`, a pixel the occupancy in percent, 255 unknown. Loading
+/// gives the probabilities, rounded to a percent, and the cells that follow from them with thresholds 0.65
+/// and 0.196. Throws as save_map(), and std::invalid_argument for a grid without probabilities.
+void save_probability_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
 
 }  // namespace gridmerge

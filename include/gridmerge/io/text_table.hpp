@@ -24,6 +24,8 @@ class TextTable {
   const std::string& text(std::size_t row, std::string_view column) const;
   /// The field as a finite number.
   double number(std::size_t row, std::string_view column) const;
+  /// "file:line".
+  std::string place(std::size_t row) const;
   [[noreturn]] void fail(std::size_t row, const std::string& cause) const;
 
  private:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,15 +21,25 @@ bool is_merge_output(const std::filesystem::path& name);
 void prepare_merge_output(const std::filesystem::path& directory,
                           const std::vector<std::filesystem::path>& inputs);
 
+/// Makes sure, before long work, that what comes of the maps can be written: throws FileError, naming the
+/// map, when one alone has more than 2^28 cells of `resolution` [m] (0: that of the finest map that is
+/// placed, so that nothing is sure yet), or lies so far from zero that the merged map may begin further off
+/// than a map file can say. Returns a resolution to choose where the merged map may have more cells than
+/// that, as all maps side by side have; else nothing. O(cells).
+std::optional<double> check_merged_size(const std::vector<std::string>& names,
+                                        const std::vector<OccupancyGrid>& maps, double resolution);
+
 /// Writes what a merge gives to `directory`, which is made if need be, with its parents: `merged.yaml` with
 /// `merged.pgm` for the first component, `merged_2.yaml` and so on for further ones, `preview.png`,
-/// `report.html`, and, last, `transforms.json`. `inputs` as in prepare_merge_output(), which is called first;
+/// `report.html` and `transforms.json`. `inputs` as in prepare_merge_output(), which is called first;
 /// `names[i]` is what to call map i in them.
 ///
-/// All files are complete on the disk before the first takes its place: when the disk is full, the directory
-/// stays as it was, or is not made. Every other `merged.yaml`, `merged_<number>.yaml` and `.pgm` in the
-/// directory is then removed, so that no map of an earlier run looks like one of this run; without a
-/// component there is no `merged.yaml`. Throws FileError.
+/// Every other `merged.yaml`, `merged_<number>.yaml` and `.pgm` in the directory is removed, so that no map
+/// of an earlier run looks like one of this run; without a component there is no `merged.yaml`. At every
+/// point of time who opens files by name finds all of an earlier run's or all of this one's, whether the
+/// program is killed, the disk is full or another merge writes there too; what a killed one has left is put
+/// in order first. Other files of the directory stay. Throws FileError: then the directory is as it was, or
+/// is not made.
 void write_merge_output(const std::filesystem::path& directory,
                         const std::vector<std::filesystem::path>& inputs,
                         const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,

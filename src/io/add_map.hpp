@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "file_set.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
+
+namespace gridmerge {
+
+/// Adds the files that save_map() writes, the image first, to a set that the map belongs to. `yaml_name` has
+/// no folder. Throws as save_map().
+void add_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name);
+
+/// The same of save_probability_map().
+void add_probability_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name);
+
+}  // namespace gridmerge

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+namespace gridmerge {
+
+/// Throws FileError unless nothing is at `path` or a regular file, by whichever link: a rename would put a
+/// file in the place of a device such as /dev/null, for everybody.
+void check_destination(const std::filesystem::path& path);
+
+}  // namespace gridmerge

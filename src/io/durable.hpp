@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace gridmerge {
+
+/// The system's words for an errno.
+std::string describe_errno(int error);
+
+/// Writes all bytes and flushes them to the disk. 0, or the errno that stopped it.
+int write_and_flush(int descriptor, std::string_view bytes);
+
+/// Flushes a file, or what a directory lists, so that a rename in it outlives a power cut. 0, or an errno.
+int flush_path(const std::filesystem::path& path);
+
+}  // namespace gridmerge

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace gridmerge {
+
+/// A directory, made if need be with its parents. What was made is removed with this object unless there is
+/// something in it by then, so that work that fails leaves no empty directory behind.
+class MadeDirectories {
+ public:
+  /// Throws FileError.
+  explicit MadeDirectories(const std::filesystem::path& directory);
+  ~MadeDirectories();
+  MadeDirectories(const MadeDirectories&) = delete;
+  MadeDirectories& operator=(const MadeDirectories&) = delete;
+
+ private:
+  void remove_empty() const;
+
+  std::vector<std::filesystem::path> made_;  // the innermost first
+};
+
+}  // namespace gridmerge

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "fixture.hpp"
+
+namespace gridmerge::test {
+
+/// What who opens files by name finds in a directory.
+using Files = std::map<std::string, std::string>;
+
+inline Files files_in(const std::filesystem::path& directory) {
+  Files files;
+  if (!std::filesystem::exists(directory)) return files;
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    if (std::filesystem::is_regular_file(entry.path()))
+      files[entry.path().filename().string()] = read_file(entry.path());
+  }
+  return files;
+}
+
+/// Merges two small maps into a directory in which calls that write may fail (tests/cli/fault_shim.cpp).
+class FaultTest : public testing::Test {
+ protected:
+  FaultTest() {
+    EXPECT_EQ(run(merge_into("old", "0.1")).exit_code, 0);
+    EXPECT_EQ(run(merge_into("new")).exit_code, 0);
+    old_set = files_in(directory.file("old"));
+    old_set["notes"] = "somebody's own";
+    old_set["merged_7.yaml"] = "of an earlier run";
+    new_set = files_in(directory.file("new"));
+  }
+
+  std::vector<std::string> merge_into(const std::string& name, const std::string& resolution = "0.2") const {
+    return {"merge",
+            a,
+            b,
+            "--init",
+            poses,
+            "--fix",
+            a,
+            "--fix",
+            b,
+            "-o",
+            directory.file(name),
+            "--output-resolution",
+            resolution,
+            "--threads",
+            "1"};
+  }
+
+  /// The old set in a directory of this name, alone.
+  void write_old(const std::string& name) const {
+    std::filesystem::remove_all(directory.file(name));
+    for (const auto& [file, content] : old_set) directory.write(name + "/" + file, content);
+  }
+
+  RunOptions with_fault(const std::string& fault) const {
+    RunOptions options;
+    options.environment = {"LD_PRELOAD=" GRIDMERGE_FAULT_SHIM, "GRIDMERGE_FAULT=" + fault,
+                           "GRIDMERGE_FAULT_COUNT=" + directory.file("count"),
+                           "ASAN_OPTIONS=verify_asan_link_order=0"};
+    return options;
+  }
+
+  /// The calls of the program's last run that ended by itself.
+  int count() const { return std::stoi(read_file(directory.file("count"))); }
+
+  /// Without what is not the merge's own.
+  static Files outputs_of(Files files) {
+    files.erase("notes");
+    files.erase(".gridmerge.lock");
+    return files;
+  }
+
+  const TemporaryDirectory directory;
+  const std::string a = write_map(directory, "a", map_part(draw_building(1), {0, 0, 5, 5}, {}));
+  const std::string b = write_map(directory, "b", map_part(draw_building(1), {2, 0, 7, 5}, {}));
+  const std::string poses =
+      directory.write("poses.tsv", "map\tx\ty\ttheta\na.yaml\t0\t0\t0\nb.yaml\t0\t0\t0\n");
+  Files old_set;
+  Files new_set;
+};
+
+}  // namespace gridmerge::test

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/file_set.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/io/file_error.hpp"
+#include "io/support.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace gridmerge {
+namespace {
+
+using test::contains;
+using test::read_file;
+using test::TemporaryDirectory;
+using Names = std::vector<std::string>;
+
+TEST(FileSet, ReplacesTheOldFilesAndRemovesThoseWithoutSuccessor) {
+  const TemporaryDirectory directory;
+  for (const char* name : {"a", "b", "c", "other"}) directory.write(name, "old");
+  FileSet files(directory.path());
+  files.add("a", "new a");
+  files.add("d", "new d");
+  files.remove("b");
+  EXPECT_EQ(read_file(directory.file("a")), "old");
+  files.commit();
+  EXPECT_EQ(read_file(directory.file("a")), "new a");
+  EXPECT_EQ(read_file(directory.file("d")), "new d");
+  EXPECT_EQ(read_file(directory.file("c")), "old");
+  EXPECT_FALSE(std::filesystem::is_symlink(directory.file("a")));
+  EXPECT_FALSE(std::filesystem::exists(directory.file("b")));
+}
+
+TEST(FileSet, WithoutCommitNothingHasHappened) {
+  const TemporaryDirectory directory;
+  directory.write("a", "old");
+  {
+    FileSet files(directory.path());
+    files.add("a", "new");
+    FileSet made(directory.path() / "new" / "newer", FileSet::IfMissing::make);
+  }
+  EXPECT_EQ(read_file(directory.file("a")), "old");
+  EXPECT_EQ(directory.names(), Names{"a"});
+}
+
+TEST(FileSet, PutsInOrderWhatAKilledProgramHasLeft) {
+  for (const std::string current : {"old", "new"}) {
+    const TemporaryDirectory directory;
+    directory.write(".gridmerge.lock", "");
+    directory.write(".gridmerge.tmp/old/a", "old a");
+    directory.write(".gridmerge.tmp/old/gone", "old gone");
+    directory.write(".gridmerge.tmp/new/a", "new a");
+    directory.write(".gridmerge.tmp/new/added", "new added");
+    directory.write("a", current + " a");  // of which the program had made a file again
+    std::filesystem::create_symlink(current, directory.file(".gridmerge.tmp/current"));
+    for (const std::string name : {"gone", "added"})
+      std::filesystem::create_symlink(".gridmerge.tmp/current/" + name, directory.file(name));
+    { const FileSet files(directory.path()); }
+    EXPECT_EQ(directory.names(), (Names{"a", current == "old" ? "gone" : "added"}));
+    EXPECT_EQ(read_file(directory.file("a")), current + " a");
+    EXPECT_FALSE(std::filesystem::is_symlink(directory.file(current == "old" ? "gone" : "added")));
+  }
+}
+
+TEST(FileSet, ReplacesALinkAndNotWhatItLeadsTo) {
+  const TemporaryDirectory directory;
+  directory.write("elsewhere/a", "mine");
+  std::filesystem::create_symlink("elsewhere/a", directory.file("a"));
+  FileSet files(directory.path());
+  files.add("a", "new");
+  files.commit();
+  EXPECT_EQ(read_file(directory.file("a")), "new");
+  EXPECT_FALSE(std::filesystem::is_symlink(directory.file("a")));
+  EXPECT_EQ(read_file(directory.file("elsewhere/a")), "mine");
+}
+
+TEST(FileSet, RefusesWhatIsNoRegularFile) {
+  const TemporaryDirectory directory;
+  directory.write("folder/file", "mine");
+  ASSERT_EQ(mkfifo(directory.file("pipe").c_str(), 0600), 0);
+  FileSet files(directory.path());
+  const auto error_of = [&](const char* name) {
+    return test::message_of<FileError>([&] { files.add(name, "new"); });
+  };
+  EXPECT_TRUE(contains(error_of("folder"), "it names a directory"));
+  EXPECT_TRUE(contains(error_of("pipe"), "it is not a regular file"));
+}
+
+TEST(FileSet, RefusesWhatIsInTheWayOfItsFolder) {
+  const TemporaryDirectory directory;
+  std::filesystem::create_symlink("/tmp", directory.file(".gridmerge.tmp"));
+  EXPECT_TRUE(contains(test::message_of<FileError>([&] { const FileSet files(directory.path()); }),
+                       ".gridmerge.tmp: is in the way"));
+  EXPECT_EQ(directory.names(), Names{".gridmerge.tmp"});
+}
+
+TEST(FileSet, NeedsADirectory) {
+  const TemporaryDirectory directory;
+  EXPECT_TRUE(
+      contains(test::message_of<FileError>([&] { const FileSet files(directory.path() / "missing"); }),
+               "No such file"));
+}
+
+TEST(FileSet, OneWritesAtATime) {
+  const TemporaryDirectory directory;
+  std::vector<std::thread> writers;
+  for (const char* content : {"1", "2", "3", "4"}) {
+    writers.emplace_back([&directory, content] {
+      for (int i = 0; i < 25; ++i) {
+        FileSet files(directory.path() / "new", FileSet::IfMissing::make);
+        files.add("a", content);
+        files.add("b", content);
+        if (i % 2 == 0) files.commit();
+      }
+    });
+  }
+  for (std::thread& writer : writers) writer.join();
+  EXPECT_EQ(read_file(directory.file("new/a")), read_file(directory.file("new/b")));
+  EXPECT_NE(read_file(directory.file("new/a")), "");
+  EXPECT_EQ(directory.names(), Names{"new"});
+}
+
+TEST(FileSet, WhoWaitsCanBeCancelled) {
+  const TemporaryDirectory directory;
+  const FileSet first(directory.path());
+  std::atomic<bool> cancelled = false;
+  std::thread canceller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    cancelled = true;
+  });
+  EXPECT_THROW(with_cancellation(cancelled, [&] { const FileSet second(directory.path()); }), Cancelled);
+  canceller.join();
+}
+
+}  // namespace
+}  // namespace gridmerge
