@@ -31,8 +31,10 @@ CASES = HERE / "cases.tsv.gz"
 TERM, RANK = "term: ", "rank: "
 STANDS_OUT = "stands out"  # the term that tells the share: the logarithm of its odds
 RIDGE = 1.0  # on weights of terms that are scaled to unit variance
-# Corners fit corners, plain rooms fit plain rooms, and corridors slide: of these the cases hold too few.
+# Corners fit corners, plain rooms fit plain rooms, and corridors slide: of these the cases hold too few. So weights are this
+# at least, and more is added to one than was fitted.
 LEAST_WEIGHT = {"tells apart": 1.0, "held": 1.0}
+CAUTION = {"tells apart": 2.0}
 # Hardly a wrong pose has any of it, so the cases alone would give it any weight.
 MOST_WEIGHT = {"far ahead, bent": 12.0}
 CASES_A_KIND = 540.0  # what the true pairs of a kind of maps weigh together, and the unrelated ones
@@ -182,7 +184,7 @@ def fit(names: Names, cases: list[Case]) -> Model:
         return value + 0.5 * (ridge * w * w).sum(), x.T @ slope + ridge * w, hessian
 
     w = minimise(loss, np.array([-5.0, *([0.3] * len(names.terms))]), least, most)
-    return Model(float(w[0]), w[1:] / scale, ranks)
+    return Model(float(w[0]), w[1:] / scale + np.array([CAUTION.get(name, 0.0) for name in names.terms]), ranks)
 
 
 def judge(names: Names, model: Model, cases: list[Case]) -> list[tuple[float, str]]:

@@ -85,6 +85,7 @@ def match(
     threads: int = 0,
     accept: float = _core.DEFAULT_ACCEPT,
     max_hypotheses: int = 10,
+    search: str = "exhaustive",
     progress: Progress | None = None,
 ) -> MatchResult:
     """Finds how `moving` lies on `fixed`, searching every pose, and says whether to believe it.
@@ -94,6 +95,8 @@ def match(
         threads: 0 = one a core. The result does not depend on it.
         accept: the verdict is "accepted" from this probability on.
         max_hypotheses: how many distinct hypotheses the result lists.
+        search: "exhaustive", a quick look at every pose, then a thorough one if that decides nothing; "quick" or "thorough", one
+            of the two alone. The paper's search has a function of its own, match_by_random_walk().
         progress: called now and then, in the calling thread, with the share of the work that is done.
 
     Other Python threads run meanwhile, and Ctrl-C ends the work. Raises FileError for a file that is no map, and
@@ -105,6 +108,7 @@ def match(
         _arguments.threads(threads),
         _arguments.share("accept", accept),
         _arguments.whole("max_hypotheses", max_hypotheses, 0, 2**31),
+        _arguments.choice("search", search, _core.SEARCH_METHODS),
         _arguments.progress(progress),
     )
     return to_match_result(result)

@@ -188,6 +188,7 @@ def merge(
     accept: float = _core.DEFAULT_ACCEPT,
     max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
     output_resolution: float | None = None,
+    search: str = "exhaustive",
     progress: Progress | None = None,
 ) -> MergeResult:
     """Merges maps by what all pairs of them say together; a map that does not belong is left out.
@@ -206,6 +207,7 @@ def merge(
         max_false_joins: so many joins of the whole merge may be expected to be false; those that are least sure are not
             made. It holds beside `accept`. "tree" does not use it.
         output_resolution: of the merged maps [m]; None = the finest of the maps'.
+        search: as of match(). With "exhaustive" the thorough look is for pairs whose maps the quick one leaves apart.
         progress: called now and then, in the calling thread, with the share of the pairs that are matched.
 
     The frame of a component is that of its first member, unless a member is fixed. Other Python threads run meanwhile,
@@ -227,6 +229,7 @@ def merge(
         _arguments.at_least_0("max_false_joins", max_false_joins),
         to_output_resolution(output_resolution),
         up_the_tree,
+        _arguments.choice("search", search, _core.SEARCH_METHODS),
         _arguments.progress(progress),
     )
     return to_merge_result(merged, grids, called, more_inputs)

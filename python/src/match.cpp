@@ -10,11 +10,12 @@ namespace gridmerge::python {
 namespace {
 
 MatchResult match_maps(const Map& fixed, const Map& moving, int threads, double accept,
-                       std::size_t max_hypotheses, const nb::object& progress) {
+                       std::size_t max_hypotheses, const std::string& search, const nb::object& progress) {
   MatchOptions options;
   options.threads = threads;
   options.accept_probability = accept;
   options.max_hypotheses = max_hypotheses;
+  options.search = search_method(search).value();
   return compute_in_worker(progress, [&](const Report& report) {
     options.progress = report;
     return match(*fixed.grid, *moving.grid, options);
@@ -24,6 +25,9 @@ MatchResult match_maps(const Map& fixed, const Map& moving, int threads, double 
 }  // namespace
 
 void bind_match(nb::module_& module) {
+  nb::list methods;
+  for (const SearchMethodName& one : search_methods()) methods.append(one.name);
+  module.attr("SEARCH_METHODS") = nb::tuple(methods);
   module.attr("DEFAULT_ACCEPT") = MatchOptions{}.accept_probability;
   module.attr("DEFAULT_MAX_FALSE_JOINS") = MergeOptions{}.max_false_joins;
   nb::class_<Hypothesis>(module, "Hypothesis")
@@ -42,7 +46,7 @@ void bind_match(nb::module_& module) {
       .def_ro("seconds", &MatchResult::seconds)
       .def_ro("hypotheses", &MatchResult::hypotheses);
   module.def("match", &match_maps, nb::arg("fixed"), nb::arg("moving"), nb::arg("threads"), nb::arg("accept"),
-             nb::arg("max_hypotheses"), nb::arg("progress").none());
+             nb::arg("max_hypotheses"), nb::arg("search"), nb::arg("progress").none());
 }
 
 }  // namespace gridmerge::python

@@ -158,14 +158,15 @@ std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses) {
   const double belief = logistic(log_odds_of(figures)), share = logistic(figures.stands_out);
   const double most = *best;
   double others = 0.0;
-  for (double& one : odds) {
-    one = std::exp(one - most);
-    others += one;
+  for (auto one = odds.begin(); one != odds.end(); ++one) {
+    *one = std::exp(*one - most);
+    if (one != best) others += *one;
   }
-  others -= *best;
   std::vector<double> probabilities;
-  for (auto one = odds.begin(); one != odds.end(); ++one)
-    probabilities.push_back(one == best ? belief * share : belief * (1.0 - share) * *one / others);
+  for (auto one = odds.begin(); one != odds.end(); ++one) {
+    const double of_others = others > 0.0 ? *one / others : 0.0;
+    probabilities.push_back(belief * (one == best ? share : (1.0 - share) * of_others));
+  }
   return probabilities;
 }
 

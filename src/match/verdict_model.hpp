@@ -17,7 +17,7 @@ inline constexpr double kVerdictBias = -14.982;
 /// In the order of verdict_terms().
 // clang-format off
 inline constexpr std::array kVerdictWeights{
-    VerdictWeight{"tells apart", 1.000},
+    VerdictWeight{"tells apart", 3.000},
     VerdictWeight{"held", 1.000},
     VerdictWeight{"stands out", 0.487},
     VerdictWeight{"far ahead, bent", 9.962},

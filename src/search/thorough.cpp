@@ -242,7 +242,7 @@ std::vector<PoseCandidate> search_thoroughly(const WallMap& fixed, const WallMap
                                              const ThoroughSearchOptions& options) {
   check(fixed, moving, options);
   std::vector<WallPoint> walls = draw_evenly(moving.walls, options.samples);
-  if (walls.empty()) return {};
+  if (walls.empty() || fixed.walls.empty()) return {};
   const SearchFrame frame = make_search_frame(fixed, moving, options.coarse_factor, options.rotations);
   const Normal normal(walls.size());
   EvidenceImage evidence = make_evidence(fixed, frame, options);

@@ -72,7 +72,9 @@ TEST_F(Bounds, WhatFollowsThePixelsIsNotRead) {
   const std::string image = directory.write("sparse.pgm", "P5\n4 4\n255\n" + std::string(16, '\xfe'));
   std::filesystem::resize_file(image, std::uintmax_t{1} << 36);
   EXPECT_EQ(run({"info", "--resolution", "0.1", image}).exit_code, 0);
-  if (!test::kSanitized) EXPECT_LT(most_memory(), 100);
+  if (!test::kSanitized) {
+    EXPECT_LT(most_memory(), 100);
+  }
 }
 
 TEST_F(Bounds, MemoryIsAFewBytesACell) {
@@ -85,7 +87,9 @@ TEST_F(Bounds, MemoryIsAFewBytesACell) {
                            .palette = "\xff\xff\xff"};
   const std::string image = directory.write("plain.png", picture.build());
   EXPECT_EQ(run({"info", "--resolution", "0.1", image}).exit_code, 0);
-  if (!test::kSanitized) EXPECT_LT(most_memory(), 300);
+  if (!test::kSanitized) {
+    EXPECT_LT(most_memory(), 300);
+  }
 }
 
 TEST_F(Bounds, LongNamesMakeNoLongMessages) {

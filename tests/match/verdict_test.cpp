@@ -22,6 +22,7 @@ PoseFigures clear_pose() {
   PoseFigures figures;
   figures.score = 6000.0;
   figures.lead = 40.0;
+  figures.stands_out = 20.0;
   figures.wall_score = 5800.0;
   figures.seen_walls = 240.0;
   figures.walls_met = 0.93;
@@ -49,6 +50,12 @@ PoseFigures changed(double PoseFigures::*figure, double value) {
   PoseFigures figures = clear_pose();
   figures.*figure = value;
   return figures;
+}
+
+/// The probabilities of poses that are each other's only rivals.
+std::vector<double> among_each_other(std::vector<PoseFigures> poses) {
+  compare_rivals(poses);
+  return probabilities_of(poses);
 }
 
 TEST(PoseFigures, EachHasANameAUnitAMeaningAndAPlaceOfItsOwn) {
@@ -87,6 +94,14 @@ TEST(VerdictTables, AreThoseOfTheDocs) {
     expect_row("| " + std::string(term.name) + " | `" + term.formula + "` | " + name_of(term.kind) + " | " +
                weight + " |\n");
   }
+  ASSERT_EQ(kRankWeights.size(), rank_terms().size());
+  for (std::size_t i = 0; i < kRankWeights.size(); ++i) {
+    const RankTerm& term = rank_terms()[i];
+    EXPECT_STREQ(term.name, kRankWeights[i].term);
+    char weight[32];
+    std::snprintf(weight, sizeof weight, "%.2f", kRankWeights[i].weight);
+    expect_row("| " + std::string(term.name) + " | `" + term.formula + "` | " + weight + " |\n");
+  }
 }
 
 TEST(VerdictTerms, StayWithinTheirBoundsWhateverTheFigures) {
@@ -120,6 +135,7 @@ PoseFigures corner_pose() {
   PoseFigures corner = changed(&PoseFigures::wall_lines, 2.0);
   corner.seen_walls = 8.0;
   corner.lead = 5.0;
+  corner.stands_out = 1.0;  // other corners are nearly as good
   corner.seen_things = 0.0;
   corner.next_acceptance_index = 0.97;
   return corner;
@@ -136,8 +152,9 @@ TEST(ProbabilitiesOf, ALeadSpeaksForBentMapsOnly) {
   bent.things_met = 0.5;
   bent.acceptance_index = 0.95;
   bent.lead = 50.0;
+  bent.stands_out = 4.0;
   bent.sigma = 0.25;
-  EXPECT_GT(alone(bent), 0.98);
+  EXPECT_GT(alone(bent), 0.95);
   PoseFigures crisp = bent;
   crisp.sigma = 0.05;  // the walls that do meet lie on each other: so should the others
   EXPECT_LT(alone(crisp), 0.95);
@@ -166,7 +183,7 @@ TEST(CompareRivals, GivesEachItsLeadOverTheBestOther) {
   const auto last_two = [](std::size_t a, std::size_t b) { return a + b == 3; };
   compare_rivals(poses, last_two);
   EXPECT_DOUBLE_EQ(poses[2].lead, 200.0 / std::sqrt(300.0));
-  EXPECT_DOUBLE_EQ(poses[2].next_acceptance_index, 0.9);
+  EXPECT_DOUBLE_EQ(poses[2].next_acceptance_index, 0.0);  // what is left has a third of its score
   EXPECT_DOUBLE_EQ(poses[1].lead, -100.0 / std::sqrt(200.0));
   std::vector<PoseFigures> alone_here(1, clear_pose());
   compare_rivals(alone_here);
@@ -183,31 +200,77 @@ TEST(ProbabilitiesOf, ThingsCountByHowManyThereAre) {
 }
 
 TEST(ProbabilitiesOf, EqualRivalsShareWhatThereIs) {
-  const std::vector<double> two = probabilities_of(std::vector{clear_pose(), clear_pose()});
-  EXPECT_DOUBLE_EQ(two[0], two[1]);
+  const std::vector<double> two = among_each_other({clear_pose(), clear_pose()});
+  EXPECT_NEAR(two[0], two[1], 1e-6);
   EXPECT_LT(two[0], 0.5);
-  EXPECT_GT(two[0], 0.49);
+  EXPECT_GT(two[0], 0.3);
 }
 
 TEST(ProbabilitiesOf, PoorRivalsTakeNothingAway) {
   std::vector<PoseFigures> poses(12);
   poses.front() = clear_pose();
-  EXPECT_NEAR(probabilities_of(poses).front(), alone(clear_pose()), 1e-3);
+  EXPECT_NEAR(among_each_other(poses).front(), alone(clear_pose()), 1e-3);
 }
 
-RC_GTEST_PROP(ProbabilitiesOf, AreTheSoftmaxOfTheOddsAndNoneOfThese, ()) {
-  std::vector<PoseFigures> poses(*rc::gen::inRange<std::size_t>(1, 6));
-  double sum = 1.0;
+TEST(ProbabilitiesOf, QualityStandsBeforeAmount) {
+  PoseFigures little = clear_pose(), much = clear_pose();
+  little.score = 900.0;
+  little.seen_walls = 40.0;
+  little.wall_lines = 5.0;
+  much.score = 1500.0;
+  much.seen_walls = 300.0;
+  much.walls_met_locally = 0.6;
+  much.acceptance_index = 0.9;
+  much.things_met = 0.4;
+  const std::vector<double> both = among_each_other({much, little});
+  EXPECT_GT(both[1], 100.0 * both[0]);
+}
+
+TEST(CompareRivals, ANearLowerMaximumLeavesAPoseStandingOut) {
+  std::vector<PoseFigures> poses{clear_pose(), clear_pose()};
+  poses[1].score = 5900.0;
+  compare_rivals(poses);
+  EXPECT_LT(poses[0].stands_out, 1.0);
+  compare_rivals(poses, [](std::size_t, std::size_t) { return true; });
+  EXPECT_GT(poses[0].stands_out, 10.0);
+  EXPECT_LT(poses[1].stands_out, 0.0);
+  const std::vector<double> probabilities = probabilities_of(poses);
+  EXPECT_NEAR(probabilities[0], alone(clear_pose()), 1e-5);
+  EXPECT_LT(probabilities[1], 1e-6);
+}
+
+TEST(CompareRivals, WhoseCellsAgreeBetterIsToldByRivalsWithAsMuch) {
+  std::vector<PoseFigures> poses{clear_pose(), clear_pose(), clear_pose()};
+  poses[1].score = 0.51 * poses[0].score;
+  poses[1].acceptance_index = 0.96;
+  poses[2].score = 0.49 * poses[0].score;
+  poses[2].acceptance_index = 0.99;
+  compare_rivals(poses);
+  EXPECT_EQ(poses[0].next_acceptance_index, 0.96);
+}
+
+RC_GTEST_PROP(ProbabilitiesOf, AddUpToTheBeliefInTheBestAndFollowTheRanks, ()) {
+  std::vector<PoseFigures> poses(*rc::gen::inRange<std::size_t>(1, 8));
   for (PoseFigures& pose : poses) {
     pose = clear_pose();
+    pose.score = *rc::gen::inRange(1, 8000);
     pose.wall_lines = *rc::gen::inRange(0, 40) / 2.0;
     pose.walls_met_locally = *rc::gen::inRange(0, 100) / 100.0;
-    pose.acceptance_index = *rc::gen::inRange(800, 1000) / 1000.0;
-    sum += std::exp(log_odds_of(pose));
+    pose.acceptance_index = *rc::gen::inRange(0, 1000) / 1000.0;
   }
+  compare_rivals(poses);
   const std::vector<double> probabilities = probabilities_of(poses);
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    RC_ASSERT(std::abs(probabilities[i] - std::exp(log_odds_of(poses[i])) / sum) < 1e-9);
+  double sum = 0.0;
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    RC_ASSERT(probabilities[i] >= 0.0 && probabilities[i] <= 1.0);
+    sum += probabilities[i];
+    if (rank_of(poses[i]) > rank_of(poses[best])) best = i;
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i) RC_ASSERT(probabilities[i] <= probabilities[best] + 1e-12);
+  const double belief = 1.0 / (1.0 + std::exp(-log_odds_of(poses[best])));
+  RC_ASSERT(sum <= belief * (1.0 + 1e-9));
+  if (poses.size() > 1) RC_ASSERT(std::abs(sum - belief) < 1e-6 * belief + 1e-12);
 }
 
 TEST(ExplainRefusal, NamesWhatHoldsThePairBack) {
@@ -215,7 +278,11 @@ TEST(ExplainRefusal, NamesWhatHoldsThePairBack) {
   const auto reason = [](const std::vector<PoseFigures>& poses) { return explain_refusal(poses, kAccept); };
   EXPECT_EQ(reason({}), Reason::nothing_to_compare);
   EXPECT_EQ(reason({clear_pose()}), Reason::none);
-  EXPECT_EQ(reason({clear_pose(), clear_pose()}), Reason::ambiguous);
+  const auto reason_among = [&](std::vector<PoseFigures> poses) {
+    compare_rivals(poses);
+    return reason(poses);
+  };
+  EXPECT_EQ(reason_among({clear_pose(), clear_pose()}), Reason::ambiguous);
 
   PoseFigures contradicting = clear_pose();
   contradicting.walls_met = contradicting.walls_met_locally = 0.45;
@@ -227,7 +294,7 @@ TEST(ExplainRefusal, NamesWhatHoldsThePairBack) {
   const PoseFigures corner = corner_pose();
   EXPECT_EQ(reason({corner}), Reason::too_little_overlap);
   // Two ways to lay a room on itself: not too little, whatever their number of lines.
-  EXPECT_EQ(reason({corner, corner}), Reason::ambiguous);
+  EXPECT_EQ(reason_among({corner, corner}), Reason::ambiguous);
 
   PoseFigures hopeless = contradicting;
   hopeless.wall_lines = 1.0;
@@ -241,6 +308,7 @@ TEST(ExplainRefusal, MapsThatSlideAreAmbiguous) {
   PoseFigures corridor = changed(&PoseFigures::wall_lines, 3.0);
   corridor.held = 0.0;
   corridor.lead = 2.0;
+  corridor.stands_out = 1.0;
   EXPECT_EQ(explain_refusal(std::vector{corridor}, 0.95), Reason::ambiguous);
 }
 
