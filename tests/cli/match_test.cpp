@@ -100,6 +100,14 @@ TEST_F(Match, AcceptDecidesTheVerdict) {
   }
 }
 
+TEST_F(Match, SearchesAreChosenByName) {
+  for (const char* name : {"exhaustive", "quick", "thorough"})
+    EXPECT_EQ(run({"match", left, right, "--search", name}).exit_code, 0) << name;
+  const Outcome unknown = run({"match", left, right, "--search", "fast"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("thorough"), std::string::npos) << unknown.err;
+}
+
 TEST_F(Match, BareImagesTakeTheirResolutionFromTheOption) {
   const Outcome outcome = run(
       {"match", directory.file("left.pgm"), directory.file("right.pgm"), "--resolution", "0.1", "--json"});

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/match/search_method.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+#include <string>
+
+#include "gridmerge/match/match.hpp"
+#include "support/building.hpp"
+
+namespace gridmerge {
+namespace {
+
+TEST(SearchMethod, NamesGoBothWays) {
+  std::set<std::string> names;
+  for (const SearchMethodName& one : search_methods()) {
+    EXPECT_TRUE(names.insert(one.name).second) << one.name;
+    EXPECT_STRNE(one.meaning, "");
+    EXPECT_STREQ(name_of(one.method), one.name);
+    EXPECT_EQ(search_method(one.name), one.method);
+  }
+  EXPECT_EQ(search_method("fast"), std::nullopt);
+  EXPECT_EQ(search_method(""), std::nullopt);
+}
+
+MatchResult look(const OccupancyGrid& fixed, const OccupancyGrid& moving, SearchMethod search) {
+  MatchOptions options;
+  options.search = search;
+  options.max_hypotheses = std::numeric_limits<std::size_t>::max();
+  return match(fixed, moving, options);
+}
+
+TEST(SearchMethod, WhatTheQuickLookDecidesIsNotLookedAtAgain) {
+  const OccupancyGrid building = test::draw_building(1);
+  const OccupancyGrid left = test::map_part(building, {0, 0, 12, 13}, {1.0, 2.0, 0.5});
+  const OccupancyGrid right = test::map_part(building, {5, 0, 18, 13}, {});
+  const MatchResult quick = look(right, left, SearchMethod::quick);
+  const MatchResult both = look(right, left, SearchMethod::exhaustive);
+  ASSERT_EQ(quick.verdict, Verdict::accepted);
+  EXPECT_EQ(both.T_fixed_moving, quick.T_fixed_moving);
+  EXPECT_EQ(both.probability, quick.probability);
+  EXPECT_EQ(both.hypotheses.size(), quick.hypotheses.size());
+}
+
+TEST(SearchMethod, WhatItLeavesUndecidedIs) {
+  const OccupancyGrid one = test::draw_building(1), other = test::draw_building(2);
+  const MatchResult quick = look(one, other, SearchMethod::quick);
+  const MatchResult both = look(one, other, SearchMethod::exhaustive);
+  EXPECT_EQ(both.verdict, Verdict::refused);
+  EXPECT_GT(both.hypotheses.size(), quick.hypotheses.size());
+}
+
+TEST(SearchMethod, TheThoroughLookFindsWhatTheQuickOneFinds) {
+  const OccupancyGrid building = test::draw_building(1);
+  const SE2 T_left_building{1.0, 2.0, 0.5};
+  const OccupancyGrid left = test::map_part(building, {0, 0, 12, 13}, T_left_building);
+  const OccupancyGrid right = test::map_part(building, {5, 0, 18, 13}, {});
+  const MatchResult result = look(right, left, SearchMethod::thorough);
+  EXPECT_EQ(result.verdict, Verdict::accepted);
+  const Point2 middle = result.T_fixed_moving * (T_left_building * Point2{9.0, 6.5});
+  EXPECT_NEAR(middle.x, 9.0, 0.1);
+  EXPECT_NEAR(middle.y, 6.5, 0.1);
+}
+
+TEST(SearchMethod, HowManyAreListedChangesNothingElse) {
+  const OccupancyGrid one = test::draw_building(1), other = test::draw_building(2);
+  MatchOptions options;
+  options.max_hypotheses = 1;
+  const MatchResult few = match(one, other, options);
+  const MatchResult all = look(one, other, SearchMethod::exhaustive);
+  ASSERT_EQ(few.hypotheses.size(), 1U);
+  EXPECT_EQ(few.probability, all.probability);
+  EXPECT_EQ(few.T_fixed_moving, all.T_fixed_moving);
+}
+
+}  // namespace
+}  // namespace gridmerge
