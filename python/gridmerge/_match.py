@@ -108,7 +108,7 @@ def match(
         _arguments.threads(threads),
         _arguments.share("accept", accept),
         _arguments.whole("max_hypotheses", max_hypotheses, 0, 2**31),
-        _arguments.choice("search", search, _core.SEARCH_METHODS),
+        _arguments.choice("search", search, tuple(_core.search_methods())),
         _arguments.progress(progress),
     )
     return to_match_result(result)

@@ -229,7 +229,7 @@ def merge(
         _arguments.at_least_0("max_false_joins", max_false_joins),
         to_output_resolution(output_resolution),
         up_the_tree,
-        _arguments.choice("search", search, _core.SEARCH_METHODS),
+        _arguments.choice("search", search, tuple(_core.search_methods())),
         _arguments.progress(progress),
     )
     return to_merge_result(merged, grids, called, more_inputs)

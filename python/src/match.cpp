@@ -25,9 +25,6 @@ MatchResult match_maps(const Map& fixed, const Map& moving, int threads, double 
 }  // namespace
 
 void bind_match(nb::module_& module) {
-  nb::list methods;
-  for (const SearchMethodName& one : search_methods()) methods.append(one.name);
-  module.attr("SEARCH_METHODS") = nb::tuple(methods);
   module.attr("DEFAULT_ACCEPT") = MatchOptions{}.accept_probability;
   module.attr("DEFAULT_MAX_FALSE_JOINS") = MergeOptions{}.max_false_joins;
   nb::class_<Hypothesis>(module, "Hypothesis")
@@ -45,6 +42,11 @@ void bind_match(nb::module_& module) {
       .def_ro("overlap", &MatchResult::overlap)
       .def_ro("seconds", &MatchResult::seconds)
       .def_ro("hypotheses", &MatchResult::hypotheses);
+  module.def("search_methods", [] {
+    std::vector<std::string> names;
+    for (const SearchMethodName& one : search_methods()) names.emplace_back(one.name);
+    return names;
+  });
   module.def("match", &match_maps, nb::arg("fixed"), nb::arg("moving"), nb::arg("threads"), nb::arg("accept"),
              nb::arg("max_hypotheses"), nb::arg("search"), nb::arg("progress").none());
 }
