@@ -192,7 +192,8 @@ Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_pr
     return mended([&](TermKind kind) { return kind == TermKind::rivals || is_mended(kind); }) >=
            accept_probability;
   };
-  if (with_rivals([](TermKind) { return false; })) return Reason::ambiguous;
+  const bool stands_out = logistic(hypotheses[0].stands_out) >= accept_probability;
+  if (!stands_out && with_rivals([](TermKind) { return false; })) return Reason::ambiguous;
   const bool agrees = with_rivals([](TermKind kind) { return kind == TermKind::amount; });
   // Nearly as good: the better one of the two would be refused however much the maps had in common.
   const double rival = hypotheses.size() > 1 ? probabilities[1] / (probabilities[0] + probabilities[1]) : 0.0;
