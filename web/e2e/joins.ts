@@ -133,9 +133,9 @@ test("a rescued join says which way the merge took, and what the other maps say"
   await page.click("#tab-joins");
   await page.click(`button[data-join='${index}']`);
   const text = (await page.textContent(".explanation"))!;
-  assert.match(text, /By themselves they would not be joined: too little in common\. The most probable: way 1 \(0\.\d+\)/);
+  assert.match(text, /By themselves they would not be joined: [a-z ]+\. The most probable: way 1 \(0\.\d+\)/);
   assert.match(text, /The merge lays them in (way \d+|a way that is none of theirs), whose own probability is 0\.\d+\./);
-  assert.match(text, /2 other maps are joined to both\. Over them the second map lies off by \d+robot_\d+\.yaml 0\.\d+ m and \d\.\d°, \d+robot_\d+\.yaml /);
+  assert.match(text, /(1 other map is|\d+ other maps are) joined to both\. Over (it|them) the second map lies off by \d+robot_\d+\.yaml \d+\.\d+ m and \d+\.\d°/);
   assert.ok(!/nats/.test((await page.textContent("#panel-joins"))!));
   assert.match((await page.textContent(".hypothesis"))!, /^1: probability .*, \d+\.\d\d m and \d+\.\d° off/);
   assert.ok(await page.locator(".explanation").evaluate((list) => list.getBoundingClientRect().top >= 0), "it is in sight");
