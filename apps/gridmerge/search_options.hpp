@@ -28,7 +28,7 @@ struct SearchOptions {
   std::string start;             // a pose instead
   std::string trace;
   bool trace_all = false;
-  bool lists_all = false;  // results hold all poses that were judged
+  bool lists_all = false;               // results hold all poses that were judged
   std::optional<std::string> strategy;  // how several maps are merged
 
   bool random_walk() const { return method == kRandomWalk; }

@@ -10,7 +10,7 @@ namespace gridmerge {
 
 struct LookOptions {
   SearchMethod search = SearchMethod::exhaustive;
-  double decided_from = 0.95;  ///< the quick look's best probability that needs no second look
+  double decided_from = 0.95;            ///< the quick look's best probability that needs no second look
   std::function<void(double)> progress;  ///< as in MatchOptions
 };
 

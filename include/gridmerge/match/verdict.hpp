@@ -73,9 +73,9 @@ std::span<const RankTerm> rank_terms();
 double rank_of(const PoseFigures& figures);
 
 /// Gives each of several distinct hypotheses of one pair what it has before its rivals: `lead`, `stands_out`
-/// and, of the rivals that have half of its score or more, `next_acceptance_index`. All others are its rivals,
-/// except those that are near (`are_near`, of two indices) and score less: bent maps have no exact pose, so
-/// that a second maximum beside the first says nothing against it. O(hypotheses^2).
+/// and, of the rivals that have half of its score or more, `next_acceptance_index`. All others are its
+/// rivals, except those that are near (`are_near`, of two indices) and score less: bent maps have no exact
+/// pose, so that a second maximum beside the first says nothing against it. O(hypotheses^2).
 void compare_rivals(std::span<PoseFigures> hypotheses,
                     const std::function<bool(std::size_t, std::size_t)>& are_near = {});
 
@@ -83,11 +83,11 @@ void compare_rivals(std::span<PoseFigures> hypotheses,
 /// [nats].
 double log_odds_of(const PoseFigures& figures);
 
-/// The probability of each of several distinct hypotheses of one pair, after compare_rivals(). The best one, b,
-/// is that of the largest rank_of(). It has its share among its rivals times the belief in it,
+/// The probability of each of several distinct hypotheses of one pair, after compare_rivals(). The best one,
+/// b, is that of the largest rank_of(). It has its share among its rivals times the belief in it,
 ///   p_b = 1 / (1 + exp(-stands_out_b)) * 1 / (1 + exp(-log_odds_of(b))),
-/// a nested logit model (McFadden 1978). The others divide what it leaves of the belief by their exp(rank). So
-/// two that are equally good share what there is, and the order is that of the ranks. O(hypotheses).
+/// a nested logit model (McFadden 1978). The others divide what it leaves of the belief by their exp(rank).
+/// So two that are equally good share what there is, and the order is that of the ranks. O(hypotheses).
 std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses);
 
 /// Whether the maps can slide along each other at hardly any loss, as two pieces of a corridor can:
