@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 
-#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/match/walls_met.hpp"
 #include "gridmerge/similarity/wall_lines.hpp"
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -14,9 +13,6 @@
 #include "gridmerge/similarity/agreement.hpp"
 
 namespace gridmerge {
-
-/// Distinct poses that are ranked. More than most callers ask for: the true one may come up from behind.
-inline constexpr std::size_t kRankedPoses = 12;
 
 /// Two maps in the cells in which they are compared. Not owned.
 struct ComparedMaps {

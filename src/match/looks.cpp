@@ -11,17 +11,16 @@ namespace gridmerge {
 
 namespace {
 
+/// Distinct poses of the quick look that get all figures.
+constexpr std::size_t kRankedPoses = 12;
 /// Distinct poses of the thorough look whose cells are counted, and of them those that get all figures.
 constexpr std::size_t kCountedPoses = 40;
 constexpr std::size_t kThoroughPoses = 20;
 
-double logarithm(double value) {
-  return std::log(std::max(value, 1e-9));
-}
-
 /// What a pose promises before its dear figures are known: the quality of its walls and of its cells.
 double promise(const ScoredPose& pose, double acceptance_index) {
-  return logarithm(rank_of(pose.evidence, RankBy::quality)) - std::log(1.01 - acceptance_index);
+  return std::log(std::max(rank_of(pose.evidence, RankBy::quality), 1e-9)) -
+         std::log(1.01 - acceptance_index);
 }
 
 std::vector<Hypothesis> judge_all(const PoseJudge& judge, const std::vector<SE2>& T_cells) {

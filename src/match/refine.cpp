@@ -8,15 +8,13 @@
 
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/parallel.hpp"
+#include "gridmerge/search/thorough.hpp"
 
 namespace gridmerge {
 
 namespace {
 
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
-/// The score of unrelated poses spreads as this power of the walls that are seen: neighbouring walls tell
-/// nearly the same, so more than the square root.
-constexpr double kSpreadPower = 0.75;
 
 /// One pass over the surviving poses.
 struct Round {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "correlate.hpp"
 #include "gridmerge/grid/cancellation.hpp"
@@ -89,21 +88,11 @@ class PeakFinder {
   ScoreImage bounds_;
 };
 
-void check(const WallMap& fixed, const WallMap& moving, const ExhaustiveSearchOptions& options) {
-  if (fixed.cell != moving.cell) throw std::invalid_argument("both wall maps must have cells of one size");
-  if (options.coarse_factor < 1) throw std::invalid_argument("coarse_factor must be at least 1");
-  if (options.rotations < 1) throw std::invalid_argument("rotations must be at least 1");
-  if (options.samples > kMaxSearchSamples) throw std::invalid_argument("samples must be at most 240");
-  if (!(options.sigma > 0.0)) throw std::invalid_argument("sigma must be positive");
-  if (!(options.outliers > 0.0 && options.outliers < 1.0))
-    throw std::invalid_argument("outliers must lie in (0, 1)");
-}
-
 }  // namespace
 
 std::vector<PoseCandidate> search_all_poses(const WallMap& fixed, const WallMap& moving,
                                             const ExhaustiveSearchOptions& options) {
-  check(fixed, moving, options);
+  check_search(fixed, moving, options, kMaxSearchSamples);
   const SearchFrame frame = make_search_frame(fixed, moving, options.coarse_factor, options.rotations);
   const EvidenceImage evidence = make_evidence_image(fixed, frame, options);
   const std::vector<WallPoint> walls = draw_evenly(moving.walls, options.samples);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <unordered_map>
 
 #include "local_maxima.hpp"
@@ -48,6 +50,18 @@ SearchFrame make_search_frame(const WallMap& fixed, const WallMap& moving, int c
                     0,      coarse(fixed.width), coarse(fixed.height)};
   frame.box = coarse(std::hypot(moving.width, moving.height)) + 2;
   return frame;
+}
+
+void check_search(const WallMap& fixed, const WallMap& moving, const ExhaustiveSearchOptions& options,
+                  std::size_t most_samples) {
+  if (fixed.cell != moving.cell) throw std::invalid_argument("both wall maps must have cells of one size");
+  if (options.coarse_factor < 1) throw std::invalid_argument("coarse_factor must be at least 1");
+  if (options.rotations < 1) throw std::invalid_argument("rotations must be at least 1");
+  if (options.samples > most_samples)
+    throw std::invalid_argument("samples must be at most " + std::to_string(most_samples));
+  if (!(options.sigma > 0.0)) throw std::invalid_argument("sigma must be positive");
+  if (!(options.outliers > 0.0 && options.outliers < 1.0))
+    throw std::invalid_argument("outliers must lie in (0, 1)");
 }
 
 TurnedWalls turn_walls(const std::vector<WallPoint>& walls, const SearchFrame& frame, int rotation,

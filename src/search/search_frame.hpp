@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "correlate.hpp"
+#include "gridmerge/search/exhaustive.hpp"
 #include "gridmerge/similarity/wall_map.hpp"
 
 namespace gridmerge {
@@ -41,6 +42,10 @@ struct SearchFrame {
 };
 
 SearchFrame make_search_frame(const WallMap& fixed, const WallMap& moving, int coarse_factor, int rotations);
+
+/// Throws std::invalid_argument for wall maps that do not go together and options that make no sense.
+void check_search(const WallMap& fixed, const WallMap& moving, const ExhaustiveSearchOptions& options,
+                  std::size_t most_samples);
 
 /// The turned wall points, and the shifts at which enough of them can meet the fixed map.
 struct TurnedWalls {

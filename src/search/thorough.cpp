@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <stdexcept>
 #include <utility>
 
 #include "correlate.hpp"
@@ -110,7 +109,6 @@ EvidenceImage make_seen_pairs(const WallMap& fixed, const SearchFrame& frame, in
 /// kSpread n^kSpreadPower.
 constexpr double kMean = 0.37;
 constexpr double kSpread = 0.48;
-constexpr double kSpreadPower = 0.75;
 constexpr double kUnits = 256.0;      // of a score, a standard deviation
 constexpr double kMostScore = 120.0;  // standard deviations: keeps 16 bits from overflowing
 
@@ -226,21 +224,11 @@ class PeakFinder {
   std::vector<std::int16_t> least_sums_;  // Normal::least_sums() of what find_from() is asked for
 };
 
-void check(const WallMap& fixed, const WallMap& moving, const ThoroughSearchOptions& options) {
-  if (fixed.cell != moving.cell) throw std::invalid_argument("both wall maps must have cells of one size");
-  if (options.coarse_factor < 1) throw std::invalid_argument("coarse_factor must be at least 1");
-  if (options.rotations < 1) throw std::invalid_argument("rotations must be at least 1");
-  if (options.samples > kMostThoroughSamples) throw std::invalid_argument("samples must be at most 2000");
-  if (!(options.sigma > 0.0)) throw std::invalid_argument("sigma must be positive");
-  if (!(options.outliers > 0.0 && options.outliers < 1.0))
-    throw std::invalid_argument("outliers must lie in (0, 1)");
-}
-
 }  // namespace
 
 std::vector<PoseCandidate> search_thoroughly(const WallMap& fixed, const WallMap& moving,
                                              const ThoroughSearchOptions& options) {
-  check(fixed, moving, options);
+  check_search(fixed, moving, options, kMostThoroughSamples);
   std::vector<WallPoint> walls = draw_evenly(moving.walls, options.samples);
   if (walls.empty() || fixed.walls.empty()) return {};
   const SearchFrame frame = make_search_frame(fixed, moving, options.coarse_factor, options.rotations);

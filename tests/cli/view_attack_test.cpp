@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "support/effort.hpp"
 #include "view.hpp"
 
 namespace gridmerge::test {
@@ -27,6 +28,13 @@ class ViewUnderAttack : public View {
     }
     ADD_FAILURE() << "the server is not to be found";
     return 0;
+  }
+
+  /// AddressSanitizer keeps what is freed, up to 256 MB of it: its memory is not the server's.
+  void expect_memory_below(long most) const {
+    if (!kSanitized) {
+      EXPECT_LT(memory(), most);
+    }
   }
 
   void expect_served_within(std::chrono::milliseconds most) const {
@@ -62,7 +70,7 @@ TEST_F(ViewUnderAttack, RequestsWithoutEndAreRefusedAndTakeNoMemory) {
   send_without_end(request_line(), headers);
   send_without_end("GET /" + block, block);
   send_without_end(request_line() + "X: " + block, block);
-  EXPECT_LT(memory(), before + 5000);
+  expect_memory_below(before + 5000);
   expect_alive();
 }
 
@@ -91,7 +99,7 @@ TEST_F(ViewUnderAttack, SlowClientsKeepNobodyWaiting) {
   }
   const std::string body = question().dump();
   EXPECT_EQ(client().post("/refine", body, kJson)->status, 200) << "slow bodies give way to a whole one";
-  EXPECT_LT(memory(), before + 30000);
+  expect_memory_below(before + 30000);
 }
 
 TEST_F(ViewUnderAttack, ARequestHasTenSecondsHoweverItIsSpread) {

@@ -23,7 +23,7 @@ struct Hypothesis {
 };
 
 struct MatchOptions {
-  SearchMethod search = SearchMethod::exhaustive;
+  SearchMethod search = SearchMethod::exhaustive;  ///< how poses are found
   int threads = 0;                   ///< worker threads; 0 = one a core. The result does not depend on it.
   std::size_t max_hypotheses = 10;   ///< how many distinct hypotheses the result lists; some 30 are judged
   double accept_probability = 0.95;  ///< the verdict is `accepted` from this probability on

@@ -34,7 +34,8 @@ struct ScoredPose {
 /// What makes one pose better than another on the way.
 enum class RankBy {
   amount,   ///< the score: what overlaps much wins
-  quality,  ///< the score by what unrelated walls spread it, seen_walls^0.75: what overlaps little may win
+  quality,  ///< the score by what unrelated walls spread it, seen_walls^kSpreadPower: what overlaps little
+            ///< may win
 };
 
 struct RefineOptions {

@@ -8,17 +8,21 @@
 
 namespace gridmerge {
 
-struct ThoroughSearchOptions {
-  int coarse_factor = 5;      ///< cells of the wall maps to a cell of the search, along a side
-  int rotations = 180;        ///< evenly spaced over the full turn
-  std::size_t samples = 512;  ///< wall points of the moving map that are scored, at most kMostThoroughSamples
-  std::size_t max_candidates = 600;
-  double sigma = 4.0;     ///< tolerance of the score [cells of the wall maps]
-  double outliers = 0.5;  ///< see ErrorModel: generous, since only the ranking matters here
+/// As of search_all_poses(), with defaults of its own.
+struct ThoroughSearchOptions : ExhaustiveSearchOptions {
+  ThoroughSearchOptions() {
+    samples = 512;  // at most kMostThoroughSamples
+    max_candidates = 600;
+    sigma = 4.0;
+  }
 };
 
 /// Keeps the 16-bit sums of the search from overflowing.
 inline constexpr std::size_t kMostThoroughSamples = 2000;
+
+/// The score of unrelated poses spreads as this power of the walls that are seen: neighbouring walls tell
+/// nearly the same, so more than the square root.
+inline constexpr double kSpreadPower = 0.75;
 
 /// Samples that lie where the fixed map has seen, from which on a pose is looked at.
 inline constexpr double kLeastSeenSamples = 25.0;
@@ -30,9 +34,8 @@ inline constexpr double kLeastSeenSamples = 25.0;
 ///   deviations (unnormalised, what overlaps little is lost among what overlaps much by chance):
 ///     (S + 0.37 n) / (0.48 n^0.75),
 ///   S the sum of the evidence [nats], n the samples that fall where the fixed map has seen, by every fourth
-///   of them and by means of 2 x 2 shifts. Unrelated poses of laser maps have that mean and that spread; the
-///   power is more than 0.5, since neighbouring walls tell nearly the same. Poses of n below
-///   kLeastSeenSamples are not looked at.
+///   of them and by means of 2 x 2 shifts. Unrelated poses of laser maps have that mean and that spread
+///   (kSpreadPower). Poses of n below kLeastSeenSamples are not looked at.
 /// PoseCandidate::score is in 256ths of a standard deviation. The same bits on every machine and for any
 /// number of threads. Throws std::invalid_argument for options that make no sense. Runs in the calling TBB
 /// arena. O(rotations * samples * translations).
