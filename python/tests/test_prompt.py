@@ -80,7 +80,9 @@ def test_what_they_say(results: list[Any]) -> None:
     assert repr(merged.components[0]).startswith(
         "Component(3 maps: 'robot_1.yaml', 'robot_2.yaml', 'robot_3.yaml'; "
     )
-    assert repr(merged.left_out[0]).endswith("elsewhere.yaml': it fits in more than one way)")
+    left_out = merged.left_out[0]
+    assert left_out.explanation
+    assert repr(left_out).endswith(f"elsewhere.yaml': {left_out.explanation})")
 
 
 def test_names_are_kept_to_themselves_and_short() -> None:
