@@ -21,10 +21,11 @@ SE2 operator*(const SE2& T_a_b, const SE2& T_b_c) {
 }
 
 Point2 operator*(const SE2& T_a_b, const Point2& p_b) {
-  const double c = std::cos(T_a_b.theta);
-  const double s = std::sin(T_a_b.theta);
-  return {c * p_b.x - s * p_b.y + T_a_b.x, s * p_b.x + c * p_b.y + T_a_b.y};
+  return ManyPointsTransform(T_a_b) * p_b;
 }
+
+ManyPointsTransform::ManyPointsTransform(const SE2& T_a_b)
+    : cos_(std::cos(T_a_b.theta)), sin_(std::sin(T_a_b.theta)), x_(T_a_b.x), y_(T_a_b.y) {}
 
 SE2 inverse(const SE2& T_a_b) {
   const double c = std::cos(T_a_b.theta);

@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 
-#include "gridmerge/match/walls_met.hpp"
 #include "gridmerge/similarity/wall_lines.hpp"
 
 namespace gridmerge {
@@ -30,6 +29,11 @@ constexpr double kMinDistinct = 10.0;  // cells
 constexpr double kNearDistinct = 2.0;
 /// About so many cells decide how much of the common area agrees.
 constexpr double kRankedCells = 60000.0;
+
+int stride_of_counted(const OccupancyGrid& grid) {
+  return std::max(1, static_cast<int>(std::sqrt(static_cast<double>(grid.cells.size()) / kRankedCells)));
+}
+
 double longer_side(const OccupancyGrid& grid) {
   return std::max(grid.width, grid.height) * grid.resolution;
 }
@@ -120,18 +124,17 @@ PoseJudge::PoseJudge(const ComparedMaps& maps)
       walls_(maps.fixed_walls, maps.moving_walls, std::numeric_limits<std::size_t>::max()),
       settling_walls_(walls_.with_points(kSettlingWalls)),
       sliding_walls_(walls_.with_points(kSlideWalls)),
-      stride_(std::max(
-          1, static_cast<int>(std::sqrt(static_cast<double>(maps.moving.cells.size()) / kRankedCells)))) {}
+      cells_(maps.fixed, maps.moving, stride_of_counted(maps.moving)),
+      patches_(maps.moving_walls) {}
 
 PoseFigures PoseJudge::figures(const SE2& T_cells) const {
   const WallMap &fixed = maps_.fixed_walls, &moving = maps_.moving_walls;
   const double cell = maps_.cell;
   const Evidence walls = walls_(T_cells);
-  const AgreementCounts common =
-      count_agreement(maps_.fixed, maps_.moving, to_map_frames(T_cells, fixed, moving), stride_);
+  const AgreementCounts common = cells_.count(to_map_frames(T_cells, fixed, moving));
   const double cells_per_cell = std::pow(maps_.moving.resolution / cell, 2);
   const WallSupport support = measure_wall_support(fixed, moving, T_cells);
-  const WallsMet met = measure_walls_met(fixed, moving, T_cells);
+  const WallsMet met = measure_walls_met(fixed, patches_, T_cells);
   const Hold hold = measure_hold(sliding_walls_, T_cells, cell);
 
   PoseFigures figures;
@@ -217,7 +220,7 @@ double PoseJudge::acceptance_index(const SE2& T_cells) const {
 }
 
 double PoseJudge::agreement(const SE2& T_fixed_moving) const {
-  return count_agreement(maps_.fixed, maps_.moving, T_fixed_moving, stride_).acceptance_index();
+  return cells_.count(T_fixed_moving).acceptance_index();
 }
 
 std::vector<PoseFigures> figures_of(const std::vector<Hypothesis>& hypotheses) {

@@ -9,6 +9,7 @@
 #include "gridmerge/match/prepared_map.hpp"
 #include "gridmerge/match/refine.hpp"
 #include "gridmerge/match/verdict.hpp"
+#include "gridmerge/match/walls_met.hpp"
 #include "gridmerge/search/exhaustive.hpp"
 #include "gridmerge/similarity/agreement.hpp"
 
@@ -71,7 +72,8 @@ class PoseJudge {
   WallEvidence walls_;
   WallEvidence settling_walls_;
   WallEvidence sliding_walls_;  // fewer, for how well a pose is held
-  int stride_;                  // of the cells that are counted
+  AgreementCounter cells_;      // some of all
+  WallPatches patches_;
 };
 
 /// The figures of each, with what it has before its rivals (compare_rivals()).

@@ -12,10 +12,10 @@ namespace gridmerge {
 namespace {
 
 /// Distinct poses of the quick look that get all figures.
-constexpr std::size_t kRankedPoses = 12;
+constexpr std::size_t kRankedPoses = 6;
 /// Distinct poses of the thorough look whose cells are counted, and of them those that get all figures.
 constexpr std::size_t kCountedPoses = 40;
-constexpr std::size_t kThoroughPoses = 20;
+constexpr std::size_t kThoroughPoses = 12;
 
 /// What a pose promises before its dear figures are known: the quality of its walls and of its cells.
 double promise(const ScoredPose& pose, double acceptance_index) {

@@ -119,18 +119,22 @@ ScoredPose climb(const WallEvidence& evidence, const PoseMetric& metric, const S
       {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
   ScoredPose best{start, evidence(start, min_sigma)};
   for (double step = first_step; step >= last_step; step /= 2.0) {
+    std::size_t last = kMoves.size();
     for (int i = 0; i < kMaxMoves; ++i) {
       const SE2 from = best.T_fixed_moving;
-      bool improved = false;
-      for (const auto& move : kMoves) {
-        const SE2 pose = metric.moved(from, step * move[0], step * move[1], step * move[2] / metric.radius);
+      const std::size_t back = last ^ 1U;  // would undo the last move
+      last = kMoves.size();
+      for (std::size_t m = 0; m < kMoves.size(); ++m) {
+        if (m == back) continue;
+        const auto& [dx, dy, turn] = kMoves[m];
+        const SE2 pose = metric.moved(from, step * dx, step * dy, step * turn / metric.radius);
         const Evidence found = evidence(pose, min_sigma);
         if (found.score > best.evidence.score) {
           best = {pose, found};
-          improved = true;
+          last = m;
         }
       }
-      if (!improved) break;
+      if (last == kMoves.size()) break;
     }
   }
   return best;

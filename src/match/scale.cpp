@@ -28,6 +28,7 @@ std::optional<ScaleFound> find_scale(const OccupancyGrid& fixed, const Occupancy
   MatchOptions asked = options;
   asked.accept_probability = std::max(options.accept_probability, kLeastProbability);
   asked.progress = nullptr;
+  asked.search = SearchMethod::quick;  // a hint is not worth more time than the answer took
   const double side = std::max(moving.width, moving.height) * moving.resolution;
   std::optional<ScaleFound> best;
   for (const double factor : {2.0, 0.5, 2.5, 0.4, 4.0, 0.25, 5.0, 0.2, 10.0, 0.1}) {

@@ -5,9 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <map>
-#include <numbers>
-#include <utility>
 #include <vector>
 
 #include "gridmerge/grid/parallel.hpp"
@@ -118,28 +115,25 @@ double worth_of(const WallMap& map, const std::vector<WallPoint>& walls, const S
   return worth + kUnseenWorth * static_cast<double>(unseen);
 }
 
-/// The walls of both maps in one square of the moving map.
-struct Patch {
-  Point2 centre;                         // [cells, moving grid frame]
-  std::vector<WallPoint> fixed, moving;  // each in its own map's grid frame
-};
-
-std::vector<Patch> cut(const WallMap& fixed, const WallMap& moving, const SE2& T_fixed_moving, double side) {
-  std::map<std::pair<int, int>, Patch> patches;
-  const auto patch_at = [&](const Point2& p) -> Patch& {
-    const double column = std::floor(p.x / side), row = std::floor(p.y / side);
-    Patch& patch = patches[{static_cast<int>(row), static_cast<int>(column)}];
-    patch.centre = {(column + 0.5) * side, (row + 0.5) * side};
-    return patch;
-  };
-  for (const WallPoint& wall : moving.walls) patch_at(wall.position).moving.push_back(wall);
-  const SE2 T_moving_fixed = inverse(T_fixed_moving);
-  for (const WallPoint& wall : fixed.walls) patch_at(T_moving_fixed * wall.position).fixed.push_back(wall);
-  std::vector<Patch> list;
-  list.reserve(patches.size());
-  for (auto& [at, patch] : patches) list.push_back(std::move(patch));
-  return list;
+/// The fixed map's walls by the moving map's patches, without those that lie in none: the moving map cannot
+/// have seen them.
+std::vector<std::vector<WallPoint>> cut(const WallMap& fixed, const WallPatches& moving,
+                                        const SE2& T_fixed_moving) {
+  std::vector<std::vector<WallPoint>> walls(moving.size());
+  const ManyPointsTransform T_moving_fixed(inverse(T_fixed_moving));
+  for (const WallPoint& wall : fixed.walls) {
+    const Point2 p = T_moving_fixed * wall.position;
+    if (moving.cover(p)) walls[moving.index(p)].push_back(wall);
+  }
+  return walls;
 }
+
+/// The walls of both maps in one patch, each in its own map's grid frame.
+struct Patch {
+  Point2 centre;  // [cells, moving grid frame]
+  const std::vector<WallPoint>& fixed;
+  const std::vector<WallPoint>& moving;
+};
 
 class PatchMatcher {
  public:
@@ -181,19 +175,22 @@ class PatchMatcher {
     SE2 best = start_;
     double most = worth_at(best);
     for (double step = kFirstStep / fixed_.cell; step >= kLastStep; step /= 2.0) {
-      bool improved = true;
-      for (int i = 0; i < kMaxMoves && improved; ++i) {
-        improved = false;
+      std::size_t last = kMoves.size();
+      for (int i = 0; i < kMaxMoves; ++i) {
         const SE2 from = best;
-        for (const auto& [dx, dy, turn] : kMoves) {
+        const std::size_t back = last ^ 1U;  // would undo the last move
+        last = kMoves.size();
+        for (std::size_t m = 0; m < kMoves.size(); ++m) {
+          const auto& [dx, dy, turn] = kMoves[m];
           const SE2 pose = metric.moved(from, step * dx, step * dy, step * turn / metric.radius);
-          if (metric.displacement(pose, start_) > kFarthestShift / fixed_.cell) continue;
+          if (m == back || metric.displacement(pose, start_) > kFarthestShift / fixed_.cell) continue;
           const double worth = worth_at(pose);
           if (worth <= most) continue;
           most = worth;
           best = pose;
-          improved = true;
+          last = m;
         }
+        if (last == kMoves.size()) break;
       }
     }
     return best;
@@ -217,14 +214,37 @@ double share(double part, double whole) {
 
 }  // namespace
 
-WallsMet measure_walls_met(const WallMap& fixed, const WallMap& moving, const SE2& T_fixed_moving_cells) {
-  const double side = std::max(kPatchSide / fixed.cell, kLeastPatchSide);
-  const std::vector<Patch> patches = cut(fixed, moving, T_fixed_moving_cells, side);
-  const PatchMatcher matcher(fixed, moving, T_fixed_moving_cells, side);
-  std::vector<Meetings> rigidly(patches.size()), locally(patches.size());
-  parallel_for(patches.size(), [&](std::size_t i) {
-    rigidly[i] = matcher.rigidly(patches[i]);
-    locally[i] = matcher.locally(patches[i], rigidly[i]);
+WallPatches::WallPatches(const WallMap& map)
+    : map_(map),
+      side_(std::max(kPatchSide / map.cell, kLeastPatchSide)),
+      columns_(static_cast<std::size_t>(map.width / side_) + 1),
+      rows_(static_cast<std::size_t>(map.height / side_) + 1),
+      walls_(columns_ * rows_) {
+  for (const WallPoint& wall : map.walls) walls_[index(wall.position)].push_back(wall);
+}
+
+bool WallPatches::cover(const Point2& point) const {
+  return point.x >= 0.0 && point.y >= 0.0 && point.x < static_cast<double>(columns_) * side_ &&
+         point.y < static_cast<double>(rows_) * side_;
+}
+
+std::size_t WallPatches::index(const Point2& point) const {
+  return static_cast<std::size_t>(point.y / side_) * columns_ + static_cast<std::size_t>(point.x / side_);
+}
+
+Point2 WallPatches::centre(std::size_t patch) const {
+  return {(static_cast<double>(patch % columns_) + 0.5) * side_,
+          (static_cast<double>(patch / columns_) + 0.5) * side_};
+}
+
+WallsMet measure_walls_met(const WallMap& fixed, const WallPatches& moving, const SE2& T_fixed_moving_cells) {
+  const std::vector<std::vector<WallPoint>> fixed_walls = cut(fixed, moving, T_fixed_moving_cells);
+  const PatchMatcher matcher(fixed, moving.map(), T_fixed_moving_cells, moving.side());
+  std::vector<Meetings> rigidly(moving.size()), locally(moving.size());
+  parallel_for(moving.size(), [&](std::size_t i) {
+    const Patch patch{moving.centre(i), fixed_walls[i], moving.walls(i)};
+    rigidly[i] = matcher.rigidly(patch);
+    locally[i] = matcher.locally(patch, rigidly[i]);
   });
   const Meetings rigid = sum_of(rigidly), local = sum_of(locally);
   return {share(rigid.met, rigid.seen), share(local.met, local.seen), local.seen_things,

@@ -156,24 +156,42 @@ std::vector<Sample> pool_pairs(const std::vector<Sample>& samples) {
   return pooled;
 }
 
-void correlate_where(const EvidenceImage& image, std::vector<Sample> samples, const ScoreImage& bounds,
-                     int least, ScoreImage& output) {
+void pool_scores(const ScoreImage& scores, ScoreImage& pooled) {
+  const int half_width = scores.width / 2;  // even, since scores come in blocks
+  pooled.width = (half_width + kCorrelateBlock - 1) / kCorrelateBlock * kCorrelateBlock;
+  pooled.height = (scores.height + 1) / 2;
+  pooled.values.assign(static_cast<std::size_t>(pooled.width) * pooled.height, 0);
+  for (int y = 0; y < pooled.height; ++y) {
+    const std::int16_t* const row = scores.values.data() + static_cast<std::size_t>(2 * y) * scores.width;
+    const std::int16_t* const next = 2 * y + 1 < scores.height ? row + scores.width : row;
+    std::int16_t* const most = pooled.values.data() + static_cast<std::size_t>(y) * pooled.width;
+    for (int x = 0; x < half_width; ++x)
+      most[x] = std::max(std::max(row[2 * x], row[2 * x + 1]), std::max(next[2 * x], next[2 * x + 1]));
+  }
+}
+
+std::vector<ScoreBlock> correlate_where(const EvidenceImage& image, std::vector<Sample> samples,
+                                        const ScoreImage& bounds, int least, ScoreImage& output) {
+  static_assert(ScoreBlock::kColumns == kLanes);
   sort_by_row(samples);
   std::fill(output.values.begin(), output.values.end(), kNotLookedAt);
   std::vector<std::int16_t> beyond(kLanes);  // where the second row of the last pair goes, if there is none
+  std::vector<ScoreBlock> looked_at;
   BlockColumn column;
-  for (int x = 0; x < output.width; x += kLanes) {
+  for (int x = 0; x < output.width; x += ScoreBlock::kColumns) {
     column.choose(image, samples, x, kLanes);
-    for (int y = 0; y < output.height; y += 2) {
+    for (int y = 0; y < output.height; y += ScoreBlock::kRows) {
       if (!any_reaches(bounds.values.data() + static_cast<std::size_t>(y / 2) * bounds.width + x / 2,
                        kLanes / 2, static_cast<std::int16_t>(least)))
         continue;
-      column.meet_rows(image, y, 2);
+      column.meet_rows(image, y, ScoreBlock::kRows);
       std::int16_t* const scores = output.values.data() + static_cast<std::size_t>(y) * output.width + x;
       add_up(image.data(), static_cast<std::ptrdiff_t>(y) * image.stride(), image.stride(), column.offsets(),
              column.count(), scores, y + 1 < output.height ? scores + output.width : beyond.data());
+      looked_at.push_back({x, y});
     }
   }
+  return looked_at;
 }
 
 }  // namespace gridmerge

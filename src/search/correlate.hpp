@@ -68,10 +68,25 @@ EvidenceImage pool_pairs(const EvidenceImage& image);
 /// 2 y) to (2 x + 1, 2 y + 1) exceeds.
 std::vector<Sample> pool_pairs(const std::vector<Sample>& samples);
 
+/// The largest of each 2 x 2 values. `pooled` is given half the width, rounded up to blocks, and half the
+/// height.
+void pool_scores(const ScoreImage& scores, ScoreImage& pooled);
+
+/// What correlate_where() leaves where it does not look: less than any sum.
+inline constexpr std::int16_t kNotLookedAt = -32768;
+
+/// Neighbouring values that are computed together.
+struct ScoreBlock {
+  static constexpr int kColumns = 32;
+  static constexpr int kRows = 2;
+  int x;  // of the first
+  int y;
+};
+
 /// As correlate(), but only where a score may be `least` or more by the `bounds` of 2 x 2 shifts; elsewhere
 /// the output is kNotLookedAt or right. The bounds must be at least half as wide and high as the output.
-inline constexpr std::int16_t kNotLookedAt = -32768;
-void correlate_where(const EvidenceImage& image, std::vector<Sample> samples, const ScoreImage& bounds,
-                     int least, ScoreImage& output);
+/// Returns the blocks that were looked at; those at the top may reach a row beyond the output.
+std::vector<ScoreBlock> correlate_where(const EvidenceImage& image, std::vector<Sample> samples,
+                                        const ScoreImage& bounds, int least, ScoreImage& output);
 
 }  // namespace gridmerge

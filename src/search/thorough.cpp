@@ -133,6 +133,13 @@ class Normal {
     return static_cast<std::int16_t>(std::clamp(score, 0.0F, static_cast<float>(kMostScore * kUnits)));
   }
 
+  /// From how much seen on there is a score at all.
+  int least_seen() const {
+    return static_cast<int>(
+        std::find_if(per_unit_.begin(), per_unit_.end(), [](float one) { return one > 0.0F; }) -
+        per_unit_.begin());
+  }
+
   /// Which sum scores `least` or more for certain, and hardly a smaller one, by what is seen.
   std::vector<std::int16_t> least_sums(int least) const {
     std::vector<std::int16_t> sums;
@@ -168,24 +175,27 @@ class PeakFinder {
   std::vector<Peak> find_all(int rotation) {
     turn(rotation);
     resize(scores_, turned_.shifts_x, turned_.shifts_y);
-    correlate(searched_.evidence, turned_.samples, scores_);
-    return best_of(rotation, 0);
+    return best_of(
+        correlate_where(searched_.evidence, turned_.samples, seen_, searched_.normal.least_seen(), scores_),
+        rotation, 0);
   }
 
   /// Those that score `least` (above 0) or more.
   std::vector<Peak> find_from(int least, int rotation) {
     if (least_sums_.empty()) least_sums_ = searched_.normal.least_sums(least);
     turn(rotation);
+    pool_scores(seen_, most_seen_);
     resize(bounds_, (turned_.shifts_x + 1) / 2, (turned_.shifts_y + 1) / 2);
-    correlate(searched_.pooled, pool_pairs(turned_.samples), bounds_);
+    const std::vector<ScoreBlock> bounded = correlate_where(
+        searched_.pooled, pool_pairs(turned_.samples), most_seen_, searched_.normal.least_seen(), bounds_);
     // How far the bounds lie above what is asked for, which depends on what is seen.
-    for (std::size_t i = 0; i < bounds_.values.size(); ++i) {
-      const int above = bounds_.values[i] - least_sums_[static_cast<std::size_t>(seen_.values[i])];
-      bounds_.values[i] = static_cast<std::int16_t>(std::clamp(above, -kMostSum, kMostSum));
-    }
+    for_each_looked_at(bounded, bounds_, [&](std::int16_t& bound, int x, int y) {
+      const int above = bound - least_sums_[static_cast<std::size_t>(seen_at(x, y))];
+      bound = static_cast<std::int16_t>(std::clamp(above, kNotLookedAt + 0, kMostSum));
+    });
     resize(scores_, turned_.shifts_x, turned_.shifts_y);
-    correlate_where(searched_.evidence, turned_.samples, bounds_, 0, scores_);
-    return best_of(rotation, least - 1);
+    return best_of(correlate_where(searched_.evidence, turned_.samples, bounds_, 0, scores_), rotation,
+                   least - 1);
   }
 
  private:
@@ -205,14 +215,25 @@ class PeakFinder {
       turned_.samples[i].plane = sector_of(turned(walls[i].facing, steps));
   }
 
-  /// Sums become scores, and what was not looked at 0.
-  std::vector<Peak> best_of(int rotation, int floor) {
-    for (int y = 0; y < scores_.height; ++y) {
-      std::int16_t* const row = scores_.values.data() + static_cast<std::size_t>(y) * scores_.width;
-      const std::int16_t* const seen = seen_.values.data() + static_cast<std::size_t>(y / 2) * seen_.width;
-      for (int x = 0; x < scores_.width; ++x)
-        row[x] = row[x] == kNotLookedAt ? std::int16_t{0} : searched_.normal.score(row[x], seen[x / 2]);
+  std::int16_t seen_at(int half_x, int half_y) const {
+    return seen_.values[static_cast<std::size_t>(half_y) * seen_.width + half_x];
+  }
+
+  template <typename Change>
+  static void for_each_looked_at(const std::vector<ScoreBlock>& blocks, ScoreImage& image, Change change) {
+    for (const ScoreBlock& block : blocks) {
+      for (int y = block.y; y < std::min(block.y + ScoreBlock::kRows, image.height); ++y) {
+        std::int16_t* const row = image.values.data() + static_cast<std::size_t>(y) * image.width;
+        for (int x = block.x; x < block.x + ScoreBlock::kColumns; ++x) change(row[x], x, y);
+      }
     }
+  }
+
+  /// Sums become scores where they were looked at; what was not scores less than anything.
+  std::vector<Peak> best_of(const std::vector<ScoreBlock>& looked_at, int rotation, int floor) {
+    for_each_looked_at(looked_at, scores_, [&](std::int16_t& score, int x, int y) {
+      score = searched_.normal.score(score, seen_at(x / 2, y / 2));
+    });
     return best_peaks(scores_, turned_, rotation, floor);
   }
 
@@ -221,6 +242,7 @@ class PeakFinder {
   ScoreImage scores_;
   ScoreImage bounds_;
   ScoreImage seen_;
+  ScoreImage most_seen_;                  // of 2 x 2 of them
   std::vector<std::int16_t> least_sums_;  // Normal::least_sums() of what find_from() is asked for
 };
 

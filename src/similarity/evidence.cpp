@@ -265,28 +265,38 @@ WallEvidence::Histogram WallEvidence::count_encounters(const LookUp& map, const 
   const float ty = static_cast<float>(std::clamp(T_map_points.y, -kFarAway, kFarAway));
   const auto& offsets = kTurnedOffsets[steps_of_turn(T_map_points.theta)];
 
-  // Several, because neighbouring walls often meet the same: adding to one counter twice in a row would wait.
-  constexpr std::size_t kHistograms = 4;
-  std::array<Histogram, kHistograms> histograms{};
+  // Several counters, because neighbouring walls often meet the same: adding to one twice in a row would
+  // wait. Short ones, because to clear and to sum them takes as long as to count a hundred walls.
+  constexpr std::size_t kCounters = 4;
+  constexpr std::size_t kMostCounted = 65535 / kBlock * kBlock;
+  using Counts = std::array<std::uint16_t, kEncounters + 1>;
+  Histogram histogram{};
   std::array<int, kBlock> at;
-  for (std::size_t first = 0; first < points.x.size(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, points.x.size() - first);
-    place_points(points.x.data() + first, points.y.data() + first, count, c, s, tx, ty, map.last_x,
-                 map.last_y, map.row_of_tiles, at.data());
-    const auto meet = [&](std::size_t i, Histogram& histogram) {
-      const int place = map.places[at[i]];
-      ++histogram[(place & 0xff) + offsets[points.facing[first + i]][place >> 8]];
-    };
-    std::size_t i = 0;
-    for (; i + kHistograms <= count; i += kHistograms) {
-      for (std::size_t own = 0; own < kHistograms; ++own) meet(i + own, histograms[own]);
+  for (std::size_t begin = 0; begin < points.x.size(); begin += kMostCounted) {
+    const std::size_t end = std::min(points.x.size(), begin + kMostCounted);
+    std::array<Counts, kCounters> counts{};
+    for (std::size_t first = begin; first < end; first += kBlock) {
+      const std::size_t count = std::min(kBlock, end - first);
+      place_points(points.x.data() + first, points.y.data() + first, count, c, s, tx, ty, map.last_x,
+                   map.last_y, map.row_of_tiles, at.data());
+      const std::uint8_t* const facing = points.facing.data() + first;
+      const auto meet = [&](std::size_t i, Counts& own) {
+        const int place = map.places[at[i]];
+        ++own[(place & 0xff) + offsets[facing[i]][place >> 8]];
+      };
+      std::size_t i = 0;
+      for (; i + kCounters <= count; i += kCounters) {
+        for (std::size_t own = 0; own < kCounters; ++own) meet(i + own, counts[own]);
+      }
+      for (; i < count; ++i) meet(i, counts[0]);
     }
-    for (; i < count; ++i) meet(i, histograms[0]);
+    for (std::size_t met = 0; met < histogram.size(); ++met) {
+      int sum = 0;
+      for (const Counts& own : counts) sum += own[met];
+      histogram[met] += sum;
+    }
   }
-  for (std::size_t other = 1; other < kHistograms; ++other) {
-    for (std::size_t met = 0; met < histograms[0].size(); ++met) histograms[0][met] += histograms[other][met];
-  }
-  return histograms[0];
+  return histogram;
 }
 
 Evidence WallEvidence::operator()(const SE2& T_fixed_moving_cells, double min_sigma) const {

@@ -40,9 +40,10 @@ int turn_between(int a, int b, int full_turn) {
 /// frame].
 std::vector<MetPoint> find_met_walls(const WallMap& fixed, const WallMap& moving, const SE2& T) {
   const int turn = steps_of_turn(T.theta);
+  const ManyPointsTransform T_points(T);
   std::vector<MetPoint> met;
   for (const WallPoint& wall : moving.walls) {
-    const Point2 p = T * wall.position;
+    const Point2 p = T_points * wall.position;
     if (!(p.x >= 0.0 && p.y >= 0.0 && p.x < fixed.width && p.y < fixed.height)) continue;
     const Place& place = fixed.places[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(fixed.width) +
                                       static_cast<std::size_t>(p.x)];

@@ -27,7 +27,8 @@ OccupancyGrid bend(const OccupancyGrid& map, double metres) {
 }
 
 WallsMet measure(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& T_cells = {}) {
-  return measure_walls_met(make_wall_map(fixed, kCell), make_wall_map(moving, kCell), T_cells);
+  const WallMap moving_walls = make_wall_map(moving, kCell);
+  return measure_walls_met(make_wall_map(fixed, kCell), WallPatches(moving_walls), T_cells);
 }
 
 TEST(WallsMet, AreAllOfThemWhereAMapLiesOnItself) {

@@ -54,7 +54,7 @@ TEST(Agreement, AStrideEstimatesTheCounts) {
   for (int row = 0; row < 200; ++row) {
     for (int column = 0; column < 50; ++column) moving.at(column, row) = Cell::occupied;
   }
-  const AgreementCounts found = count_agreement(fixed, moving, {}, 5);
+  const AgreementCounts found = AgreementCounter(fixed, moving, 5).count({});
   EXPECT_EQ(found.agreement, 150 * 200);
   EXPECT_EQ(found.disagreement, 50 * 200);
 }

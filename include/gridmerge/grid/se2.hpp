@@ -38,4 +38,20 @@ Point2 operator*(const SE2& T_a_b, const Point2& p_b);
 /// T_b_a.
 SE2 inverse(const SE2& T_a_b);
 
+/// A transform for many points: its sine and cosine are computed once. To the bit as with the SE2.
+class ManyPointsTransform {
+ public:
+  explicit ManyPointsTransform(const SE2& T_a_b);
+
+  Point2 operator*(const Point2& p_b) const {
+    return {cos_ * p_b.x - sin_ * p_b.y + x_, sin_ * p_b.x + cos_ * p_b.y + y_};
+  }
+
+ private:
+  double cos_;
+  double sin_;
+  double x_;
+  double y_;
+};
+
 }  // namespace gridmerge

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 
@@ -20,11 +22,36 @@ struct AgreementCounts {
   }
 };
 
-/// Looks every known cell of `moving` up in `fixed` (nearest cell) under `T_fixed_moving` [m, rad, map
-/// frames]. With a `stride` above 1, only every stride-th cell of every stride-th row is looked up, and
-/// stands for stride^2 cells. O(cells of moving / stride^2).
+/// Looks the known cells of one map up in another one (nearest cell), under many poses.
+class AgreementCounter {
+ public:
+  /// With a `stride` above 1, only every stride-th cell of every stride-th row is looked up, and stands for
+  /// stride^2 cells. Both maps must outlive this. O(cells of moving / stride^2).
+  AgreementCounter(const OccupancyGrid& fixed, const OccupancyGrid& moving, int stride = 1);
+
+  /// Under a pose between the map frames [m, rad]. O(known cells of moving / stride^2).
+  AgreementCounts count(const SE2& T_fixed_moving) const;
+
+ private:
+  struct KnownCell {
+    int column;
+    Cell value;
+  };
+  struct Row {
+    int row;
+    std::size_t begin, end;  // of its known cells
+  };
+
+  const OccupancyGrid& fixed_;
+  const OccupancyGrid& moving_;
+  int stride_;
+  std::vector<KnownCell> known_;
+  std::vector<Row> rows_;
+};
+
+/// AgreementCounter for one pose and all cells. O(cells of moving).
 AgreementCounts count_agreement(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                const SE2& T_fixed_moving, int stride = 1);
+                                const SE2& T_fixed_moving);
 
 /// Share of the smaller map's known area that is known in both, in [0, 1], from what count_agreement found.
 /// O(cells of both).
