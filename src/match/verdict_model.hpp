@@ -12,32 +12,32 @@ struct VerdictWeight {
   double weight;
 };
 
-inline constexpr double kVerdictBias = -14.982;
+inline constexpr double kVerdictBias = -14.301;
 
 /// In the order of verdict_terms().
 // clang-format off
 inline constexpr std::array kVerdictWeights{
     VerdictWeight{"tells apart", 3.000},
     VerdictWeight{"held", 1.000},
-    VerdictWeight{"stands out", 0.487},
-    VerdictWeight{"far ahead, bent", 9.962},
-    VerdictWeight{"met locally", 2.557},
-    VerdictWeight{"bend explains", 2.610},
-    VerdictWeight{"cells agree", 3.744},
-    VerdictWeight{"agrees better", 1.407},
-    VerdictWeight{"things met", 2.193},
+    VerdictWeight{"stands out", 0.403},
+    VerdictWeight{"far ahead, bent", 11.911},
+    VerdictWeight{"met locally", 2.560},
+    VerdictWeight{"bend explains", 2.675},
+    VerdictWeight{"cells agree", 3.559},
+    VerdictWeight{"agrees better", 0.806},
+    VerdictWeight{"things met", 1.926},
 };
 // clang-format on
 
 /// In the order of rank_terms().
 // clang-format off
 inline constexpr std::array kRankWeights{
-    VerdictWeight{"evidence", 2.996},
-    VerdictWeight{"seen", 1.694},
-    VerdictWeight{"cells", 3.184},
-    VerdictWeight{"lines", 2.641},
-    VerdictWeight{"things", 2.726},
-    VerdictWeight{"tolerance", 1.288},
+    VerdictWeight{"evidence", 2.770},
+    VerdictWeight{"seen", 1.448},
+    VerdictWeight{"cells", 3.268},
+    VerdictWeight{"lines", 2.620},
+    VerdictWeight{"things", 2.951},
+    VerdictWeight{"tolerance", 1.355},
 };
 // clang-format on
 

@@ -13,10 +13,6 @@ namespace gridmerge {
 
 namespace {
 
-/// What it is worth that a pose which others chose is among a pair's candidates, beyond what the pair itself
-/// thinks of it: the dozen candidates of an unrelated pair are spread over thousands of square metres and a
-/// turn, but walls are parallel nearly everywhere, so that about one in 150 agrees by chance.
-constexpr double kPoseNats = 5.0;
 /// No single pair says more than this about two maps: their errors have causes in common with other pairs'.
 constexpr double kMostLogOdds = 6.0;
 /// What a pair says by itself of two of three or more maps. Most pairs of them share little or nothing, and

@@ -14,6 +14,11 @@ namespace gridmerge {
 
 using NodeGroups = std::vector<NodeGroup>;
 
+/// What it is worth that a pose which others chose is among a pair's candidates, beyond what the pair itself
+/// thinks of it: the dozen candidates of an unrelated pair are spread over thousands of square metres and a
+/// turn, but walls are parallel nearly everywhere, so that about one in 150 agrees by chance.
+inline constexpr double kPoseNats = 5.0;
+
 /// Labels of places that edges hold together.
 class Labels {
  public:

@@ -76,6 +76,7 @@ Join make_join(std::size_t fixed, std::size_t moving, MatchResult match, const C
     return join;
   }
   join.outcome = is_believed && T == join.match.T_fixed_moving ? JoinOutcome::accepted : JoinOutcome::rescued;
+  join.probability = 0.0;  // if it is a group that says it, rather than these two maps
   for (const Hypothesis& hypothesis : join.match.hypotheses) {
     if (hypothesis.T_fixed_moving == T) join.probability = hypothesis.probability;
   }

@@ -20,6 +20,7 @@
 #include "gridmerge/merge/arrangement.hpp"
 #include "gridmerge/merge/coverage.hpp"
 #include "gridmerge/similarity/agreement.hpp"
+#include "group_match.hpp"
 #include "joins.hpp"
 #include "prior.hpp"
 
@@ -58,7 +59,7 @@ void count_common(const PreparedMap& fixed, const PreparedMap& moving, Join& joi
 
 class Merger::State {
  public:
-  explicit State(MergeOptions options) : options_(std::move(options)) {
+  explicit State(MergeOptions options) : options_(std::move(options)), groups_(options_.match) {
     validate(options_.match);
     validate_merge({}, options_.resolution);
     if (!(options_.max_false_joins >= 0.0) || !std::isfinite(options_.max_false_joins))
@@ -150,7 +151,25 @@ class Merger::State {
     match_new_pairs(apart, SearchMethod::exhaustive, thorough_matches_);
     std::set<Pair> again;
     for (const Pair& pair : apart) again.insert(std::minmax(pair.first, pair.second));
-    return arrange(maps, std::move(again));
+    return hear_groups(maps, arrange(maps, std::move(again)));
+  }
+
+  /// Maps that still lie alone are matched with each group, as long as that places more of them.
+  Solution hear_groups(const std::vector<MapId>& maps, Solution solution) {
+    const MergeInputs inputs = inputs_of(maps);
+    while (true) {
+      ArrangementProblem problem = groups_.heard(solution.problem, solution.arrangement, inputs);
+      Arrangement arrangement =
+          arrange_within(problem, options_.match.accept_probability, options_.max_false_joins);
+      if (count_alone(arrangement) >= count_alone(solution.arrangement)) return solution;
+      solution.problem = std::move(problem);
+      solution.arrangement = std::move(arrangement);
+    }
+  }
+
+  static std::ptrdiff_t count_alone(const Arrangement& arrangement) {
+    return std::count_if(arrangement.groups.begin(), arrangement.groups.end(),
+                         [](const NodeGroup& group) { return group.size() == 1; });
   }
 
   /// With the second look at the pairs in `again`.
@@ -166,6 +185,7 @@ class Merger::State {
   }
 
   void forget(MapId id) {
+    groups_.forget();
     for (Matches* matches : {&matches_, &thorough_matches_}) {
       std::erase_if(*matches,
                     [&](const auto& match) { return match.first.first == id || match.first.second == id; });
@@ -327,8 +347,7 @@ class Merger::State {
     return places;
   }
 
-  void add_components(const std::vector<MapId>& maps, const ArrangementProblem& problem,
-                      const Arrangement& arrangement, MergeResult& result) const {
+  MergeInputs inputs_of(const std::vector<MapId>& maps) const {
     MergeInputs inputs;
     inputs.index = places_of(maps);
     for (const MapId id : maps) {
@@ -336,6 +355,12 @@ class Merger::State {
       inputs.prepared.push_back(&inputs_.at(id)->prepared);
       inputs.known_poses.push_back(known_pose(id));
     }
+    return inputs;
+  }
+
+  void add_components(const std::vector<MapId>& maps, const ArrangementProblem& problem,
+                      const Arrangement& arrangement, MergeResult& result) const {
+    const MergeInputs inputs = inputs_of(maps);
     for (const NodeGroup& group : arrangement.groups) {
       if (group.size() == 1) {
         result.left_out.push_back(inputs.index[group.front().map]);
@@ -363,6 +388,7 @@ class Merger::State {
   std::map<MapId, KnownPose> known_poses_;
   Matches matches_;           // of the first look
   Matches thorough_matches_;  // of the second look
+  GroupMatches groups_;
 };
 
 Merger::Merger(MergeOptions options) : state_(std::make_unique<State>(std::move(options))) {}

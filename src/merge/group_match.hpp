@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "component.hpp"
+#include "gridmerge/match/match.hpp"
+
+namespace gridmerge {
+
+/// Matches maps that were left alone with what a whole group has seen: a map may share little with each of
+/// them, and much with all.
+class GroupMatches {
+ public:
+  explicit GroupMatches(const MatchOptions& options);
+
+  /// The problem with what groups say of maps that lie alone, where they say it surely enough: that becomes
+  /// the candidates of the member that has most in common with the map. Its other pairs with the group then
+  /// neither speak for it nor against it, since the group has spoken for all. The same problem where no group
+  /// says anything. Of the maps that lie alone those are asked about of which nothing is known beforehand.
+  /// Matches are kept for the next call, those that it does not need are forgotten. Runs in the calling TBB
+  /// arena. O(maps alone * groups) times match().
+  ArrangementProblem heard(const ArrangementProblem& problem, const Arrangement& arrangement,
+                           const MergeInputs& inputs);
+
+  /// Of a map that has changed, or of all whose index has.
+  void forget() { kept_.clear(); }
+
+ private:
+  /// Which maps lie how, and which one they were matched with.
+  using Key = std::vector<double>;
+
+  MatchOptions options_;
+  std::map<Key, MatchResult> kept_;
+};
+
+}  // namespace gridmerge
