@@ -136,11 +136,9 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
   std::string methods;
   for (const SearchMethodName& one : search_methods()) {
     names.emplace_back(one.name);
-    methods += fmt::format("{}: {}; ", one.name, one.meaning);
+    methods += fmt::format("{}{}: {}", methods.empty() ? "" : "; ", one.name, one.meaning);
   }
-  names.emplace_back(kRandomWalk);
-  command
-      .add_option("--search", options.method, methods + kRandomWalk + ": the walk of Birk & Carpin (2006)")
+  command.add_option("--search", options.method, methods)
       ->type_name("METHOD")
       ->check(CLI::IsMember(names))
       ->capture_default_str();
@@ -198,7 +196,7 @@ MatchOptions match_options(const CommonOptions& common, const SearchOptions& opt
   engine.threads = common.threads;
   engine.accept_probability = options.accept_from();
   if (options.lists_all) engine.max_hypotheses = std::numeric_limits<std::size_t>::max();
-  engine.search = search_method(options.method).value_or(SearchMethod::exhaustive);
+  engine.search = search_method(options.method).value();
   return engine;
 }
 
@@ -208,25 +206,23 @@ PairMatcher::PairMatcher(const CommonOptions& common, SearchOptions options,
 
 MatchResult PairMatcher::operator()(const OccupancyGrid& fixed, const OccupancyGrid& moving) {
   ++matches_;
-  if (!options_.random_walk()) {
-    MatchOptions engine = match_options(common_, options_);
-    engine.progress = progress_;
-    return match(fixed, moving, engine);
+  MatchOptions engine = match_options(common_, options_);
+  engine.progress = progress_;
+  if (options_.random_walk()) {
+    RandomWalkMatchOptions& walk = engine.random_walk;
+    walk = options_.walk;
+    if (!options_.starts.empty()) walk.start = parse_starts(options_.starts).value();
+    if (!options_.start.empty()) walk.start_pose = to_pose(options_.start);
+    if (!options_.trace.empty()) walk.walk.trace = options_.trace_all ? WalkTrace::all : WalkTrace::accepted;
+    walk.restarts = options_.restarts.value_or(static_cast<int>(walk.c_locks.size()));
+    walk.accept_acceptance_index = options_.accept_from();
+    if (!options_.trace.empty()) {
+      walk.on_walk = [&](int number, double c_lock, const RandomWalkResult& result) {
+        record(c_lock, number, result);
+      };
+    }
   }
-  RandomWalkMatchOptions engine = options_.walk;
-  if (!options_.starts.empty()) engine.start = parse_starts(options_.starts).value();
-  if (!options_.start.empty()) engine.start_pose = to_pose(options_.start);
-  if (!options_.trace.empty()) engine.walk.trace = options_.trace_all ? WalkTrace::all : WalkTrace::accepted;
-  engine.restarts = options_.restarts.value_or(static_cast<int>(engine.c_locks.size()));
-  engine.accept_acceptance_index = options_.accept_from();
-  engine.threads = common_.threads;
-  if (progress_) engine.progress = [&](int done, int all) { progress_(static_cast<double>(done) / all); };
-  if (!options_.trace.empty()) {
-    engine.on_walk = [&](int walk, double c_lock, const RandomWalkResult& result) {
-      record(c_lock, walk, result);
-    };
-  }
-  return match_by_random_walk(fixed, moving, engine);
+  return match(fixed, moving, engine);
 }
 
 void PairMatcher::record(double c_lock, int walk, const RandomWalkResult& result) {

@@ -14,15 +14,11 @@
 
 namespace gridmerge::cli {
 
-/// The name of the paper's search, which search_methods() does not hold: it has options and a verdict of its
-/// own.
-inline constexpr const char* kRandomWalk = "random-walk";
-
 /// How pairs of maps are matched, and what is accepted.
 struct SearchOptions {
   std::string method = name_of(SearchMethod::exhaustive);
   std::optional<double> accept;  // probability, or acceptance index of the random walk
-  RandomWalkMatchOptions walk;   // but for what is below
+  RandomWalkMatchOptions walk;   // except for what is below
   std::optional<int> restarts;   // one for each c_lock if not given
   std::string starts;            // the lattice, as the command line says it; the usual one if empty
   std::string start;             // a pose instead
@@ -31,7 +27,7 @@ struct SearchOptions {
   bool lists_all = false;               // results hold all poses that were judged
   std::optional<std::string> strategy;  // how several maps are merged
 
-  bool random_walk() const { return method == kRandomWalk; }
+  bool random_walk() const { return method == name_of(SearchMethod::random_walk); }
   double accept_from() const;
   /// Up the paper's tree; it is the random walk's way if none is asked for.
   bool up_the_tree() const { return strategy ? *strategy == "tree" : random_walk(); }

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "gridmerge/evaluate/displacement.hpp"
-#include "gridmerge/match/random_walk_match.hpp"
+#include "gridmerge/match/match.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 
 namespace gridmerge::paper {

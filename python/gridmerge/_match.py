@@ -83,7 +83,7 @@ def match(
     moving: MapLike,
     *,
     threads: int = 0,
-    accept: float = _core.DEFAULT_ACCEPT,
+    accept: float | None = None,
     max_hypotheses: int = 10,
     search: str = "exhaustive",
     progress: Progress | None = None,
@@ -93,10 +93,11 @@ def match(
     Args:
         fixed, moving: maps, paths of map files, or messages like nav_msgs/OccupancyGrid.
         threads: 0 = one a core. The result does not depend on it.
-        accept: the verdict is "accepted" from this probability on.
+        accept: the verdict is "accepted" from this probability on, 0.95 if None. Of the random walk it is the acceptance index, 0.98
+            if None.
         max_hypotheses: how many distinct hypotheses the result lists.
         search: "exhaustive", a quick look at every pose, then a thorough one if that decides nothing; "quick" or "thorough", one
-            of the two alone. The paper's search has a function of its own, match_by_random_walk().
+            of the two alone; "random-walk", the paper's search as match_by_random_walk() makes it by itself.
         progress: called now and then, in the calling thread, with the share of the work that is done.
 
     Other Python threads run meanwhile, and Ctrl-C ends the work. Raises FileError for a file that is no map, and
@@ -106,7 +107,7 @@ def match(
         to_map("fixed", fixed)._core,
         to_map("moving", moving)._core,
         _arguments.threads(threads),
-        _arguments.share("accept", accept),
+        None if accept is None else _arguments.share("accept", accept),
         _arguments.whole("max_hypotheses", max_hypotheses, 0, 2**31),
         _arguments.choice("search", search, tuple(_core.search_methods())),
         _arguments.progress(progress),

@@ -11,11 +11,13 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/match/match.hpp"
 
 namespace gridmerge::python {
 
@@ -47,6 +49,10 @@ nb::str to_str(const std::string& text);
 inline std::string to_string(const nb::bytes& bytes) {
   return {bytes.c_str(), bytes.size()};
 }
+
+/// How pairs are matched, as Python says it: `accept` is a probability, or the acceptance index of the random
+/// walk, and the usual one if there is none. `search` is one of search_methods().
+void set_search(MatchOptions& options, const std::string& search, std::optional<double> accept);
 
 void bind_errors(nb::module_& module);
 void bind_worker(nb::module_& module);

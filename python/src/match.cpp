@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/match.hpp"
-
 #include "bindings.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "worker.hpp"
@@ -9,13 +7,12 @@ namespace gridmerge::python {
 
 namespace {
 
-MatchResult match_maps(const Map& fixed, const Map& moving, int threads, double accept,
+MatchResult match_maps(const Map& fixed, const Map& moving, int threads, std::optional<double> accept,
                        std::size_t max_hypotheses, const std::string& search, const nb::object& progress) {
   MatchOptions options;
   options.threads = threads;
-  options.accept_probability = accept;
   options.max_hypotheses = max_hypotheses;
-  options.search = search_method(search).value();
+  set_search(options, search, accept);
   return compute_in_worker(progress, [&](const Report& report) {
     options.progress = report;
     return match(*fixed.grid, *moving.grid, options);
@@ -23,6 +20,11 @@ MatchResult match_maps(const Map& fixed, const Map& moving, int threads, double 
 }
 
 }  // namespace
+
+void set_search(MatchOptions& options, const std::string& search, std::optional<double> accept) {
+  options.search = search_method(search).value();
+  if (accept) options.accept_probability = options.random_walk.accept_acceptance_index = *accept;
+}
 
 void bind_match(nb::module_& module) {
   module.attr("DEFAULT_ACCEPT") = MatchOptions{}.accept_probability;
@@ -47,8 +49,9 @@ void bind_match(nb::module_& module) {
     for (const SearchMethodName& one : search_methods()) names.emplace_back(one.name);
     return names;
   });
-  module.def("match", &match_maps, nb::arg("fixed"), nb::arg("moving"), nb::arg("threads"), nb::arg("accept"),
-             nb::arg("max_hypotheses"), nb::arg("search"), nb::arg("progress").none());
+  module.def("match", &match_maps, nb::arg("fixed"), nb::arg("moving"), nb::arg("threads"),
+             nb::arg("accept").none(), nb::arg("max_hypotheses"), nb::arg("search"),
+             nb::arg("progress").none());
 }
 
 }  // namespace gridmerge::python

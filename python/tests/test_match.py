@@ -106,7 +106,21 @@ def test_a_search_is_chosen_by_name(robots: list[str]) -> None:
     found = {name: gridmerge.match(fixed, moving, search=name) for name in ("exhaustive", "quick", "thorough")}
     assert all(one.accepted for one in found.values())
     assert found["exhaustive"].transform == found["quick"].transform  # it decides the pair
-    with pytest.raises(ValueError, match="search: must be one of exhaustive, quick, thorough, is 'fast'"):
+    with pytest.raises(ValueError, match="search: must be one of exhaustive, quick, thorough, random-walk, is 'fast'"):
         gridmerge.match(fixed, moving, search="fast")
     with pytest.raises(ValueError, match="search: must be one of"):
+        gridmerge.merge([fixed, moving], search="fast")
+
+
+def test_the_random_walk_is_a_search_like_others(robots: list[str]) -> None:
+    fixed, moving = robots[:2]
+    walked = gridmerge.match(fixed, moving, search="random-walk")
+    alone = gridmerge.match_by_random_walk(fixed, moving).match
+    assert walked.transform == alone.transform
+    assert walked.verdict == alone.verdict
+    assert walked.probability == walked.acceptance_index
+    assert gridmerge.match(fixed, moving, search="random-walk", accept=0.0).accepted
+    with pytest.raises(ValueError, match="search: 'random-walk' needs the strategy 'tree'"):
         gridmerge.merge([fixed, moving], search="random-walk")
+    merged = gridmerge.merge([fixed, moving], search="random-walk", strategy="tree", accept=0.0)
+    assert len(merged.components) == 1

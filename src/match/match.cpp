@@ -51,6 +51,16 @@ MatchResult match_in_arena(const PreparedMap& fixed, const PreparedMap& moving, 
   return swapped ? inverse(std::move(result)) : result;
 }
 
+MatchResult walk(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options) {
+  RandomWalkMatchOptions walk = options.random_walk;
+  walk.threads = options.threads;
+  walk.max_hypotheses = options.max_hypotheses;
+  walk.progress = nullptr;
+  if (options.progress)
+    walk.progress = [&](int done, int all) { options.progress(static_cast<double>(done) / all); };
+  return match_by_random_walk(fixed, moving, walk);
+}
+
 }  // namespace
 
 MatchResult inverse(MatchResult result) {
@@ -65,6 +75,7 @@ MatchResult inverse(MatchResult result) {
 
 MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options) {
   validate(options);
+  if (options.search == SearchMethod::random_walk) return walk(fixed, moving, options);
   const auto start = std::chrono::steady_clock::now();
   MatchResult result;
   const PreparedMap prepared_fixed(fixed), prepared_moving(moving);
@@ -76,6 +87,7 @@ MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const
 
 MatchResult match(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options) {
   validate(options);
+  if (options.search == SearchMethod::random_walk) return walk(fixed.known(), moving.known(), options);
   const auto start = std::chrono::steady_clock::now();
   MatchResult result = match_in_arena(fixed, moving, options);
   result.seconds = seconds_since(start);

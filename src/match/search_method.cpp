@@ -11,7 +11,8 @@ std::span<const SearchMethodName> search_methods() {
       SearchMethodName{SearchMethod::exhaustive, "exhaustive",
                        "a quick look at every pose, then a thorough one if that decides nothing"},
       SearchMethodName{SearchMethod::quick, "quick", "the quick look alone"},
-      SearchMethodName{SearchMethod::thorough, "thorough", "the thorough look alone"}};
+      SearchMethodName{SearchMethod::thorough, "thorough", "the thorough look alone"},
+      SearchMethodName{SearchMethod::random_walk, "random-walk", "the walk of Birk & Carpin (2006)"}};
   return kMethods;
 }
 

@@ -61,6 +61,10 @@ class Merger::State {
  public:
   explicit State(MergeOptions options) : options_(std::move(options)), groups_(options_.match) {
     validate(options_.match);
+    if (options_.match.search == SearchMethod::random_walk)
+      throw std::invalid_argument(
+          "joint merging needs several hypotheses for each pair, with probabilities: a random walk has none "
+          "(merge_up_tree() takes it)");
     validate_merge({}, options_.resolution);
     if (!(options_.max_false_joins >= 0.0) || !std::isfinite(options_.max_false_joins))
       throw std::invalid_argument("max_false_joins must be a number from 0 on");

@@ -5,7 +5,9 @@
 
 #include <limits>
 #include <set>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "gridmerge/match/match.hpp"
 #include "support/building.hpp"
@@ -62,6 +64,35 @@ TEST(SearchMethod, TheThoroughLookFindsWhatTheQuickOneFinds) {
   const Point2 middle = result.T_fixed_moving * (T_left_building * Point2{9.0, 6.5});
   EXPECT_NEAR(middle.x, 9.0, 0.1);
   EXPECT_NEAR(middle.y, 6.5, 0.1);
+}
+
+TEST(SearchMethod, TheRandomWalkIsMatchByRandomWalk) {
+  const OccupancyGrid building = test::draw_building(1);
+  const OccupancyGrid left = test::map_part(building, {0, 0, 12, 13}, {1.0, 2.0, 0.1});
+  MatchOptions options;
+  options.search = SearchMethod::random_walk;
+  options.random_walk.walk.max_proposals = 300;
+  options.random_walk.restarts = 2;
+  options.max_hypotheses = 1;
+  std::vector<double> told;
+  options.progress = [&](double share) { told.push_back(share); };
+  const MatchResult result = match(building, left, options);
+  RandomWalkMatchOptions walk = options.random_walk;
+  walk.max_hypotheses = 1;
+  const MatchResult expected = match_by_random_walk(building, left, walk);
+  EXPECT_EQ(result.T_fixed_moving, expected.T_fixed_moving);
+  EXPECT_EQ(result.acceptance_index, expected.acceptance_index);
+  EXPECT_EQ(result.hypotheses.size(), 1U);
+  EXPECT_EQ(told, (std::vector<double>{0.5, 1.0}));
+  EXPECT_EQ(match(PreparedMap(building), PreparedMap(left), options).verdict, result.verdict);
+}
+
+TEST(SearchMethod, TheRandomWalkChecksItsOptions) {
+  const OccupancyGrid map = test::draw_building(1);
+  MatchOptions options;
+  options.search = SearchMethod::random_walk;
+  options.random_walk.restarts = 0;
+  EXPECT_THROW(match(map, map, options), std::invalid_argument);
 }
 
 TEST(SearchMethod, HowManyAreListedChangesNothingElse) {

@@ -6,7 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "gridmerge/match/match.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/match/match_result.hpp"
 #include "gridmerge/search/random_walk.hpp"
 
 namespace gridmerge {
@@ -37,7 +38,8 @@ struct RandomWalkMatchOptions {
 /// distances), and accepted if that is large enough, no distance is undefined and the maps have enough in
 /// common.
 ///
-/// The result is that of match() with these differences: a hypothesis's score is its acceptance index; the
+/// match() calls it for SearchMethod::random_walk. The result is that of the other methods with these
+/// differences: a hypothesis's score is its acceptance index; the
 /// acceptance index also stands for the probability, for want of one (it is not one: see docs/paper.md);
 /// agreement and disagreement are counted on the fixed map's lattice; walks that end within ten cells of each
 /// other are one hypothesis. Throws std::invalid_argument for invalid grids or options, and for a start pose
