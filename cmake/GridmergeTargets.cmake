@@ -10,7 +10,7 @@ function(gridmerge_configure target)
                                              -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${GRIDMERGE_SANITIZE})
   endif()
-  if(GRIDMERGE_LIBFUZZER)
+  if(GRIDMERGE_BUILD_FUZZERS)
     # libFuzzer finds its way through the libraries by their coverage.
     target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
     target_link_options(${target} PUBLIC -fsanitize=fuzzer-no-link)

@@ -3,6 +3,7 @@
 
 #include "fuzz_target.hpp"
 #include "gridmerge/io/png.hpp"
+#include "io/png_map.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gridmerge;
@@ -17,6 +18,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::require(sample_bytes == 1 || sample_bytes == 2);
   const std::size_t pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   fuzz::require(image.samples.size() == pixels * static_cast<std::size_t>(image.channels) * sample_bytes);
+  // What a map takes of it is of the same picture.
+  const MapImage map = decode_png_map(fuzz::as_bytes(data, size), fuzz::kMaxPixels);
+  fuzz::require(fuzz::is_sound(map) && map.width == image.width && map.height == image.height);
   if (sample_bytes == 1) fuzz::require(decode_png(encode_png(image)).samples == image.samples);
   return 0;
 }

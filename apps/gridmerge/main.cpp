@@ -2,10 +2,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "commands.hpp"
 #include "console.hpp"
@@ -30,6 +33,23 @@ void occupy_standard_streams() {
 void let_writes_fail() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+}
+
+// Some of what libraries do may not throw, but needs memory: a JSON value when it goes, for one. Without any
+// the program ends there. What it was writing then stays as after a kill: whole, and put in order by the next
+// one.
+std::atomic<bool> memory_ran_out{false};
+
+void on_no_memory() {
+  memory_ran_out = true;
+  throw std::bad_alloc();
+}
+
+[[noreturn]] void on_terminate() {
+  if (!memory_ran_out) std::abort();
+  constexpr std::string_view kMessage = "gridmerge: out of memory\n";
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
+  std::_Exit(kError);
 }
 
 // Of an error the asked-for subcommand's help is the one to point to.
@@ -88,6 +108,8 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   occupy_standard_streams();
   let_writes_fail();
+  std::set_new_handler(on_no_memory);
+  std::set_terminate(on_terminate);
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "destination.hpp"
+#include "directory_names.hpp"
 #include "durable.hpp"
 
 namespace gridmerge {
@@ -54,9 +55,8 @@ void remove_if_abandoned(const std::filesystem::path& file) {
 
 void remove_abandoned(const std::filesystem::path& directory) {
   std::error_code error;
-  for (std::filesystem::directory_iterator entry(directory.empty() ? "." : directory, error), end;
-       !error && entry != end; entry.increment(error)) {
-    if (is_temporary_name(entry->path().filename().string())) remove_if_abandoned(entry->path());
+  for (const std::string& name : names_in(directory, error)) {
+    if (is_temporary_name(name)) remove_if_abandoned(directory / name);
   }
 }
 
@@ -69,14 +69,14 @@ struct Created {
 // changing it.
 Created create_beside(const std::filesystem::path& path) {
   for (int attempt = 0;; ++attempt) {
-    const auto candidate = path.parent_path() / temporary_name(attempt);
+    auto candidate = path.parent_path() / temporary_name(attempt);
     const int descriptor = ::open(candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor < 0 && (errno != EEXIST || attempt == 10000)) fail(path, errno);
     if (descriptor < 0) continue;
     ::flock(descriptor, LOCK_EX);  // where there are no locks, nothing is taken for abandoned
     // Between the two calls another program may have taken it for abandoned.
     struct stat status {};
-    if (::fstat(descriptor, &status) == 0 && status.st_nlink > 0) return {candidate, descriptor};
+    if (::fstat(descriptor, &status) == 0 && status.st_nlink > 0) return {std::move(candidate), descriptor};
     ::close(descriptor);
   }
 }

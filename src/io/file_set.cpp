@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "destination.hpp"
+#include "directory_names.hpp"
 #include "durable.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/io/file_error.hpp"
@@ -46,13 +47,13 @@ fs::path current(const std::string& name) {
 
 /// The names in the directory that are links of ours.
 std::vector<std::string> linked_names(const fs::path& directory) {
-  std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
-    const std::string name = entry.path().filename().string();
-    std::error_code error;
-    if (entry.is_symlink(error) && fs::read_symlink(entry.path(), error) == current(name))
-      names.push_back(name);
-  }
+  std::error_code error;
+  std::vector<std::string> names = names_in(directory, error);
+  if (error) throw fs::filesystem_error("cannot be read", directory, error);
+  std::erase_if(names, [&](const std::string& name) {
+    std::error_code no_link;
+    return fs::read_symlink(directory / name, no_link) != current(name);
+  });
   return names;
 }
 
@@ -71,7 +72,7 @@ void settle(const fs::path& directory) {
       check(::unlink(link.c_str()), link);
     }
     flush(directory, directory);
-    fs::remove_all(work);
+    remove_directory(work);
   } catch (const fs::filesystem_error& error) {
     throw FileError(directory, "cannot be written to: " + error.code().message());
   }

@@ -18,6 +18,7 @@
 #include "gridmerge/report/page.hpp"
 #include "gridmerge/report/preview.hpp"
 #include "io/add_map.hpp"
+#include "io/directory_names.hpp"
 #include "io/made_directories.hpp"
 
 namespace gridmerge {
@@ -53,8 +54,7 @@ namespace {
 std::vector<fs::path> outputs_in(const fs::path& directory) {
   std::vector<fs::path> outputs;
   std::error_code error;
-  for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
-    const fs::path name = entry->path().filename();
+  for (const std::string& name : names_in(directory, error)) {
     if (is_merge_output(name)) outputs.push_back(directory / name);
   }
   if (error) throw FileError(directory, "cannot be read: " + error.message());

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -59,14 +60,18 @@ TEST(Dataset, HoldsMapsAndTruthThatBelongTogether) {
   SimulateOptions other = quick(1);
   other.seed = 77;
   const std::filesystem::path folder = directory.path() / "made" / "here";
-  write_dataset(folder, simulation, {simulate(other)});
+  const Simulation elsewhere = simulate(other);
+  write_dataset(folder, simulation, {elsewhere});
 
   for (std::size_t i = 0; i < 3; ++i) {
     const OccupancyGrid map = load_map(folder / ("robot_" + std::to_string(i + 1) + ".yaml")).grid;
     EXPECT_EQ(map.cells, simulation.maps[i].grid.cells);
     EXPECT_EQ(map.origin, simulation.maps[i].grid.origin);
   }
-  EXPECT_GT(count_cells(load_map(folder / "building.yaml").grid).free, 1000U);
+  EXPECT_EQ(load_map(folder / "elsewhere_1.yaml").grid.cells, elsewhere.maps[0].grid.cells);
+  const OccupancyGrid building = load_map(folder / "building.yaml").grid;
+  EXPECT_GT(count_cells(building).free, 1000U);
+  EXPECT_EQ(building.resolution, 0.05);
   const std::vector<TruePair> pairs = read_pairs(folder / "pairs.tsv");
   ASSERT_EQ(pairs.size(), simulation.pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -79,6 +84,18 @@ TEST(Dataset, HoldsMapsAndTruthThatBelongTogether) {
   ASSERT_EQ(sets.size(), 1U);
   EXPECT_EQ(sets[0].members.size(), 3U);
   EXPECT_EQ(sets[0].members[0].T_set_map, SE2{});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SimulatedMap &first = simulation.maps[0], &map = simulation.maps[i];
+    const TrueMember& member = sets[0].members[i];
+    EXPECT_EQ(member.map.name, "robot_" + std::to_string(i + 1) + ".yaml");
+    EXPECT_EQ(member.tolerance, std::max(kLeastTolerance, 0.3 + 2.0 * (first.bend + map.bend)));
+    const SE2 T = inverse(first.T_building_map) * map.T_building_map;
+    EXPECT_NEAR(member.T_set_map.x, T.x, 1e-12);
+    EXPECT_NEAR(member.T_set_map.y, T.y, 1e-12);
+  }
+  const std::vector<NegativePair> strangers = read_negatives(folder / "negatives.tsv");
+  EXPECT_EQ(strangers.back().fixed.name, "robot_3.yaml");
+  EXPECT_EQ(strangers.back().moving.name, "elsewhere_1.yaml");
 }
 
 TEST(Dataset, KeepsProbabilitiesToAPercent) {

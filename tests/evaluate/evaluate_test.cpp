@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "gridmerge/evaluate/displacement.hpp"
 #include "gridmerge/io/map_file.hpp"
@@ -60,6 +63,104 @@ TEST_F(Evaluate, FindsPairsNegativesAndSetsAsTheyAre) {
   EXPECT_EQ(evaluation.sets[0].correct, 2u);
   EXPECT_EQ(evaluation.sets[0].left_out, 1u);
   EXPECT_EQ(steps, (std::vector<std::pair<std::size_t, std::size_t>>{{1, 4}, {2, 4}, {3, 4}, {4, 4}}));
+}
+
+TEST_F(Evaluate, PassesOnWhatTheMatcherSays) {
+  const SE2 T_second = T_left_right_ * SE2{0.0, 2.0, 0.0};
+  MatchResult result;
+  result.verdict = Verdict::accepted;
+  result.reason = Reason::several;
+  result.T_fixed_moving = T_left_right_;
+  result.probability = 0.73;
+  result.seconds = 0.125;
+  result.hypotheses = {{T_left_right_, 9.0, 0.73}, {T_second, 4.0, 0.2}};
+  EvaluateOptions options;
+  std::vector<std::size_t> widths;
+  options.matcher = [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+    widths.insert(widths.end(), {fixed.cells.size(), moving.cells.size()});
+    return result;
+  };
+  Truth truth;
+  truth.pairs = {{map("left"), map("right"), T_left_right_, 0.2, "B"}};
+  truth.negatives = {{map("right"), map("other")}};
+  const Evaluation evaluation = evaluate(truth, options);
+  const auto cells = [&](const char* name) { return load_map(map(name).path).grid.cells.size(); };
+  EXPECT_EQ(widths,
+            (std::vector<std::size_t>{cells("left"), cells("right"), cells("right"), cells("other")}));
+
+  for (const MatchOutcome& outcome : evaluation.matches) {
+    EXPECT_EQ(outcome.verdict, Verdict::accepted);
+    EXPECT_EQ(outcome.reason, Reason::several);
+    EXPECT_EQ(outcome.probability, 0.73);
+    EXPECT_EQ(outcome.seconds, 0.125);
+    ASSERT_EQ(outcome.hypotheses.size(), 2u);
+    EXPECT_EQ(outcome.hypotheses[1].hypothesis.T_fixed_moving, T_second);
+  }
+  const MatchOutcome &pair = evaluation.matches[0], &negative = evaluation.matches[1];
+  EXPECT_EQ(pair.tier, "B");
+  EXPECT_EQ(pair.tolerance, 0.2);
+  EXPECT_NEAR(pair.error.value(), 0.0, 1e-9);
+  EXPECT_NEAR(pair.hypotheses[0].error.value(), 0.0, 1e-9);
+  EXPECT_NEAR(pair.hypotheses[1].error.value(), 2.0, 1e-9);
+  EXPECT_TRUE(negative.tier.empty());
+  EXPECT_FALSE(negative.tolerance || negative.error || negative.hypotheses[0].error);
+  EXPECT_EQ(negative.fixed, "right");
+  EXPECT_EQ(negative.moving, "other");
+
+  result.hypotheses.clear();  // nothing to go by: there is no error of it
+  EXPECT_FALSE(evaluate(truth, options).matches[0].error);
+}
+
+TEST_F(Evaluate, ItsProbabilityIsThatOfMatch) {
+  Truth truth;
+  truth.pairs = {{map("left"), map("right"), T_left_right_, 0.2, ""}};
+  const MatchResult result = match(load_map(map("left").path).grid, load_map(map("right").path).grid);
+  const MatchOutcome outcome = evaluate(truth).matches.at(0);
+  EXPECT_GT(result.probability, 0.5);
+  EXPECT_EQ(outcome.probability, result.probability);
+  EXPECT_EQ(outcome.verdict, result.verdict);
+  EXPECT_EQ(outcome.hypotheses.size(), result.hypotheses.size());
+}
+
+/// The message of what `work` throws.
+template <typename Error, typename Work>
+std::string message_of(const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "it throws nothing";
+  return "";
+}
+
+TEST_F(Evaluate, NamesTheMapsThatCannotBeComparedOrMerged) {
+  EvaluateOptions options;
+  options.matcher = [](const OccupancyGrid&, const OccupancyGrid&) -> MatchResult {
+    throw std::invalid_argument("too odd");
+  };
+  options.merger = [](const std::vector<OccupancyGrid>&) -> MergeResult {
+    throw std::invalid_argument("too many");
+  };
+  Truth pair, set;
+  pair.pairs = {{map("left"), map("right"), {}, 0.2, ""}};
+  EXPECT_EQ(message_of<std::runtime_error>([&] { evaluate(pair, options); }),
+            map("left").path.string() + " and " + map("right").path.string() + ": too odd");
+  set.sets = {{"floor", {{map("left"), {}, 0.2}, {map("right"), {}, 0.2}}}};
+  EXPECT_EQ(message_of<std::runtime_error>([&] { evaluate(set, options); }), "set floor: too many");
+}
+
+TEST_F(Evaluate, SaysWhichLineNamesAMapThatCannotBeRead) {
+  TruthMap missing = map("missing");
+  missing.named_at = "truth.tsv:7";
+  Truth pair, set;
+  pair.negatives = {{map("left"), missing}};
+  set.sets = {{"s", {{missing, {}, 0.2}, {map("left"), {}, 0.2}}}};
+  for (const Truth& truth : {pair, set}) {
+    const std::string message = message_of<FileError>([&] { evaluate(truth); });
+    EXPECT_NE(message.find("missing.yaml"), std::string::npos) << message;
+    EXPECT_NE(message.find(" (truth.tsv:7 names it)"), std::string::npos) << message;
+  }
 }
 
 TEST_F(Evaluate, NamesAMapThatCannotBeRead) {

@@ -60,6 +60,66 @@ TEST(Refine, ClimbsBackToTheTruthAndKeepsHypothesesApart) {
   }
 }
 
+TEST(RankOf, IsTheScoreOrWhatItIsForTheWallsSeen) {
+  const Evidence much{100.0, {}, 400.0}, little{60.0, {}, 50.0};
+  EXPECT_EQ(rank_of(much, RankBy::amount), 100.0);
+  EXPECT_GT(rank_of(much, RankBy::amount), rank_of(little, RankBy::amount));
+  EXPECT_LT(rank_of(much, RankBy::quality), rank_of(little, RankBy::quality));
+  EXPECT_EQ(rank_of({5.0, {}, 0.0}, RankBy::quality), 5.0);  // of next to no walls it is the score
+}
+
+// Of many candidates with much in common, as many poses come out as were asked for, at a distance from each
+// other, whichever way they are ranked: the true one first.
+TEST(Refine, KeepsAsManyDistinctPosesAsWereAskedFor) {
+  const WallMap map = make_wall_map(test::draw_building(1), 0.1);
+  const PoseMetric metric = make_pose_metric(map);
+  const WallEvidence evidence(map, map, std::numeric_limits<std::size_t>::max());
+  std::vector<PoseCandidate> candidates;
+  for (int x = -15; x <= 15; ++x) {
+    for (int y = -10; y <= 10; ++y) {
+      // By scores that are no order, and the true pose last of all.
+      if (x != 0 || y != 0) candidates.push_back({metric.moved({}, 5.0 * x, 5.0 * y, 0.0), 0});
+    }
+  }
+  candidates.push_back({metric.moved({}, 0.7, -0.6, 0.004), 0});
+  for (const RankBy rank : {RankBy::amount, RankBy::quality}) {
+    for (const std::size_t most : {1U, 6U, 12U}) {
+      RefineOptions options;
+      options.distinct = 8.0;
+      options.max_poses = most;
+      options.rank = rank;
+      const std::vector<ScoredPose> found = refine(evidence, map, candidates, options);
+      ASSERT_EQ(found.size(), most);
+      EXPECT_LT(metric.displacement(found[0].T_fixed_moving, {}), 0.75);
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].evidence.score, evidence(found[i].T_fixed_moving).score);
+        for (std::size_t j = 0; j < i; ++j) {
+          EXPECT_LE(rank_of(found[i].evidence, rank), rank_of(found[j].evidence, rank));
+          EXPECT_GE(metric.displacement(found[i].T_fixed_moving, found[j].T_fixed_moving), options.distinct);
+        }
+      }
+    }
+  }
+}
+
+// Each result is at the top of its hill, as far as steps of a cell show.
+TEST(Climb, EndsWhereNoStepHelps) {
+  const WallMap map = make_wall_map(test::draw_building(2), 0.1);
+  const PoseMetric metric = make_pose_metric(map);
+  const WallEvidence evidence(map, map, 500);
+  for (const SE2& start : {SE2{3.0, -2.0, 0.01}, SE2{30.0, 12.0, 1.0}, SE2{-9.0, 4.0, -0.3}}) {
+    const ScoredPose top = climb(evidence, metric, start, 2.0, 0.5);
+    EXPECT_GE(top.evidence.score, evidence(start).score);
+    EXPECT_EQ(top.evidence.score, evidence(top.T_fixed_moving).score);
+    for (const double sign : {-0.5, 0.5}) {
+      for (const SE2& step : {metric.moved(top.T_fixed_moving, sign, 0.0, 0.0),
+                              metric.moved(top.T_fixed_moving, 0.0, sign, 0.0),
+                              metric.moved(top.T_fixed_moving, 0.0, 0.0, sign / metric.radius)})
+        EXPECT_LE(evidence(step).score, top.evidence.score);
+    }
+  }
+}
+
 TEST(Refine, NoCandidatesNoPoses) {
   const WallMap map = make_wall_map(test::draw_building(1), 0.1);
   EXPECT_TRUE(refine(WallEvidence(map, map, 1000), map, {}, {}).empty());

@@ -112,6 +112,23 @@ TEST(Arrange, TwoMapsAreJoinedAsSurelyAsTheirPairIs) {
   }
 }
 
+TEST(Arrange, TheFirstMapIsDoubtedAsTheOthersAre) {
+  World two(2);
+  two.say(0, 1, 2.0);
+  const Arrangement pair = arrange(two.problem, kAccept);
+  ASSERT_EQ(pair.groups.size(), 1u);
+  EXPECT_NEAR(pair.groups[0][0].probability, pair.groups[0][1].probability, 1e-12);
+  EXPECT_LT(pair.groups[0][0].probability, 0.9);
+
+  // Of three, the first hangs on one pair alone.
+  World three(3);
+  three.say(0, 1, 4.0);
+  three.say(1, 2, 9.0);
+  const Arrangement chain = arrange(three.problem, kAccept);
+  ASSERT_EQ(chain.groups.size(), 1u);
+  EXPECT_LT(chain.groups[0][0].probability, chain.groups[0][2].probability);
+}
+
 TEST(Arrange, OfTwoPosesThatAreAsLikelyNoneIsBelieved) {
   World world(2);
   world.say(0, 1, 4.0);

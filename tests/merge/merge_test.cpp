@@ -111,7 +111,25 @@ TEST(Merge, OfNoneOneOrTheSameMap) {
   const MergeResult same = merge({team.maps[0], team.maps[0], team.maps[0]});
   ASSERT_EQ(same.components.size(), 1u);
   EXPECT_EQ(same.components[0].members.size(), 3u);
+  for (const Member& member : same.components[0].members) EXPECT_EQ(member.T_component_map, SE2{});
   EXPECT_EQ(same.components[0].fused.conflicting, 0u);
+}
+
+// What became of each pair, and of which pose it speaks.
+TEST(Merge, EachJoinSaysWhetherItWasBelievedByItself) {
+  const Team team;
+  const MergeResult result = merge(team.maps);
+  std::size_t accepted = 0;
+  for (const Join& join : result.joins) {
+    const bool is_of_stranger = join.moving == 4;
+    EXPECT_EQ(join.used(), !is_of_stranger) << join.fixed << ' ' << join.moving;
+    if (!join.used()) continue;
+    const bool is_believed =
+        join.match.verdict == Verdict::accepted && join.T_fixed_moving == join.match.T_fixed_moving;
+    EXPECT_EQ(join.outcome, is_believed ? JoinOutcome::accepted : JoinOutcome::rescued);
+    accepted += is_believed ? 1 : 0;
+  }
+  EXPECT_GE(accepted, 3u);
 }
 
 TEST(Merge, OneMapInsideAnother) {
@@ -310,6 +328,23 @@ TEST(Merger, MatchesOnlyWhatHasChanged) {
   expect_same(merger.result(), merge({team.maps[1], team.maps[2]}));
   EXPECT_EQ(totals.size(), 3u);
   EXPECT_EQ(merger.maps(), (std::vector<Merger::MapId>{1, 2}));
+}
+
+TEST(Merger, TakesAKnownPoseLater) {
+  const OccupancyGrid building = test::draw_building(1);
+  const std::vector<OccupancyGrid> maps{test::map_part(building, {0, 0, 8, 13}, {}),
+                                        test::map_part(building, {10, 0, 18, 13}, {})};
+  const KnownPose first{{5.0, 5.0, 0.0}, 0.1, 0.01}, second{{5.2, 5.0, 0.0}, 0.1, 0.01};
+  Merger merger;
+  const auto a = merger.add(maps[0]), b = merger.add(maps[1]);
+  EXPECT_EQ(merger.result().left_out.size(), 2u);
+  merger.set_known_pose(a, first);
+  merger.set_known_pose(b, second);
+  expect_same(merger.result(), merge(maps, {}, {first, second}));
+  EXPECT_EQ(merger.result().components.size(), 1u);
+  merger.set_known_pose(b, std::nullopt);
+  EXPECT_EQ(merger.result().left_out.size(), 2u);
+  EXPECT_THROW(merger.set_known_pose(b + 7, first), std::out_of_range);
 }
 
 TEST(Merger, IsAsItWasAfterAnError) {

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/directory_names.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/temporary_directory.hpp"
+
+namespace gridmerge {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(DirectoryNames, AreThoseOfAllThatIsInIt) {
+  const test::TemporaryDirectory directory;
+  for (const char* name : {"file", ".hidden", "folder/inside"}) directory.write(name, "");
+  fs::create_symlink("nowhere", directory.file("link"));
+  std::error_code error = std::make_error_code(std::errc::io_error);
+  std::vector<std::string> names = names_in(directory.path(), error);
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{".hidden", "file", "folder", "link"}));
+  EXPECT_FALSE(error);
+  names_in(directory.file("folder"), error);
+  EXPECT_FALSE(error);
+  EXPECT_TRUE(names_in(directory.file("missing"), error).empty());
+  EXPECT_EQ(error, std::errc::no_such_file_or_directory);
+  names_in(directory.file("file"), error);
+  EXPECT_EQ(error, std::errc::not_a_directory);
+  EXPECT_FALSE(names_in("", error).empty()) << "the working directory";
+}
+
+TEST(RemoveDirectory, TakesWhatIsInItButNotWhatLinksLeadTo) {
+  const test::TemporaryDirectory directory;
+  for (const char* name : {"kept/file", "gone/file", "gone/deep/deeper/file"}) directory.write(name, "");
+  fs::create_directory_symlink(directory.file("kept"), directory.file("gone/link"));
+  remove_directory(directory.file("gone"));
+  EXPECT_FALSE(fs::exists(directory.file("gone")));
+  EXPECT_TRUE(fs::exists(directory.file("kept/file")));
+  EXPECT_THROW(remove_directory(directory.file("gone")), fs::filesystem_error);
+  EXPECT_THROW(remove_directory(directory.file("kept/file")), fs::filesystem_error);
+  EXPECT_TRUE(fs::exists(directory.file("kept/file")));
+}
+
+}  // namespace
+}  // namespace gridmerge
