@@ -115,7 +115,7 @@ def test_a_search_is_chosen_by_name(robots: list[str]) -> None:
 def test_the_random_walk_is_a_search_like_others(robots: list[str]) -> None:
     fixed, moving = robots[:2]
     walked = gridmerge.match(fixed, moving, search="random-walk")
-    alone = gridmerge.match_by_random_walk(fixed, moving).match
+    alone = gridmerge.match_by_random_walk(fixed, moving).result
     assert walked.transform == alone.transform
     assert walked.verdict == alone.verdict
     assert walked.probability == walked.acceptance_index
