@@ -82,6 +82,9 @@ void read_png(std::string_view bytes, std::size_t max_pixels,
     png_set_read_fn(png, &reader, on_read);
     png_set_user_limits(png, PNG_UINT_31_MAX,
                         PNG_UINT_31_MAX);  // check_image_size decides, as for any format
+    // Of text, gamma and the like, which no map needs: libpng takes memory for the length that such a chunk
+    // claims, up to 2 GB.
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
     png_read_info(png, info);
   });
   const std::uint32_t width = png_get_image_width(png, info), height = png_get_image_height(png, info);

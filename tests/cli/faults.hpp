@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ inline Files files_in(const std::filesystem::path& directory) {
   return files;
 }
 
-/// Merges two small maps into a directory in which calls that write may fail (tests/cli/fault_shim.cpp).
+/// Merges two small maps into a directory in which calls that write may fail (tests/cli/faulty_calls.cpp).
 class FaultTest : public testing::Test {
  protected:
   FaultTest() {
@@ -34,7 +35,8 @@ class FaultTest : public testing::Test {
     new_set = files_in(directory.file("new"));
   }
 
-  std::vector<std::string> merge_into(const std::string& name, const std::string& resolution = "0.2") const {
+  std::vector<std::string> merge_into(const std::string& name, const std::string& resolution = "0.2",
+                                      const std::string& threads = "1") const {
     return {"merge",
             a,
             b,
@@ -49,7 +51,7 @@ class FaultTest : public testing::Test {
             "--output-resolution",
             resolution,
             "--threads",
-            "1"};
+            threads};
   }
 
   /// The old set in a directory of this name, alone.
@@ -60,14 +62,24 @@ class FaultTest : public testing::Test {
 
   RunOptions with_fault(const std::string& fault) const {
     RunOptions options;
-    options.environment = {"LD_PRELOAD=" GRIDMERGE_FAULT_SHIM, "GRIDMERGE_FAULT=" + fault,
-                           "GRIDMERGE_FAULT_COUNT=" + directory.file("count"),
-                           "ASAN_OPTIONS=verify_asan_link_order=0"};
+    options.faulty = true;
+    options.environment = {"GRIDMERGE_FAULT=" + fault, "GRIDMERGE_FAULT_COUNT=" + directory.file("count")};
     return options;
   }
 
-  /// The calls of the program's last run that ended by itself.
-  int count() const { return std::stoi(read_file(directory.file("count"))); }
+  struct Counts {
+    int calls = 0;  ///< that change what is on the disk
+    int allocations = 0;
+    int threads = 0;  ///< that were started
+  };
+
+  /// Of the program's last run that ended by itself.
+  Counts counts() const {
+    Counts counts;
+    std::istringstream(read_file(directory.file("count"))) >> counts.calls >> counts.allocations >>
+        counts.threads;
+    return counts;
+  }
 
   /// Without what is not the merge's own.
   static Files outputs_of(Files files) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every call that writes fails once, and the program is killed at each: see fault_shim.cpp.
+// Every call that writes fails once, and the program is killed at each; so fail allocations and starts of
+// threads: see faulty_calls.cpp.
 #include "faults.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -33,7 +35,7 @@ class Faults : public FaultTest {
     };
     prepare();
     ASSERT_EQ(run(merge_into("o"), with_fault("none 0")).exit_code, 0);
-    const int calls = count();
+    const int calls = counts().calls;
     ASSERT_GT(calls, 40);
     for (int call = 1; call <= calls; call += kStep) {
       SCOPED_TRACE(fmt::format("call {} of {}", call, calls));
@@ -99,6 +101,30 @@ class Faults : public FaultTest {
     });
   }
 
+  /// A merge over the old set in which that fails. It is an error which says so and leaves the old set, or,
+  /// where there is another way, the new set. Returns whether the merge left nothing else.
+  bool expect_whole_set(const std::string& fault, const std::string& threads,
+                        const std::vector<std::string>& causes) {
+    SCOPED_TRACE(fault);
+    write_old("o");
+    const Outcome outcome = run(merge_into("o", "0.2", threads), with_fault(fault));
+    const Files after = outputs_of(files_in(directory.file("o")));
+    EXPECT_EQ(outcome.signal, 0) << outcome.err;
+    if (outcome.exit_code == 0) {
+      EXPECT_TRUE(after == new_set);
+      return true;
+    }
+    EXPECT_TRUE(after == outputs_of(old_set) || after == new_set) << "a mixed set";
+    const auto found = std::find_if(causes.begin(), causes.end(), [&](const std::string& cause) {
+      return outcome.err.find(cause) != std::string::npos;
+    });
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+    EXPECT_EQ(outcome.err.find("gridmerge: "), 0u) << outcome.err;
+    EXPECT_NE(found, causes.end()) << outcome.err;
+    return !std::filesystem::exists(directory.file("o/.gridmerge.tmp"));
+  }
+
   void signal_at_each_call(Over over, int signal) {
     bool was_old = false, was_new = false;
     at_each_call(over, "signal", std::to_string(signal), [&](const Outcome& outcome, bool is_old) {
@@ -130,6 +156,35 @@ TEST_F(Faults, AFailedCallIsAnErrorThatLeavesTheOldSet) {
 
 TEST_F(Faults, AFailedCallInANewFolderIsAnErrorThatLeavesNothing) {
   fail_each_call(Over::nothing);
+}
+
+// All of the first ones, in which the command line and the maps are read, and a sample of the rest, of which
+// there are some ten thousand.
+TEST_F(Faults, AFailedAllocationIsAnErrorThatLeavesTheOldSet) {
+  write_old("o");
+  ASSERT_EQ(run(merge_into("o"), with_fault("none 0")).exit_code, 0);
+  const int allocations = counts().allocations;
+  ASSERT_GT(allocations, 5000);
+  const int first = test::repeats(400, 20), step = test::repeats(97, 997);
+  int runs = 0, untidy = 0;
+  for (int i = 1; i <= allocations; i += i < first ? 1 : step, ++runs) {
+    const bool is_tidy = expect_whole_set(
+        fmt::format("memory {}", i), "1",
+        {"ut of memory", "needs more memory than there is", "insufficient memory", "Cannot allocate memory"});
+    untidy += is_tidy ? 0 : 1;
+  }
+  // Where a library may not throw, the program ends as if it were killed.
+  EXPECT_LT(untidy, std::max(2, runs / 20));
+  expect_order(Over::old_set);
+}
+
+TEST_F(Faults, AThreadThatCannotBeStartedIsAnErrorThatLeavesTheOldSet) {
+  write_old("o");
+  ASSERT_EQ(run(merge_into("o", "0.2", "4"), with_fault("none 0")).exit_code, 0);
+  const int threads = counts().threads;
+  EXPECT_TRUE(threads > 0 || std::thread::hardware_concurrency() == 1);
+  for (int i = 1; i <= threads; ++i)
+    EXPECT_TRUE(expect_whole_set(fmt::format("thread {}", i), "4", {"Resource temporarily unavailable"}));
 }
 
 TEST_F(Faults, AnEndedMergeLeavesNothingBehind) {
@@ -198,7 +253,7 @@ TEST_F(Faults, ASingleFileIsReplacedWholeAndItsLeftoversAreCleared) {
   };
   directory.write("j/result.json", "old");
   ASSERT_EQ(evaluate("none 0").exit_code, 0);
-  const int calls = count();
+  const int calls = counts().calls;
   ASSERT_GT(calls, 5);
   for (int call = 1; call <= calls; call += kStep) {
     SCOPED_TRACE(call);

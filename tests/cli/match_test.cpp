@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "fixture.hpp"
@@ -94,9 +96,20 @@ TEST_F(Match, TheSameFileTwiceAndACopyOfItAreAcceptedAtTheIdentity) {
 
 TEST_F(Match, AcceptDecidesTheVerdict) {
   EXPECT_EQ(run({"match", left, other, "--accept", "0"}).exit_code, 0);
-  const double probability = Json::parse(run({"match", left, right, "--json"}).out).at("probability");
-  if (probability < 1.0) {
-    EXPECT_EQ(run({"match", left, right, "--accept", "1"}).exit_code, 3);
+  // One search alone: whether there is a second look depends on what is asked for.
+  for (const std::string& moving : {right, other}) {
+    const double probability =
+        Json::parse(run({"match", left, moving, "--search", "quick", "--json"}).out).at("probability");
+    ASSERT_GT(probability, 1e-6);
+    ASSERT_LT(probability, 1.0 - 1e-9);
+    const auto verdict_from = [&](double accept) {
+      const Outcome outcome =
+          run({"match", left, moving, "--search", "quick", "--json", "--accept", fmt::format("{}", accept)});
+      EXPECT_EQ(outcome.exit_code, Json::parse(outcome.out).at("verdict") == "accepted" ? 0 : 3);
+      return outcome.exit_code;
+    };
+    EXPECT_EQ(verdict_from(probability), 0);
+    EXPECT_EQ(verdict_from(std::nextafter(probability, 2.0)), 3);
   }
 }
 

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <set>
 
 #include "fixture.hpp"
@@ -65,6 +68,43 @@ TEST_F(Merge, ItsMapIsAMapThatKnowsMoreThanEach) {
   EXPECT_GT(known(2), known(1));
   EXPECT_LT(known(2), known(0) + known(1));
   EXPECT_EQ(info.at("maps").at(2).at("resolution"), 0.1);
+}
+
+TEST_F(Merge, VerboseListsWhatBecameOfEveryPair) {
+  const Outcome outcome = run({"merge", left, right, other, "-o", output, "--verbose"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  const Json joins = Json::parse(read_file(output + "/transforms.json")).at("joins");
+  ASSERT_EQ(joins.size(), 3u);
+  for (const Json& join : joins) {
+    const std::string pair =
+        join.at("fixed").get<std::string>() + " and " + join.at("moving").get<std::string>() + "\n";
+    const std::string head = fmt::format("{:<8} probability {:.4f}, ", join.at("outcome").get<std::string>(),
+                                         join.at("probability").get<double>());
+    const std::size_t at = outcome.out.find(head);
+    ASSERT_NE(at, std::string::npos) << outcome.out << "has no " << head;
+    const std::string line = outcome.out.substr(at, outcome.out.find('\n', at) + 1 - at);
+    EXPECT_TRUE(line.ends_with(" s: " + pair)) << line;
+  }
+  EXPECT_EQ(joins[0].at("outcome"), "accepted");
+  EXPECT_EQ(joins[1].at("outcome"), "refused");
+}
+
+// The second map fits the first by itself, but is fixed where the first cannot be.
+TEST_F(Merge, NamesThePairThatTheOthersContradict) {
+  const std::string middle = write_map(directory, "middle", map_part(draw_building(1), {0, 3, 18, 13}, {}));
+  const std::string poses =
+      directory.write("poses.tsv", "map\tx\ty\ttheta\n" + left + "\t0\t0\t0\n" + right + "\t200\t0\t0\n");
+  const Outcome outcome =
+      run({"merge", left, middle, right, "--init", poses, "--fix", left, "--fix", right, "-o", output});
+  EXPECT_NE(outcome.out.find("rejected: "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(" by themselves, but the others contradict\n"), std::string::npos)
+      << outcome.out;
+  const Json joins = Json::parse(read_file(output + "/transforms.json")).at("joins");
+  const auto rejected = std::find_if(joins.begin(), joins.end(),
+                                     [](const Json& join) { return join.at("outcome") == "rejected"; });
+  ASSERT_NE(rejected, joins.end());
+  EXPECT_EQ(rejected->at("verdict"), "refused");
+  EXPECT_EQ(rejected->at("reason"), "contradicts_others");
 }
 
 TEST_F(Merge, LeavesOutWhatDoesNotFit) {

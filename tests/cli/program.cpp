@@ -115,7 +115,7 @@ pid_t start(const std::vector<std::string>& arguments, const RunOptions& options
     posix_spawn_file_actions_adddup2(&actions, err.write_end, STDERR_FILENO);
   }
 
-  std::vector<std::string> words = {GRIDMERGE_PROGRAM};
+  std::vector<std::string> words = {options.faulty ? GRIDMERGE_FAULTY : GRIDMERGE_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<std::string> variables = options.environment;
   for (char** variable = environ; *variable != nullptr; ++variable) variables.emplace_back(*variable);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <sys/resource.h>
 
 #include <string>
 
@@ -169,6 +170,18 @@ TEST(Png, RefusesSizesBeyondTheLimitBeforeTakingMemory) {
   EXPECT_TRUE(contains(error_of(builder.build()), "exceed the limit"));
   EXPECT_NO_THROW(decode_png(two_by_two().build(), 4));
   EXPECT_THROW(decode_png(two_by_two().build(), 3), std::runtime_error);
+}
+
+// Nearly 2 GB that are not there.
+TEST(Png, TakesNoMemoryForTheLengthThatATextClaims) {
+  const std::string png = PngBuilder{.rows = bytes({0x80})}.build();
+  const std::size_t after_header = 8 + 25;
+  const std::string claim = bytes({0x69, 0x7f, 0x7f, 0x45}) + "zTXtkey";
+  rusage before{}, after{};
+  ::getrusage(RUSAGE_SELF, &before);
+  EXPECT_NE(error_of(png.substr(0, after_header) + claim), "");
+  ::getrusage(RUSAGE_SELF, &after);
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 200'000) << "KB";
 }
 
 TEST(Png, RefusesLargeSizesThatTheDataCannotFill) {

@@ -246,6 +246,8 @@ TEST(RandomWalk, HillClimbingNeverGoesBack) {
   options.patience = 300;
   options.trace = WalkTrace::accepted;
   const RandomWalkResult result = random_walk(pair.fixed, pair.moving, pair.start, options);
+  ASSERT_GE(result.trace.size(), 3U);
+  EXPECT_EQ(result.trace.size(), result.accepted + 1);
   for (std::size_t i = 1; i < result.trace.size(); ++i)
     EXPECT_LT(result.trace[i].delta, result.trace[i - 1].delta);
 }

@@ -176,6 +176,21 @@ TEST(WallEvidence, MinSigmaLeavesOutTheTightModels) {
   EXPECT_EQ(evidence({}, 1e9).model.sigma, error_models().back().sigma);
 }
 
+TEST(WallEvidence, WithOtherPointsIsAsIfMadeWithThem) {
+  const WallMap fixed = make_wall_map(test::random_grid(7, 60, 50), 0.1);
+  const WallMap moving = make_wall_map(test::random_grid(8, 45, 55), 0.1);
+  for (const std::size_t made_with : {std::size_t{50}, kAll}) {
+    const WallEvidence evidence(fixed, moving, made_with);
+    for (const std::size_t points : {std::size_t{20}, std::size_t{150}, kAll}) {
+      const WallEvidence anew(fixed, moving, points);
+      for (const SE2& T : {SE2{}, SE2{3.2, -1.7, 0.4}, SE2{-8.0, 5.0, 2.0}}) {
+        EXPECT_EQ(evidence.with_points(points)(T).score, anew(T).score);
+        EXPECT_EQ(evidence.with_points(points)(T).seen_walls, anew(T).seen_walls);
+      }
+    }
+  }
+}
+
 TEST(WallEvidence, AFewPointsStandForAll) {
   const WallMap map = make_wall_map(test::random_grid(7, 200, 200), 0.1);
   const double all = WallEvidence(map, map, kAll)({}).score;

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "gridmerge/evaluate/displacement.hpp"
 #include "support/effort.hpp"
@@ -94,6 +96,37 @@ TEST(Simulate, OverlapComesOutAboutAsAskedFor) {
     }
     EXPECT_NEAR(sum / seeds, wanted, seeds > 1 ? 0.05 : 0.1);
   }
+}
+
+TEST(Simulate, EachMapHasAFrameOfItsOwn) {
+  SimulateOptions options = small(BuildingKind::hall);
+  options.robots = 6;
+  options.longest_way = 10.0;
+  const Simulation simulation = simulate(options);
+  std::vector<double> turns;
+  for (const SimulatedMap& map : simulation.maps) {
+    // Where it starts is the frame's zero, whichever way it looks.
+    const SE2 start = inverse(map.T_building_map) * map.path.front();
+    EXPECT_LT(std::hypot(start.x, start.y), 0.5);
+    turns.push_back(map.T_building_map.theta);
+  }
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GT(std::abs(normalize_angle(turns[i] - turns[j])), 1e-3);
+  }
+  const auto [least, most] = std::minmax_element(turns.begin(), turns.end());
+  EXPECT_GT(*most - *least, 1.5);
+}
+
+TEST(Simulate, TiersTellHowMuchWallTwoMapsShare) {
+  SimulateOptions options = small();
+  options.drift = 0.0;
+  options.clutter = 0.0;
+  options.width = 40.0;
+  options.overlap = 0.8;
+  EXPECT_EQ(simulate(options).pairs.at(0).tier, 'A');
+  options.overlap = 0.05;
+  const Simulation apart = simulate(options);
+  for (const SimulatedPair& pair : apart.pairs) EXPECT_NE(pair.tier, 'A');
 }
 
 TEST(Simulate, NoOverlapMakesStrangers) {
