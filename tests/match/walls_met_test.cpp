@@ -100,9 +100,9 @@ TEST(WallsMet, AWallSeenFromBehindIsNotMet) {
   }
   const WallMap a = make_wall_map(from_left, kCell), b = make_wall_map(from_right, kCell);
   const SE2 T = inverse(a.T_map_grid) * b.T_map_grid;
-  const WallsMet met = measure_walls_met(a, b, {T.x / kCell, T.y / kCell, T.theta});
+  const WallsMet met = measure_walls_met(a, WallPatches(b), {T.x / kCell, T.y / kCell, T.theta});
   EXPECT_LT(met.rigidly, 0.1);
-  EXPECT_EQ(measure_walls_met(a, a, {}).rigidly, 1.0);
+  EXPECT_EQ(measure_walls_met(a, WallPatches(a), {}).rigidly, 1.0);
 }
 
 // Most of the second map lies where the first has seen nothing. Its patches are bent by half a metre: they
@@ -113,7 +113,7 @@ TEST(WallsMet, WhatTheOtherMapHasNotSeenNeitherDrawsNorHolds) {
   const WallMap fixed = make_wall_map(part, kCell), moving = make_wall_map(bend(building, 1.0), kCell);
   const SE2 T = inverse(fixed.T_map_grid) * moving.T_map_grid;
   const SE2 T_cells{T.x / kCell, T.y / kCell, T.theta};
-  const WallsMet met = measure_walls_met(fixed, moving, T_cells);
+  const WallsMet met = measure_walls_met(fixed, WallPatches(moving), T_cells);
   EXPECT_GT(met.locally, met.rigidly + 0.1);
   EXPECT_GT(met.locally, 0.8);
 }
