@@ -25,7 +25,7 @@ struct RunOptions {
   std::string stderr_to;                 ///< a file for stderr instead of a pipe
   std::size_t stack_limit = 0;           ///< RLIMIT_STACK of the program [bytes]; 0 = this program's
   std::vector<std::string> environment;  ///< "NAME=value", added to this program's
-  bool faulty = false;  ///< the program whose calls can be made to fail: faulty_calls.cpp
+  bool faulty = false;                   ///< the program whose calls can be made to fail: faulty_calls.cpp
 };
 
 /// Runs the built program with these arguments and waits for it.
