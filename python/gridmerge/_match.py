@@ -93,11 +93,11 @@ def match(
     Args:
         fixed, moving: maps, paths of map files, or messages like nav_msgs/OccupancyGrid.
         threads: 0 = one a core. The result does not depend on it.
-        accept: the verdict is "accepted" from this probability on, 0.95 if None. Of the random walk it is the acceptance
-            index, 0.98 if None.
+        accept: the verdict is "accepted" from this probability on, 0.95 if None. Of the random walk it is the
+            acceptance index, 0.98 if None.
         max_hypotheses: how many distinct hypotheses the result lists.
         search: "exhaustive", a quick look at every pose, then a thorough one if that decides nothing; "quick" or
-            "thorough", one of the two alone; "random-walk", the paper's search as match_by_random_walk() makes it by itself.
+            "thorough", one of the two alone; "random-walk", the paper's search, as match_by_random_walk() makes it.
         progress: called now and then, in the calling thread, with the share of the work that is done.
 
     Other Python threads run meanwhile, and Ctrl-C ends the work. Raises FileError for a file that is no map, and

@@ -203,8 +203,8 @@ def merge(
         fix: a map whose pose is the truth, or several, told in the same ways: they are not changed, and the merged map
             is in this map's frame, or in that of `init`.
         threads: 0 = one a core. The result does not depend on it.
-        accept: maps are joined from this probability on, 0.95 if None. Of the random walk it is the acceptance index, 0.98
-            if None.
+        accept: maps are joined from this probability on, 0.95 if None. Of the random walk it is the acceptance index,
+            0.98 if None.
         max_false_joins: so many joins of the whole merge may be expected to be false; those that are least sure are not
             made. It holds beside `accept`. "tree" does not use it.
         output_resolution: of the merged maps [m]; None = the finest of the maps'.
@@ -222,7 +222,7 @@ def merge(
     if up_the_tree and (init is not None or fix is not None):
         raise ValueError("strategy: init and fix need 'joint'")
     if search == "random-walk" and not up_the_tree:
-        raise ValueError("search: 'random-walk' needs the strategy 'tree': it has one pose for a pair, and no probability")
+        raise ValueError("search: 'random-walk' needs the strategy 'tree': it has one pose per pair, no probability")
     # The program may go to another directory before it saves.
     more_inputs = (os.fsencode(os.path.abspath(init)),) if isinstance(init, (str, os.PathLike)) else ()
     merged = _core.merge(
