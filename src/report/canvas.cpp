@@ -51,7 +51,7 @@ void Canvas::draw(int x, int y, const Canvas& other) {
 }
 
 void Canvas::write(int x, int y, TextSize size, std::string_view text, Colour colour) {
-  const Coverage coverage = draw_text(text, size);
+  const TextCoverage coverage = draw_text(text, size);
   for (int row = 0; row < coverage.height; ++row) {
     for (int column = 0; column < coverage.width; ++column) {
       const std::size_t at = static_cast<std::size_t>(row) * static_cast<std::size_t>(coverage.width) +

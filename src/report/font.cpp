@@ -119,10 +119,10 @@ std::string fit_width(std::string_view text, TextSize size, int width) {
   return std::string(kEllipsis) + std::string(text);
 }
 
-Coverage draw_text(std::string_view text, TextSize size) {
+TextCoverage draw_text(std::string_view text, TextSize size) {
   const int factor = static_cast<int>(size);
   const std::vector<Glyph> glyphs = glyphs_of(text);
-  Coverage drawn;
+  TextCoverage drawn;
   drawn.left = -reduced(kLeft, size);
   drawn.width = reduced(advance_of(glyphs) + kCellWidth, size) - drawn.left;
   drawn.height = line_height(size);

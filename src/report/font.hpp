@@ -29,7 +29,7 @@ int text_width(std::string_view text, TextSize size);
 std::string fit_width(std::string_view text, TextSize size, int width);
 
 /// How much of a pixel a text covers, 0 to 255: a rectangle, top row first.
-struct Coverage {
+struct TextCoverage {
   int left = 0;  ///< of the rectangle, beside where the text begins [pixels]; letters may reach out
   int width = 0;
   int height = 0;
@@ -38,6 +38,6 @@ struct Coverage {
 
 /// A text in UTF-8, drawn. A character that the font does not have, and what is no UTF-8, is U+FFFD.
 /// O(pixels).
-Coverage draw_text(std::string_view text, TextSize size);
+TextCoverage draw_text(std::string_view text, TextSize size);
 
 }  // namespace gridmerge

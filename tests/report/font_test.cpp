@@ -24,7 +24,7 @@ std::string utf8(char32_t character) {
 
 /// How much ink a text takes, in fully covered pixels.
 double ink(std::string_view text, TextSize size) {
-  const Coverage drawn = draw_text(text, size);
+  const TextCoverage drawn = draw_text(text, size);
   return std::accumulate(drawn.values.begin(), drawn.values.end(), 0.0,
                          [](double sum, char value) { return sum + static_cast<unsigned char>(value); }) /
          255.0;
@@ -59,7 +59,7 @@ TEST(Font, SizesAreTheSameLettersReduced) {
 
 TEST(Font, LettersStandOnTheBaseline) {
   for (const TextSize size : kSizes) {
-    const Coverage drawn = draw_text("HE", size);
+    const TextCoverage drawn = draw_text("HE", size);
     const auto inked = std::find_if(drawn.values.rbegin(), drawn.values.rend(),
                                     [](char value) { return static_cast<unsigned char>(value) > 127; });
     const int lowest = static_cast<int>(drawn.values.rend() - inked - 1) / drawn.width;
@@ -68,7 +68,7 @@ TEST(Font, LettersStandOnTheBaseline) {
 }
 
 TEST(Font, WhatIsNoTextOrNotInTheFontIsTheReplacement) {
-  const Coverage expected = draw_text("\ufffd", TextSize::small);
+  const TextCoverage expected = draw_text("\ufffd", TextSize::small);
   for (const std::string_view text : {"\xff", "\xc3", "\x80", "\xc1\xa1", "\xe0\x81\xa1", "\xe4\xb8\x80",
                                       "\n", "\xe2\x80\xae", "\xf0\x9f\xa4\x96"}) {
     EXPECT_EQ(draw_text(text, TextSize::small).values, expected.values) << testing::PrintToString(text);
