@@ -73,11 +73,10 @@ constexpr auto kWorth = [] {
 template <typename Meet>
 std::size_t look_up(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls,
                     Meet meet) {
-  const double c = std::cos(T_map_walls.theta), s = std::sin(T_map_walls.theta);
+  const ManyPointsTransform T_points(T_map_walls);
   std::size_t unseen = 0;
   for (const WallPoint& wall : walls) {
-    const double x = c * wall.position.x - s * wall.position.y + T_map_walls.x;
-    const double y = s * wall.position.x + c * wall.position.y + T_map_walls.y;
+    const auto [x, y] = T_points * wall.position;
     Place place;
     if (x >= 0.0 && y >= 0.0 && x < map.width && y < map.height)
       place = map.places[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +

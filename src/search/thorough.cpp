@@ -191,7 +191,7 @@ class PeakFinder {
     // How far the bounds lie above what is asked for, which depends on what is seen.
     for_each_looked_at(bounded, bounds_, [&](std::int16_t& bound, int x, int y) {
       const int above = bound - least_sums_[static_cast<std::size_t>(seen_at(x, y))];
-      bound = static_cast<std::int16_t>(std::clamp(above, kNotLookedAt + 0, kMostSum));
+      bound = static_cast<std::int16_t>(std::clamp(above, int{kNotLookedAt}, kMostSum));
     });
     resize(scores_, turned_.shifts_x, turned_.shifts_y);
     return best_of(correlate_where(searched_.evidence, turned_.samples, bounds_, 0, scores_), rotation,

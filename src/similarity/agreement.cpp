@@ -8,6 +8,43 @@
 
 namespace gridmerge {
 
+namespace {
+
+/// Looks cells of one map up in another one, row by row, under one pose.
+class CellLookUp {
+ public:
+  CellLookUp(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& T_fixed_moving)
+      : fixed_(fixed), T_grids_(inverse(fixed.origin) * T_fixed_moving * moving.origin) {
+    const double scale = moving.resolution / fixed.resolution;
+    step_x_ = std::cos(T_grids_.theta) * scale;
+    step_y_ = std::sin(T_grids_.theta) * scale;
+  }
+
+  void begin_row(int row) {
+    row_x_ = T_grids_.x / fixed_.resolution - step_y_ * (row + 0.5);
+    row_y_ = T_grids_.y / fixed_.resolution + step_x_ * (row + 0.5);
+  }
+
+  void count(int column, Cell ours, AgreementCounts& counts) const {
+    const double x = row_x_ + step_x_ * (column + 0.5);
+    const double y = row_y_ + step_y_ * (column + 0.5);
+    if (!(x >= 0.0 && y >= 0.0 && x < fixed_.width && y < fixed_.height)) return;
+    const Cell theirs = fixed_.at(static_cast<int>(x), static_cast<int>(y));
+    if (theirs == Cell::unknown) return;
+    ++(ours == theirs ? counts.agreement : counts.disagreement);
+  }
+
+ private:
+  const OccupancyGrid& fixed_;
+  SE2 T_grids_;
+  double step_x_;
+  double step_y_;
+  double row_x_ = 0.0;
+  double row_y_ = 0.0;
+};
+
+}  // namespace
+
 AgreementCounter::AgreementCounter(const OccupancyGrid& fixed, const OccupancyGrid& moving, int stride)
     : fixed_(fixed), moving_(moving), stride_(stride) {
   for (int row = stride / 2; row < moving.height; row += stride) {
@@ -22,26 +59,14 @@ AgreementCounter::AgreementCounter(const OccupancyGrid& fixed, const OccupancyGr
 }
 
 AgreementCounts AgreementCounter::count(const SE2& T_fixed_moving) const {
-  const SE2 T_fixedgrid_movinggrid = inverse(fixed_.origin) * T_fixed_moving * moving_.origin;
-  const double scale = moving_.resolution / fixed_.resolution;
-  const double step_x = std::cos(T_fixedgrid_movinggrid.theta) * scale;
-  const double step_y = std::sin(T_fixedgrid_movinggrid.theta) * scale;
-
+  CellLookUp look_up(fixed_, moving_, T_fixed_moving);
   AgreementCounts result;
   for (const Row& row : rows_) {
     throw_if_cancelled();
-    const double row_x = T_fixedgrid_movinggrid.x / fixed_.resolution - step_y * (row.row + 0.5);
-    const double row_y = T_fixedgrid_movinggrid.y / fixed_.resolution + step_x * (row.row + 0.5);
-    for (std::size_t i = row.begin; i < row.end; ++i) {
-      const double x = row_x + step_x * (known_[i].column + 0.5);
-      const double y = row_y + step_y * (known_[i].column + 0.5);
-      if (!(x >= 0.0 && y >= 0.0 && x < fixed_.width && y < fixed_.height)) continue;
-      const Cell theirs = fixed_.at(static_cast<int>(x), static_cast<int>(y));
-      if (theirs == Cell::unknown) continue;
-      ++(known_[i].value == theirs ? result.agreement : result.disagreement);
-    }
+    look_up.begin_row(row.row);
+    for (std::size_t i = row.begin; i < row.end; ++i)
+      look_up.count(known_[i].column, known_[i].value, result);
   }
-
   result.agreement *= static_cast<std::int64_t>(stride_) * stride_;
   result.disagreement *= static_cast<std::int64_t>(stride_) * stride_;
   return result;
@@ -49,7 +74,17 @@ AgreementCounts AgreementCounter::count(const SE2& T_fixed_moving) const {
 
 AgreementCounts count_agreement(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                 const SE2& T_fixed_moving) {
-  return AgreementCounter(fixed, moving).count(T_fixed_moving);
+  CellLookUp look_up(fixed, moving, T_fixed_moving);
+  AgreementCounts result;
+  for (int row = 0; row < moving.height; ++row) {
+    throw_if_cancelled();
+    look_up.begin_row(row);
+    for (int column = 0; column < moving.width; ++column) {
+      const Cell ours = moving.at(column, row);
+      if (ours != Cell::unknown) look_up.count(column, ours, result);
+    }
+  }
+  return result;
 }
 
 double measure_overlap(const OccupancyGrid& fixed, const OccupancyGrid& moving,
