@@ -6,12 +6,14 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "help.hpp"
 #include "interrupt.hpp"
 
 namespace {
@@ -68,6 +70,7 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
 int run(int argc, char** argv) {
   CLI::App app("Merges occupancy grid maps made by robots that do not know where the others are.",
                "gridmerge");
+  app.formatter(std::make_shared<HelpFormatter>());  // of the commands too, which are added later
   app.footer(
       "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged\n\n"
       "Exit codes: 0 done, 1 error, 2 wrong usage, 3 done but refused.\n"

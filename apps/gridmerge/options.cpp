@@ -102,7 +102,7 @@ void add_map_file_options(CLI::App& command, LoadOptions& options) {
       ->type_name("METRES")
       ->check(kMetresPerCell);
   command.add_flag("--literal-thresholds", options.literal_thresholds,
-                   "Read a YAML's thresholds to the letter. Without it the gray that map savers write for\n"
+                   "Read a YAML's thresholds to the letter. Without it the gray that map savers write for "
                    "unknown (205) is unknown, also where free_thresh would make it free");
 }
 

@@ -19,6 +19,10 @@ namespace {
 constexpr const char* kTraceHead =
     "match,walk,c_lock,step,delta,psi,agr,dis,x,y,theta,omega,ai,accepted,wide\n";
 
+/// The heading in --help of what only the random walk has, so that it does not stand between the other
+/// options.
+constexpr const char* kWalkGroup = "With --search random-walk";
+
 }  // namespace
 
 double SearchOptions::accept_from() const {
@@ -62,53 +66,53 @@ std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& opt
   std::vector<CLI::Option*> added;
   const auto add = [&](const std::string& name, auto& value, const std::string& help,
                        const char* type) -> CLI::Option* {
-    added.push_back(command.add_option(name, value, "Random walk: " + help)->type_name(type));
+    added.push_back(command.add_option(name, value, help)->type_name(type)->group(kWalkGroup));
     return added.back();
   };
   add("--c-lock", match.c_locks,
-      "the weight in Delta = psi + C (disagreement - agreement), which the walk makes small; 0 if not "
+      "The weight in Delta = psi + C (disagreement - agreement), which the walk makes small; 0 if not "
       "given. Several, with commas, are used in turn, one for each walk",
       "C,...")
       ->allow_extra_args(false)  // or it would take the maps behind it
       ->delimiter(',')
       ->check(kNotNegative);
-  add("--restarts", options.restarts, "how many walks, the best is kept; one for each c_lock if not given",
+  add("--restarts", options.restarts, "How many walks, the best is kept; one for each c_lock if not given",
       "N")
       ->check(CLI::Range(1, 1000).description(""));
   add("--starts", options.starts,
-      fmt::format("the lattice of poses whose best one starts a walk: R rotations, O shifts on each side of "
+      fmt::format("The lattice of poses whose best one starts a walk: R rotations, O shifts on each side of "
                   "the centre in x and in y, OFFSET cells apart; {}x{}x{} if not given",
                   match.start.rotations, match.start.offsets, match.start.offset),
       "RxOxOFFSET")
       ->check(kStarts);
   add("--wide-share", walk.wide_share,
-      "share of proposals that are drawn from all poses: what lets the walk leave a wrong place", "SHARE")
+      "Share of proposals that are drawn from all poses: what lets the walk leave a wrong place", "SHARE")
       ->check(kProbability)
       ->capture_default_str();
   add("--temperature", walk.temperature,
-      "a sample whose Delta is worse by d is accepted with probability exp(-d/T); 0 climbs", "T")
+      "A sample whose Delta is worse by d is accepted with probability exp(-d/T); 0 climbs", "T")
       ->check(kNotNegative)
       ->capture_default_str();
-  add("--cooling", walk.cooling, "the temperature is multiplied with this after every proposal, in (0, 1]",
+  add("--cooling", walk.cooling, "The temperature is multiplied with this after every proposal, in (0, 1]",
       "F")
       ->capture_default_str();
-  add("--memory", walk.memory, "accepted steps that set mean and covariance of proposals, at least 4", "N")
+  add("--memory", walk.memory, "Accepted steps that set mean and covariance of proposals, at least 4", "N")
       ->check(kWholeNumber)
       ->capture_default_str();
   add("--first-step", walk.first_step,
-      fmt::format("standard deviation of proposals before anything is accepted, {} to {} cells",
+      fmt::format("Standard deviation of proposals before anything is accepted, {} to {} cells",
                   walk.smallest_step, walk.largest_step),
       "CELLS")
       ->capture_default_str();
   add("--patience", walk.patience,
-      "stop after so many proposals without an improvement of the best sample, at any temperature", "N")
+      "Stop after so many proposals without an improvement of the best sample, at any temperature", "N")
       ->check(kWholeNumber)
       ->capture_default_str();
   add("--least-common-cells", match.least_common_cells,
-      "accept only where so many cells of FIXED are known in both maps", "N")
+      "Accept only where so many cells of FIXED are known in both maps", "N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40).description(""))
       ->capture_default_str();
-  add("--seed", walk.seed, "seed of the first walk; those of the others follow from it", "N")
+  add("--seed", walk.seed, "Seed of the first walk; those of the others follow from it", "N")
       ->check(kWholeNumber)
       ->capture_default_str();
   return added;
@@ -166,20 +170,22 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
 
 void add_start_option(CLI::App& command, SearchOptions& options) {
   command
-      .add_option(
-          "--start", options.start,
-          "Random walk: start here, at this T_fixed_moving in metres and radians, and not at the best "
-          "poses of --starts")
+      .add_option("--start", options.start,
+                  "Start here, at this T_fixed_moving in metres and radians, and not at the best "
+                  "poses of --starts")
       ->type_name("X,Y,THETA")
+      ->group(kWalkGroup)
       ->check(kPose);
 }
 
 void add_trace_option(CLI::App& command, SearchOptions& options) {
   CLI::Option* trace =
-      command
-          .add_option("--trace", options.trace, "Random walk: write every accepted sample to this CSV file")
-          ->type_name("FILE");
-  command.add_flag("--trace-all", options.trace_all, "Random walk: and every refused one")->needs(trace);
+      command.add_option("--trace", options.trace, "Write every accepted sample to this CSV file")
+          ->type_name("FILE")
+          ->group(kWalkGroup);
+  command.add_flag("--trace-all", options.trace_all, "And every refused one")
+      ->group(kWalkGroup)
+      ->needs(trace);
 }
 
 void add_strategy_option(CLI::App& command, SearchOptions& options) {

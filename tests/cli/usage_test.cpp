@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -91,6 +92,23 @@ TEST(Usage, HelpOfACommandHasItsOptionsAndAnExample) {
       EXPECT_NE(outcome.out.find(text + (text.back() == ' ' ? command : "")), std::string::npos)
           << command << text;
     }
+  }
+}
+
+TEST(Usage, HelpFitsATerminal) {
+  for (const std::string& command : kCommands) {
+    std::istringstream lines(run({command, "--help"}).out);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110u) << command << line;
+  }
+}
+
+TEST(Usage, HelpHasOptionsOfTheWalkBehindAllOthers) {
+  for (const std::string command : {"match", "merge", "evaluate"}) {
+    const std::string help = run({command, "--help"}).out;
+    const std::size_t walk = help.find("\nWith --search random-walk:\n");
+    ASSERT_NE(walk, std::string::npos) << command;
+    EXPECT_LT(help.find("\n  --threads "), walk) << command;
+    EXPECT_GT(help.find("\n  --c-lock "), walk) << command;
   }
 }
 
