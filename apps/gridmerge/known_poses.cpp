@@ -10,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "console.hpp"
 #include "gridmerge/io/initial_poses.hpp"
@@ -58,18 +59,17 @@ void fix(const KnownPoseOptions& options, const std::vector<std::string>& maps,
 
 void add_known_pose_options(CLI::App& command, KnownPoseOptions& options) {
   command
-      .add_option("--init", options.init,
-                  "Poses that you know, of some or all maps: a table (TSV) with the columns map x y theta, "
-                  "in metres\n"
-                  "and radians, and if you like sd sd_theta, their standard deviations (1 m and 0.1 rad if "
-                  "not given).\n"
-                  "Sure poses join maps that share nothing. A pose that the merge does not follow is named")
+      .add_option(
+          "--init", options.init,
+          "Poses that you know, of some or all maps: a table (TSV) with the columns map x y theta, "
+          "in metres and radians, and if you like sd sd_theta, their standard deviations (1 m and 0.1 rad if "
+          "not given). "
+          "Sure poses join maps that share nothing. A pose that the merge does not follow is named")
       ->type_name("FILE");
   command
       .add_option("--fix", options.fix,
                   "Keep this map where it is. The merged map takes its frame, or that of --init, if given. "
-                  "The option\n"
-                  "names one map; repeat it for others. Each of several needs a pose in --init")
+                  "The option names one map; repeat it for others. Each of several needs a pose in --init")
       ->option_text("MAP")
       ->allow_extra_args(false);  // or it would take the maps behind it
 }
@@ -102,7 +102,12 @@ std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps,
         escape_controls(names_[fix.moving]), fix.distance, escape_controls(names_[fix.fixed]));
   }
   const std::vector<UnusedPose> all = find_unused_poses(maps, poses_, result);
-  for (const UnusedPose& unused : all) text += describe(unused) + "\n";
+  std::set<std::pair<std::size_t, std::size_t>> told;  // pairs of which neither pose is sure enough
+  for (const UnusedPose& unused : all) {
+    const bool is_pair = unused.why == UnusedPose::Why::not_sure_enough;
+    if (!is_pair || told.insert(std::minmax(unused.map, unused.other)).second)
+      text += describe(unused) + "\n";
+  }
   if (!all.empty() && would_do_in_degrees(maps, result, all.size()))
     text += fmt::format(
         "{}: its theta look like degrees, with which more of its poses are true: it must be in "
@@ -122,19 +127,19 @@ std::string KnownPoses::describe(const UnusedPose& unused) const {
                          unused.distance);
     case UnusedPose::Why::not_sure_enough:
       return fmt::format(
-          "{}: the given pose is not sure enough to be used alone: with sd {} m, sd_theta {} rad and the "
-          "pose of "
-          "{} it may be off by {:.2g} m, and {:.2g} m are allowed. Give sd and sd_theta in {} that are at "
-          "most "
-          "{:.2g} times these for both, or {}",
-          name, pose.sd_position, pose.sd_theta, other, unused.sd, unused.sd_allowed, escape_controls(table_),
+          "{}: the given pose is not sure enough to be used alone: beside that of {}\n"
+          "     it may be off by {:.2g} m (sd {} m, sd_theta {} rad), and {:.2g} m are allowed\n"
+          "try: sd and sd_theta in {} for both, at most {:.2g} times these,\n"
+          "     or {}",
+          name, other, unused.sd, pose.sd_position, pose.sd_theta, unused.sd_allowed, escape_controls(table_),
           unused.sd_allowed / unused.sd, remedy());
     case UnusedPose::Why::contradicted:
       break;
   }
   return fmt::format(
-      "{}: the given pose is not used: what the maps say contradicts it, or more is asked of a "
-      "join than poses give. {}",
+      "{}: the given pose is not used: what the maps say contradicts it,\n"
+      "     or more is asked of a join than poses give\n"
+      "try: {}",
       name, remedy());
 }
 

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <ranges>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -44,22 +45,33 @@ struct Inputs {
   std::vector<std::filesystem::path> files;  // that all of it was read from
 };
 
-/// A map that is given twice is no second opinion; the merge takes it for one.
+/// A map that is given twice is no second opinion. Says so once for names and once for copies.
 void tell_of_copies(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
                     Console& console) {
+  std::vector<std::string> twice;   // named before
+  std::vector<std::string> copies;  // of another file's cells
   for (std::size_t i = 1; i < maps.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const bool is_same = maps[i].width == maps[j].width && maps[i].resolution == maps[j].resolution &&
-                           maps[i].cells == maps[j].cells;
+    const auto is_file_of = [&, i](std::size_t j) {
       std::error_code absent;
-      if (!is_same && !std::filesystem::equivalent(options.maps[i], options.maps[j], absent)) continue;
-      if (count_cells(maps[i]).known() == 0) continue;
-      console.warn(
-          fmt::format("{}: is {} once more, and counts once{}", options.maps[i], options.maps[j],
-                      options.known.fix.empty() ? "" : " (--fix takes one map: give it again for another)"));
-      break;
+      return std::filesystem::equivalent(options.maps[i], options.maps[j], absent);
+    };
+    const auto is_copy_of = [&, i](std::size_t j) {
+      return maps[i].width == maps[j].width && maps[i].resolution == maps[j].resolution &&
+             maps[i].cells == maps[j].cells;
+    };
+    if (count_cells(maps[i]).known() == 0) continue;
+    const auto before = std::views::iota(std::size_t{0}, i);
+    if (std::ranges::any_of(before, is_file_of)) {
+      twice.push_back(options.maps[i]);
+    } else if (const auto other = std::ranges::find_if(before, is_copy_of); other != before.end()) {
+      copies.push_back(fmt::format("{} (of {})", options.maps[i], options.maps[*other]));
     }
   }
+  if (!twice.empty())
+    console.warn(
+        fmt::format("given twice, and counted once: {}{}", fmt::join(twice, ", "),
+                    options.known.fix.empty() ? "" : ". --fix takes one map: write it again before another"));
+  if (!copies.empty()) console.warn(fmt::format("copies, which count once: {}", fmt::join(copies, ", ")));
 }
 
 Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
@@ -132,10 +144,12 @@ std::string describe_joins(const MergeCommandOptions& options, const MergeResult
   return text;
 }
 
-/// The head of a result that holds no merged map.
-std::string describe_nothing(const MergeCommandOptions& options, const MergeResult& result) {
-  std::string text = fmt::format("nothing was merged: no two of the {} maps fit together surely enough\n",
-                                 options.maps.size());
+/// The head of a result that holds no merged map. What became of known poses comes first: who gives them
+/// wants them used.
+std::string describe_nothing(const MergeCommandOptions& options, const MergeResult& result,
+                             const std::string& unused_poses) {
+  std::string text = fmt::format("nothing was merged: no two of the {} maps fit together surely enough\n{}",
+                                 options.maps.size(), unused_poses);
   const auto out = std::back_inserter(text);
   const auto nearest =
       std::max_element(result.joins.begin(), result.joins.end(),
@@ -154,9 +168,11 @@ std::string describe_nothing(const MergeCommandOptions& options, const MergeResu
          "     --init TABLE and --fix MAP take poses that you know; the page lays maps by hand\n";
 }
 
-std::string describe(const MergeCommandOptions& options, const MergeResult& result) {
+std::string describe(const MergeCommandOptions& options, const MergeResult& result,
+                     const std::string& unused_poses) {
   const std::vector<std::string>& names = options.maps;
-  std::string text = result.components.empty() ? describe_nothing(options, result) : std::string();
+  std::string text =
+      result.components.empty() ? describe_nothing(options, result, unused_poses) : std::string();
   const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     const Component& component = result.components[i];
@@ -184,6 +200,7 @@ std::string describe(const MergeCommandOptions& options, const MergeResult& resu
     if (join.outcome == JoinOutcome::known)
       fmt::format_to(out, "known: {}, from their initial poses\n", pair);
   }
+  if (!result.components.empty()) text += unused_poses;
   return text;
 }
 
@@ -242,7 +259,7 @@ int run_merge(const MergeCommandOptions& options) {
   const std::string hints = scale_hints(options, inputs.maps, result, console);
   console.clear();
   if (options.common.verbose) print(describe_joins(options, result));
-  print(describe(options, result) + known_poses.describe_unused(inputs.maps, result) + hints);
+  print(describe(options, result, known_poses.describe_unused(inputs.maps, result)) + hints);
   const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
   print("look at it: " + escape_controls(page.string()) + "\n");
   return result.components.size() == 1 && result.left_out.empty() ? kDone : kRefused;
@@ -271,10 +288,10 @@ void add_merge(CLI::App& app, Action& action) {
   CLI::Option* budget =
       command
           ->add_option("--max-false-joins", options->max_false_joins,
-                       "How many joins of the whole merge may be expected to be false; those that are least\n"
+                       "How many joins of the whole merge may be expected to be false; those that are least "
                        "sure are not made. It holds beside --accept, which is asked of each join")
           ->type_name("NUMBER")
-          ->check(CLI::Range(0.0, 1e6))
+          ->check(CLI::Range(0.0, 1e6).description(""))
           ->capture_default_str();
   add_trace_option(*command, options->search);
   add_map_file_options(*command, options->load);

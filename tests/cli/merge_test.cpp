@@ -134,7 +134,8 @@ TEST_F(Merge, OfMapsThatAllDifferSaysSo) {
 TEST_F(Merge, OfOneMapTwiceIsThatMap) {
   const Outcome outcome = run({"merge", left, left, "-o", output});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("left.yaml once more, and counts once"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("given twice, and counted once: " + left + "\n"), std::string::npos)
+      << outcome.err;
   const Json json = Json::parse(read_file(output + "/transforms.json"));
   expect_near(json.at("components").at(0).at("members").at(1).at("transform"), {}, 0.05, 0.0035);
 }
@@ -167,11 +168,14 @@ TEST_F(Merge, FixedPosesThatTheMapsContradictAreNamed) {
 TEST_F(Merge, FixTakesOneMapAndNoticesACopy) {
   // The second name after --fix is one more input.
   const Outcome outcome = run({"merge", left, right, "--fix", left, right, "-o", output});
-  EXPECT_NE(outcome.err.find(right + ": is " + right + " once more"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("given twice, and counted once: " + right + "."), std::string::npos)
+      << outcome.err;
   EXPECT_NE(outcome.err.find("--fix takes one map"), std::string::npos) << outcome.err;
   const std::string copy = directory.write("copy.yaml", read_file(left));
-  EXPECT_NE(run({"merge", left, right, copy, "-o", output}).err.find(copy + ": is " + left + " once more"),
-            std::string::npos);
+  const std::string warned = run({"merge", left, right, copy, right, "-o", output}).err;
+  EXPECT_NE(warned.find("copies, which count once: " + copy + " (of " + left + ")\n"), std::string::npos)
+      << warned;
+  EXPECT_NE(warned.find("given twice, and counted once: " + right + "\n"), std::string::npos) << warned;
   const std::string help = run({"merge", "--help"}).out;
   EXPECT_NE(help.find("--fix MAP "), std::string::npos) << help;
   EXPECT_EQ(help.find("--fix MAP ..."), std::string::npos) << help;
@@ -283,9 +287,13 @@ TEST_F(Merge, PosesFarApartThatAreNotSureEnoughNameTheRemedy) {
   const Outcome outcome = run(arguments);
   EXPECT_EQ(outcome.exit_code, 3);
   const std::string line =
-      other + ": the given pose is not sure enough to be used alone: with sd 1 m, sd_theta 0.1";
+      left + ": the given pose is not sure enough to be used alone: beside that of " + other;
   EXPECT_NE(outcome.out.find(line), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("--fix " + left + " --fix " + other), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("(sd 1 m, sd_theta 0.1 rad)"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("--fix " + other + " --fix " + left), std::string::npos) << outcome.out;
+  // Once for the two, and before what is said of other remedies.
+  EXPECT_EQ(outcome.out.find("not sure enough"), outcome.out.rfind("not sure enough")) << outcome.out;
+  EXPECT_LT(outcome.out.find("not sure enough"), outcome.out.find("try: gridmerge match")) << outcome.out;
 
   // Both remedies are good ones: the factor that it names, and --fix.
   const std::size_t at = outcome.out.find("at most ") + 8;
