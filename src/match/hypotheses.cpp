@@ -200,7 +200,7 @@ std::optional<SE2> PoseJudge::best_cell_on_cell(const SE2& T_cells) const {
   return best;
 }
 
-Hypothesis PoseJudge::settle(const Hypothesis& hypothesis) const {
+Settled PoseJudge::settle(const Hypothesis& hypothesis) const {
   const SE2 T_cells = to_cells(hypothesis.T_fixed_moving, maps_.fixed_walls, maps_.moving_walls);
   const SE2 climbed =
       climb(settling_walls_, metric_, T_cells, kFirstSettlingStep, kLastSettlingStep).T_fixed_moving;
@@ -209,10 +209,10 @@ Hypothesis PoseJudge::settle(const Hypothesis& hypothesis) const {
     if (agreement(*on_cells) >= agreement(T_climbed)) {
       Hypothesis settled = judge(to_cells(*on_cells, maps_.fixed_walls, maps_.moving_walls));
       settled.T_fixed_moving = *on_cells;
-      return settled;
+      return {settled, true};
     }
   }
-  return judge(climbed);
+  return {judge(climbed), false};
 }
 
 double PoseJudge::acceptance_index(const SE2& T_cells) const {

@@ -38,6 +38,12 @@ ExhaustiveSearchOptions choose_search(const ComparedMaps& maps);
 /// Poses displaced by less than this are one hypothesis [cells].
 double distinct_displacement(const ComparedMaps& maps);
 
+/// A hypothesis at a maximum, and whether its cells lie exactly on cells.
+struct Settled {
+  Hypothesis hypothesis;
+  bool is_cell_on_cell = false;
+};
+
 /// What the walls of two maps in their working cells say of poses, and what all figures say.
 class PoseJudge {
  public:
@@ -49,7 +55,7 @@ class PoseJudge {
   /// The hypothesis at the maximum of the evidence near a judged one: of all walls, in steps down to a
   /// sixteenth of a cell. Where a pose near it that lays cell on cell is no worse, that one: a map lies on
   /// itself exactly.
-  Hypothesis settle(const Hypothesis& hypothesis) const;
+  Settled settle(const Hypothesis& hypothesis) const;
 
   /// Of the cells that are counted, the share that agrees under a pose between the grid frames [cells].
   double acceptance_index(const SE2& T_cells) const;

@@ -99,11 +99,18 @@ std::vector<Hypothesis> keep_distinct(std::vector<Hypothesis> all, const Compare
   return kept;
 }
 
-/// Weighs them, and brings the best one to its maximum.
+/// Weighs them, and brings the best one to its maximum. If that lays cell on cell, it fits without a
+/// remainder: a rival a part of a cell beside such a pose would lose for that part alone, so all are brought
+/// to theirs.
 void weigh_and_settle(std::vector<Hypothesis>& hypotheses, const ComparedMaps& maps, const PoseJudge& judge) {
   weigh(hypotheses, maps);
   if (hypotheses.empty()) return;
-  hypotheses.front() = judge.settle(hypotheses.front());
+  const Settled best = judge.settle(hypotheses.front());
+  hypotheses.front() = best.hypothesis;
+  if (best.is_cell_on_cell) {
+    parallel_for(hypotheses.size() - 1,
+                 [&](std::size_t i) { hypotheses[i + 1] = judge.settle(hypotheses[i + 1]).hypothesis; });
+  }
   weigh(hypotheses, maps);
 }
 

@@ -154,7 +154,7 @@ TEST(PoseJudge, SettlesCellOnCellWhereCellsCanLieSo) {
   const SE2 truth{-0.7, 0.4, 0.0};
   for (const SE2& off : {SE2{}, SE2{0.06, 0.0, 0.0}, SE2{-0.04, 0.07, 0.003}}) {
     const SE2 T_cells = to_cells(truth * off, maps.fixed_walls, maps.moving_walls);
-    const Hypothesis settled = judge.settle(judge.judge(T_cells));
+    const Hypothesis settled = judge.settle(judge.judge(T_cells)).hypothesis;
     EXPECT_NEAR(settled.T_fixed_moving.x, truth.x, 1e-9);
     EXPECT_NEAR(settled.T_fixed_moving.y, truth.y, 1e-9);
     EXPECT_NEAR(settled.T_fixed_moving.theta, 0.0, 1e-12);

@@ -164,6 +164,18 @@ TEST(Painted, BlackAroundARoomSaysNoMoreThanUnknown) {
   EXPECT_NEAR(std::hypot(other.T_fixed_moving.x, other.T_fixed_moving.y), 0.0, 0.1);
 }
 
+TEST(Painted, ABlackMapOfRoomsInRowsLiesOnItselfOrSaysThatItRepeats) {
+  // Rooms that repeat along rows and columns, and all else black: the half turn fits nearly as well.
+  OccupancyGrid map = make_grid(1000, 400, 0.05, {}, Cell::occupied);
+  for (int row = 100; row < 280; ++row)
+    for (int column = 150; column < 850; ++column)
+      if ((column / 60 + row / 45) % 3 != 0) map.at(column, row) = Cell::free;
+  const MatchResult itself = match(map, map);
+  EXPECT_EQ(itself.T_fixed_moving, SE2{});
+  EXPECT_EQ(itself.disagreement, 0);
+  if (itself.verdict == Verdict::refused) EXPECT_EQ(itself.reason, Reason::ambiguous);
+}
+
 TEST(Steady, AMapLiesOnItselfExactly) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     OccupancyGrid map = test::draw_building(seed);
