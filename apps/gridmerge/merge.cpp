@@ -168,6 +168,22 @@ std::string describe_nothing(const MergeCommandOptions& options, const MergeResu
          "     --init TABLE and --fix MAP take poses that you know; the page lays maps by hand\n";
 }
 
+/// How maps that lie apart may lie together, the most probable ways.
+std::string describe_open_ways(const std::vector<std::string>& names, const MergeResult& result) {
+  constexpr std::size_t kMostTold = 6;
+  std::string text;
+  const auto out = std::back_inserter(text);
+  for (std::size_t i = 0; i < std::min(result.open_ways.size(), kMostTold); ++i) {
+    const OpenWay& way = result.open_ways[i];
+    fmt::format_to(out, "perhaps: {} in the frame of {} at {} (probability {:.2f})\n",
+                   escape_controls(names[way.moving]), escape_controls(names[way.fixed]),
+                   describe_pose(way.T_fixed_moving), way.probability);
+  }
+  if (result.open_ways.size() > kMostTold)
+    fmt::format_to(out, "and {} more such ways: see transforms.json\n", result.open_ways.size() - kMostTold);
+  return text;
+}
+
 std::string describe(const MergeCommandOptions& options, const MergeResult& result,
                      const std::string& unused_poses) {
   const std::vector<std::string>& names = options.maps;
@@ -188,6 +204,7 @@ std::string describe(const MergeCommandOptions& options, const MergeResult& resu
     fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[result.left_out[i]]),
                    explain_left_out(result, i));
   }
+  text += describe_open_ways(names, result);
   for (const Join& join : result.joins) {
     const std::string pair =
         fmt::format("{} and {}", escape_controls(names[join.fixed]), escape_controls(names[join.moving]));

@@ -44,7 +44,7 @@ from ._measure import (
     measure_poses,
     poses_between,
 )
-from ._merge import Component, Join, JoinOutcome, LeftOut, Member, MergeResult, merge
+from ._merge import Component, Join, JoinOutcome, LeftOut, Member, MergeResult, OpenWay, merge
 from ._merger import Merger
 from ._message import OccupancyGridMessage
 from ._random_walk import RandomWalkMatch, Trace, Walk, match_by_random_walk, plot_walk
@@ -77,6 +77,7 @@ __all__ = [
     "NegativeCounts",
     "OccupancyGrid",
     "OccupancyGridMessage",
+    "OpenWay",
     "PairCounts",
     "PoseLike",
     "PoseMeasure",

@@ -122,6 +122,27 @@ class LeftOut:
 
 
 @dataclass(frozen=True, slots=True)
+class OpenWay:
+    """A way in which maps that lie apart may lie together: too likely to be passed over, and not sure enough to be
+    taken, or one of several among which nothing decides."""
+
+    fixed: int
+    """Index of the first map of its component, or of one that was left out."""
+    moving: int
+    """Likewise, after `fixed`."""
+    transform: Transform
+    """T_fixed_moving between the frames of these two maps."""
+    probability: float
+    """With all that the other maps say; 0.1 or more."""
+
+    def __repr__(self) -> str:
+        return (
+            f"OpenWay({self.fixed}, {self.moving}, transform={short_pose(self.transform)}, "
+            f"{probability(self.probability)})"
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class MergeResult:
     """What became of the maps that were merged."""
 
@@ -135,6 +156,8 @@ class MergeResult:
     """The inputs."""
     names: tuple[str, ...]
     """Of the inputs."""
+    open_ways: tuple[OpenWay, ...]
+    """How maps that lie apart may lie together, most probable first. Empty for the strategy "tree"."""
     expected_false_joins: float | None
     """How many of all joins are expected to be false. None for the strategy "tree", which does not know."""
     _core: _core.Merged = field(repr=False, compare=False)
@@ -281,6 +304,7 @@ def to_merge_result(
         ),
         maps=tuple(grids),
         names=tuple(names),
+        open_ways=tuple(_to_open_way(way) for way in merged.open_ways),
         expected_false_joins=merged.expected_false_joins,
         _core=merged,
         _more_inputs=more_inputs,
@@ -308,6 +332,10 @@ def _to_member(member: _core.Member, names: Sequence[str]) -> Member:
         sd_position=None if member.sd is None else member.sd.position,
         sd_theta=None if member.sd is None else member.sd.theta,
     )
+
+
+def _to_open_way(way: _core.OpenWay) -> OpenWay:
+    return OpenWay(way.fixed, way.moving, Transform(*way.transform), way.probability)
 
 
 def _to_join(join: _core.Join) -> Join:

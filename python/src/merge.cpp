@@ -110,6 +110,11 @@ void bind_results(nb::module_& module) {
       .def_prop_ro("transform", [](const Member& member) { return to_pose(member.T_component_map); })
       .def_ro("probability", &Member::probability)
       .def_ro("sd", &Member::sd);
+  nb::class_<OpenWay>(module, "OpenWay")
+      .def_ro("fixed", &OpenWay::fixed)
+      .def_ro("moving", &OpenWay::moving)
+      .def_prop_ro("transform", [](const OpenWay& way) { return to_pose(way.T_fixed_moving); })
+      .def_ro("probability", &OpenWay::probability);
   nb::class_<Merged>(module, "Merged")
       .def_prop_ro("maps", [](const Merged& merged) { return merged.maps; })
       .def_prop_ro("component_count", [](const Merged& merged) { return merged.result->components.size(); })
@@ -133,6 +138,7 @@ void bind_results(nb::module_& module) {
           [](const Merged& merged, std::size_t i) { return merged.result->components.at(i).in_world_frame; },
           nb::arg("component"))
       .def_prop_ro("joins", [](const Merged& merged) { return merged.result->joins; })
+      .def_prop_ro("open_ways", [](const Merged& merged) { return merged.result->open_ways; })
       .def_prop_ro("expected_false_joins",
                    [](const Merged& merged) { return merged.result->expected_false_joins; })
       .def_prop_ro("left_out",

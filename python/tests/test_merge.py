@@ -73,6 +73,15 @@ def as_json(result: gridmerge.MergeResult) -> dict[str, Any]:
         "joins": joins,
         "left_out": [one.name for one in result.left_out],
         "left_out_maps": [{"source": one.name, "reason": one.reason} for one in result.left_out],
+        "open_ways": [
+            {
+                "fixed": result.names[way.fixed],
+                "moving": result.names[way.moving],
+                "transform": pose_of(way.transform),
+                "probability": way.probability,
+            }
+            for way in result.open_ways
+        ],
         "expected_false_joins": result.expected_false_joins,
     }
 

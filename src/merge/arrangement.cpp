@@ -61,11 +61,11 @@ class Arranger {
       WeighedJoin best_join;
       for (std::size_t a = 0; a < groups_.size(); ++a) {
         for (std::size_t b = a + 1; b < groups_.size(); ++b) {
-          const WeighedJoin& join = best_join_of(groups_[a], groups_[b]);
-          if (!join.is_proposed || join.probability < accept_) continue;
-          if (best && join.worth.against_apart <= best_join.worth.against_apart) continue;
+          const std::optional<WeighedJoin>& join = best_join_of(groups_[a], groups_[b]);
+          if (!join || join->probability < accept_) continue;
+          if (best && join->worth.against_apart <= best_join.worth.against_apart) continue;
           best = {a, b};
-          best_join = join;
+          best_join = *join;
         }
       }
       if (!best) return;
@@ -111,11 +111,11 @@ class Arranger {
     SE2 T_where_alone;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (g == alone) continue;
-      const WeighedJoin& join = best_join_of(groups_[g], groups_[alone]);
-      if (join.worth.against_apart <= most) continue;
-      most = join.worth.against_apart;
+      const std::optional<WeighedJoin>& join = best_join_of(groups_[g], groups_[alone]);
+      if (!join || join->worth.against_apart <= most) continue;
+      most = join->worth.against_apart;
       where = g;
-      T_where_alone = join.T_a_b;
+      T_where_alone = join->T_a_b;
     }
     if (where) join(*where, alone, T_where_alone);
   }
@@ -123,11 +123,17 @@ class Arranger {
   double gain_of_moving(std::size_t group, std::size_t place) {
     const auto [rest, alone] = taken_out(groups_[group], place);
     const double stays = weights_.worth_of(rest, alone, {}).against_apart;
-    double elsewhere = std::max(0.0, best_join_of(rest, alone).worth.against_apart);
+    double elsewhere = std::max(0.0, gain_of_joining(rest, alone));
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      if (g != group) elsewhere = std::max(elsewhere, best_join_of(groups_[g], alone).worth.against_apart);
+      if (g != group) elsewhere = std::max(elsewhere, gain_of_joining(groups_[g], alone));
     }
     return elsewhere - stays;
+  }
+
+  /// Beside being apart.
+  double gain_of_joining(const NodeGroup& a, const NodeGroup& b) {
+    const std::optional<WeighedJoin>& join = best_join_of(a, b);
+    return join ? join->worth.against_apart : 0.0;
   }
 
   /// Cuts a group where its parts belong together least surely, if that is not surely enough, or where
@@ -181,7 +187,7 @@ class Arranger {
   /// Works out several joins at once, for best_join_of() to know them.
   void weigh(const std::vector<Sides>& all) {
     std::vector<const Sides*> unknown;
-    std::vector<WeighedJoin*> results;
+    std::vector<std::optional<WeighedJoin>*> results;
     for (const Sides& sides : all) {
       const auto [found, is_new] = weighed_.try_emplace({key_of(sides.first), key_of(sides.second)});
       if (!is_new) continue;
@@ -194,7 +200,7 @@ class Arranger {
   }
 
   /// Remembered by which maps the groups hold and where: groups change little from round to round.
-  const WeighedJoin& best_join_of(const NodeGroup& a, const NodeGroup& b) {
+  const std::optional<WeighedJoin>& best_join_of(const NodeGroup& a, const NodeGroup& b) {
     const auto [found, is_new] = weighed_.try_emplace({key_of(a), key_of(b)});
     if (is_new) found->second = weights_.best_join(a, b);
     return found->second;
@@ -214,7 +220,7 @@ class Arranger {
   double accept_;  // from this probability on, groups are joined
   double keep_;    // and from this one on, they stay together
   NodeGroups groups_;
-  std::map<std::pair<Key, Key>, WeighedJoin> weighed_;
+  std::map<std::pair<Key, Key>, std::optional<WeighedJoin>> weighed_;
   std::set<Key> sure_;  // groups that need no cut
 };
 
@@ -286,6 +292,26 @@ Arrangement arrange(const ArrangementProblem& problem, double accept_probability
 
 Arrangement arrange(const ArrangementProblem& problem, double accept_probability) {
   return arrange(problem, accept_probability, accept_probability);
+}
+
+std::vector<OpenJoin> find_open_joins(const ArrangementProblem& problem, const Arrangement& arrangement,
+                                      double least_probability) {
+  validate(problem, least_probability);
+  const JoinWeights weights(problem);
+  const std::vector<NodeGroup>& groups = arrangement.groups;
+  std::vector<std::vector<OpenJoin>> of_first(groups.size());
+  parallel_for(groups.size(), [&](std::size_t a) {
+    for (std::size_t b = a + 1; b < groups.size(); ++b) {
+      for (const WeighedJoin& way : weights.ways_to_join(groups[a], groups[b])) {
+        if (way.probability >= least_probability) of_first[a].push_back({a, b, way.T_a_b, way.probability});
+      }
+    }
+  });
+  std::vector<OpenJoin> open;
+  for (const std::vector<OpenJoin>& some : of_first) open.insert(open.end(), some.begin(), some.end());
+  std::stable_sort(open.begin(), open.end(),
+                   [](const OpenJoin& x, const OpenJoin& y) { return x.probability > y.probability; });
+  return open;
 }
 
 double expected_false_joins(const Arrangement& arrangement) {

@@ -15,22 +15,11 @@ namespace {
 
 /// No single pair says more than this about two maps: their errors have causes in common with other pairs'.
 constexpr double kMostLogOdds = 6.0;
-/// What a pair says by itself of two of three or more maps. Most pairs of them share little or nothing, and
-/// the surest of many matches is too often of a place that looks the same: the odds are so many times what
-/// the match says, and one in so many sure matches is of a place that repeats. With these, 120 simulated
-/// teams have as many false joins as their budgets allow (benchmark/teams.py).
-constexpr double kOddsAmongMany = 0.4;
-constexpr double kRepeats = 0.005;
-
 /// Where the strongest pair has spoken, the second counts by so much, the third by the square of that...
 constexpr double kDependence = 0.3;
 /// A pair of whose places a share is fresh speaks of them with this power of the share: what borders on known
 /// places is not independent of them either.
 constexpr double kFreshPower = 2.0;
-/// So many poses are weighed in full for two groups: those with which most pairs agree.
-constexpr std::size_t kMostProposals = 50;
-/// Candidates less likely than this propose no join, though they may agree with one.
-constexpr double kLeastLogOdds = -6.0;
 /// The loss when two maps that would have much in common have no candidate that agrees, and the shares of the
 /// smaller map at which it begins and is whole: of simulated pairs that have less than a tenth in common the
 /// true pose is hardly ever among the candidates, of those with a quarter in two of three cases, and from a
@@ -38,28 +27,6 @@ constexpr double kLeastLogOdds = -6.0;
 constexpr double kMissNats = 3.3;
 constexpr double kMissFrom = 0.12;
 constexpr double kMissWhole = 0.45;
-
-/// Poses nearer to each other than this many tolerances are one way to join: the same candidate may agree
-/// with both.
-constexpr double kDistinct = 2.0;
-
-MapExtent extent_of(const NodeGroup& group, const std::vector<MapExtent>& maps) {
-  MapExtent all;
-  for (const PlacedNode& node : group) {
-    const Point2 centre = node.T_group_map * maps[node.map].centre;
-    all.centre.x += centre.x / static_cast<double>(group.size());
-    all.centre.y += centre.y / static_cast<double>(group.size());
-    all.side = std::max(all.side, maps[node.map].side);
-  }
-  double squares = 0.0;
-  for (const PlacedNode& node : group) {
-    const Point2 centre = node.T_group_map * maps[node.map].centre;
-    squares += std::pow(maps[node.map].radius, 2) + std::pow(centre.x - all.centre.x, 2) +
-               std::pow(centre.y - all.centre.y, 2);
-  }
-  all.radius = std::sqrt(squares / static_cast<double>(group.size()));
-  return all;
-}
 
 /// What several losses come to: they have causes in common, as the gains do.
 double sum_of_dependent(std::vector<double> losses) {
@@ -101,14 +68,6 @@ class SpokenOf {
   static constexpr double kSide = 4.0;      // [m]
   std::vector<Place> spoken_of_;            // ascending
 };
-
-/// Of the first of several ways: against the others, and against being apart, which is worth 0.
-double probability_of_first(const std::vector<WeighedJoin>& ways) {
-  const double first = ways.front().worth.against_other_poses;
-  double others = 0.0;
-  for (std::size_t i = 1; i < ways.size(); ++i) others += std::exp(ways[i].worth.against_other_poses - first);
-  return 1.0 / (1.0 + others + std::exp(-ways.front().worth.against_apart));
-}
 
 }  // namespace
 
@@ -195,103 +154,6 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
     dependence *= kDependence;
   }
   return worth;
-}
-
-/// The distinct poses that candidates of pairs across the groups propose, those first that most pairs agree
-/// with: weighing a pose in full takes a hundred times as long.
-std::vector<SE2> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) const {
-  struct Proposal {
-    SE2 T_a_b;
-    double agreement = 0.0;
-  };
-  std::vector<Proposal> all;
-  for (const PlacedNode& in_a : a) {
-    for (const PlacedNode& in_b : b) {
-      const std::optional<std::size_t>& index = pair_of(in_a.map, in_b.map);
-      if (!index) continue;
-      const PairCandidates& pair = problem_.pairs[*index];
-      for (const CandidateJoin& candidate : pair.candidates) {
-        if (candidate.log_odds < kLeastLogOdds) continue;
-        const SE2 T = pair.fixed == in_a.map ? candidate.T_fixed_moving : inverse(candidate.T_fixed_moving);
-        all.push_back({in_a.T_group_map * T * inverse(in_b.T_group_map)});
-      }
-    }
-  }
-  for (Proposal& proposal : all) {
-    for (const PlacedNode& in_a : a) {
-      const SE2 T_map_b = inverse(in_a.T_group_map) * proposal.T_a_b;
-      for (const PlacedNode& in_b : b) {
-        if (const auto agreement = find_agreement(in_a.map, in_b.map, T_map_b * in_b.T_group_map))
-          proposal.agreement += agreement->worth;
-      }
-    }
-  }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Proposal& x, const Proposal& y) { return x.agreement > y.agreement; });
-  const MapExtent of_a = extent_of(a, problem_.maps), of_b = extent_of(b, problem_.maps);
-  const double distinct = kDistinct * agreement_tolerance(of_a, of_b);
-  std::vector<SE2> kept;
-  for (const Proposal& proposal : all) {
-    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const SE2& other) {
-      return difference(of_a, of_b, proposal.T_a_b, other) < distinct;
-    });
-    if (is_new) kept.push_back(proposal.T_a_b);
-    if (kept.size() == kMostProposals) break;
-  }
-  return kept;
-}
-
-std::vector<WeighedJoin> JoinWeights::ways_to_join(const NodeGroup& a, const NodeGroup& b) const {
-  std::vector<WeighedJoin> ways;
-  for (const SE2& T_a_b : proposals(a, b)) ways.push_back({T_a_b, worth_of(a, b, T_a_b), 0.0, true});
-  std::stable_sort(ways.begin(), ways.end(), [](const WeighedJoin& x, const WeighedJoin& y) {
-    return x.worth.against_other_poses > y.worth.against_other_poses;
-  });
-  return ways;
-}
-
-/// Two maps alone lie as their pair says, which has weighed all that there is.
-WeighedJoin JoinWeights::join_of_pair(const PlacedNode& a, const PlacedNode& b) const {
-  const std::optional<std::size_t>& index = pair_of(a.map, b.map);
-  if (!index || problem_.pairs[*index].candidates.empty()) return {};
-  const PairCandidates& pair = problem_.pairs[*index];
-  const CandidateJoin& best = *std::max_element(
-      pair.candidates.begin(), pair.candidates.end(),
-      [](const CandidateJoin& x, const CandidateJoin& y) { return x.log_odds < y.log_odds; });
-  const bool of_many = problem_.maps.size() > 2;
-  const auto probability = [&](const CandidateJoin& candidate) {
-    const double p = 1.0 / (1.0 + std::exp(-candidate.log_odds));
-    if (!of_many || candidate.is_known) return p;
-    const double odds = kOddsAmongMany * p / (1.0 - p + kRepeats);
-    return odds / (1.0 + odds);
-  };
-  double sum = 0.0;  // above 1 where candidates were made likelier by what is known beforehand
-  for (const CandidateJoin& candidate : pair.candidates) sum += probability(candidate);
-  const SE2 T = pair.fixed == a.map ? best.T_fixed_moving : inverse(best.T_fixed_moving);
-  return {a.T_group_map * T * inverse(b.T_group_map),
-          {best.log_odds, best.log_odds},
-          probability(best) / std::max(1.0, sum),
-          true};
-}
-
-WeighedJoin JoinWeights::best_join(const NodeGroup& a, const NodeGroup& b) const {
-  if (a.size() == 1 && b.size() == 1) return join_of_pair(a.front(), b.front());
-  const std::vector<WeighedJoin> ways = ways_to_join(a, b);
-  if (ways.empty()) return {};
-  WeighedJoin best = ways.front();
-  best.probability = probability_of_first(ways);
-  return best;
-}
-
-double JoinWeights::probability_of_lying_so(const NodeGroup& a, const NodeGroup& b) const {
-  if (a.size() == 1 && b.size() == 1) return join_of_pair(a.front(), b.front()).probability;
-  const MapExtent of_a = extent_of(a, problem_.maps), of_b = extent_of(b, problem_.maps);
-  const double distinct = kDistinct * agreement_tolerance(of_a, of_b);
-  std::vector<WeighedJoin> ways{{{}, worth_of(a, b, {}), 0.0, true}};
-  for (const WeighedJoin& way : ways_to_join(a, b)) {
-    if (difference(of_a, of_b, way.T_a_b, {}) >= distinct) ways.push_back(way);
-  }
-  return probability_of_first(ways);
 }
 
 std::vector<JoinWeights::Edge> JoinWeights::edges_of(const NodeGroup& group) const {

@@ -45,7 +45,6 @@ struct WeighedJoin {
   SE2 T_a_b;  ///< between the groups' frames
   JoinWorth worth;
   double probability = 0.0;  ///< against lying otherwise, and apart
-  bool is_proposed = false;  ///< by some candidate; otherwise there is no way to join them
 };
 
 /// What the candidates of all pairs say of groups of maps: see arrange() for what an arrangement is worth.
@@ -59,8 +58,11 @@ class JoinWeights {
     return map < problem_.fixed.size() && problem_.fixed[map].has_value();
   }
 
-  /// The best of all ways to join two groups that some candidate proposes.
-  WeighedJoin best_join(const NodeGroup& a, const NodeGroup& b) const;
+  /// The ways to join two groups that some candidate proposes, most is said for the first.
+  std::vector<WeighedJoin> ways_to_join(const NodeGroup& a, const NodeGroup& b) const;
+
+  /// The first of them; none if no candidate proposes any.
+  std::optional<WeighedJoin> best_join(const NodeGroup& a, const NodeGroup& b) const;
 
   /// What it is worth that the groups lie so.
   JoinWorth worth_of(const NodeGroup& a, const NodeGroup& b, const SE2& T_a_b) const;
@@ -105,9 +107,8 @@ class JoinWeights {
   /// T takes points of map b to map a.
   std::optional<Agreement> find_agreement(std::size_t a, std::size_t b, const SE2& T_a_b) const;
   void unite_fixed(const NodeGroup& group, Labels& labels) const;
-  WeighedJoin join_of_pair(const PlacedNode& a, const PlacedNode& b) const;
+  std::vector<WeighedJoin> ways_of_pair(const PlacedNode& a, const PlacedNode& b) const;
   std::vector<SE2> proposals(const NodeGroup& a, const NodeGroup& b) const;
-  std::vector<WeighedJoin> ways_to_join(const NodeGroup& a, const NodeGroup& b) const;
   std::vector<Edge> edges_of(const NodeGroup& group) const;
 
   const ArrangementProblem& problem_;

@@ -117,6 +117,7 @@ class Merger::State {
       const auto [problem, arrangement, again] = solve(maps);
       result.expected_false_joins = expected_false_joins(arrangement);
       result.joins = make_joins(maps, problem, arrangement, again);
+      result.open_ways = open_ways(places_of(maps), problem, arrangement);
       add_components(maps, problem, arrangement, result);
       std::vector<const OccupancyGrid*> grids;
       for (const auto& [id, input] : inputs_) grids.push_back(input->grid.get());
@@ -338,6 +339,26 @@ class Merger::State {
       return std::pair(a.fixed, a.moving) < std::pair(b.fixed, b.moving);
     });
     return joins;
+  }
+
+  /// `index` is that of each map of the problem among the inputs.
+  static std::vector<OpenWay> open_ways(const std::vector<std::size_t>& index,
+                                        const ArrangementProblem& problem, const Arrangement& arrangement) {
+    const auto first_input = [&](const NodeGroup& group) {
+      return *std::min_element(group.begin(), group.end(), [&](const PlacedNode& x, const PlacedNode& y) {
+        return index[x.map] < index[y.map];
+      });
+    };
+    std::vector<OpenWay> ways;
+    for (const OpenJoin& open : find_open_joins(problem, arrangement, kLeastOpenProbability)) {
+      const PlacedNode a = first_input(arrangement.groups[open.a]);
+      const PlacedNode b = first_input(arrangement.groups[open.b]);
+      const SE2 T = inverse(a.T_group_map) * open.T_a_b * b.T_group_map;
+      const bool in_order = index[a.map] < index[b.map];
+      ways.push_back({std::min(index[a.map], index[b.map]), std::max(index[a.map], index[b.map]),
+                      in_order ? T : inverse(T), open.probability});
+    }
+    return ways;
   }
 
   /// Where each of these maps stands among all in the order in which they were added.

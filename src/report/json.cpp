@@ -144,6 +144,13 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
   add("joins", joins_text(names, result));
   add_json("left_out", left_out);
   add_json("left_out_maps", left_out_maps);
+  Json open_ways = Json::array();
+  for (const OpenWay& way : result.open_ways)
+    open_ways.push_back({{"fixed", names.at(way.fixed)},
+                         {"moving", names.at(way.moving)},
+                         {"transform", transform_json(way.T_fixed_moving)},
+                         {"probability", number_json(way.probability)}});
+  add_json("open_ways", open_ways);
   add_json("expected_false_joins", probability_json(result.expected_false_joins));
   return text + "\n}\n";
 }

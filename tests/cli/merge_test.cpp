@@ -33,7 +33,8 @@ TEST_F(Merge, WritesTheFilesOfTheContract) {
   EXPECT_EQ(files_in(output), all_files);
 
   const Json json = Json::parse(read_file(output + "/transforms.json"));
-  expect_keys(json, {"maps", "components", "joins", "left_out", "left_out_maps", "expected_false_joins"});
+  expect_keys(json, {"maps", "components", "joins", "left_out", "left_out_maps", "open_ways",
+                     "expected_false_joins"});
   EXPECT_EQ(json.at("left_out"), Json::array());
   ASSERT_EQ(json.at("components").size(), 1u);
   expect_keys(json.at("components").at(0), {"map", "frame", "members", "omega", "cells", "omega_share"});
@@ -129,6 +130,35 @@ TEST_F(Merge, OfMapsThatAllDifferSaysSo) {
   EXPECT_EQ(json.at("components"), Json::array());
   EXPECT_EQ(json.at("left_out"), Json::array({left, other}));
   EXPECT_EQ(files_in(output).count("merged.yaml"), 0u);
+}
+
+TEST_F(Merge, WaysAmongWhichNothingDecidesAreNamed) {
+  // Two wings, each the other one turned by half a turn: the map of one wing fits both.
+  const OccupancyGrid wing = draw_building(1);
+  OccupancyGrid both = make_grid(2 * wing.width, wing.height, wing.resolution);
+  for (int row = 0; row < wing.height; ++row) {
+    for (int column = 0; column < wing.width; ++column) {
+      both.at(column, row) = wing.at(column, row);
+      both.at(both.width - 1 - column, both.height - 1 - row) = wing.at(column, row);
+    }
+  }
+  const std::string whole = write_map(directory, "whole", both), part = write_map(directory, "part", wing);
+  const Outcome outcome = run({"merge", whole, part, "-o", output});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.out;
+  EXPECT_NE(outcome.out.find("perhaps: " + part + " in the frame of " + whole + " at x "), std::string::npos)
+      << outcome.out;
+  const Json ways = Json::parse(read_file(output + "/transforms.json")).at("open_ways");
+  ASSERT_EQ(ways.size(), 2u);
+  double turns = 0.0;
+  for (const Json& way : ways) {
+    expect_keys(way, {"fixed", "moving", "transform", "probability"});
+    EXPECT_EQ(way.at("fixed"), whole);
+    EXPECT_EQ(way.at("moving"), part);
+    EXPECT_GT(way.at("probability"), 0.4);
+    EXPECT_LT(way.at("probability"), 0.6);
+    turns += std::abs(way.at("transform").at("theta").get<double>());
+  }
+  EXPECT_NEAR(turns, 3.14159, 0.02);  // one as it is, one by half a turn
 }
 
 TEST_F(Merge, OfOneMapTwiceIsThatMap) {

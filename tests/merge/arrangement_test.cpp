@@ -136,6 +136,58 @@ TEST(Arrange, OfTwoPosesThatAreAsLikelyNoneIsBelieved) {
   EXPECT_EQ(arrange(world.problem, kAccept).groups.size(), 2u);
 }
 
+TEST(FindOpenJoins, AreTheRivalsBetweenWhichNothingDecides) {
+  World world(2);
+  world.say(0, 1, 4.0);
+  world.say(0, 1, 4.0, kWrong);
+  world.say(0, 1, -3.0, {500.0, 0.0, 1.0});  // 1 in 20
+  const Arrangement arrangement = arrange(world.problem, kAccept);
+  const std::vector<OpenJoin> open = find_open_joins(world.problem, arrangement, 0.1);
+  ASSERT_EQ(open.size(), 2u);
+  for (const OpenJoin& join : open) {
+    EXPECT_EQ(join.a, 0u);
+    EXPECT_EQ(join.b, 1u);
+    EXPECT_GT(join.probability, 0.4);
+    EXPECT_LT(join.probability, 0.5);
+  }
+  EXPECT_NE(open[0].T_a_b, open[1].T_a_b);
+  EXPECT_EQ(find_open_joins(world.problem, arrangement, 0.01).size(), 3u);
+  EXPECT_TRUE(find_open_joins(world.problem, arrangement, 0.6).empty());
+  EXPECT_THROW(find_open_joins(world.problem, arrangement, -0.1), std::invalid_argument);
+}
+
+TEST(FindOpenJoins, OfAGroupHearAllItsMaps) {
+  // Two pairs propose each of two ways for the fourth map to lie beside the group of the first three.
+  World world(4);
+  world.say(0, 1, 5.0);
+  world.say(1, 2, 5.0);
+  world.say(0, 2, 5.0);
+  for (const std::size_t map : {std::size_t{0}, std::size_t{1}}) {
+    world.say(map, 3, 0.0);
+    world.say(map, 3, 0.0, kWrong);
+  }
+  const Arrangement arrangement = arrange(world.problem, kAccept);
+  ASSERT_EQ(arrangement.groups.size(), 2u);
+  const std::vector<OpenJoin> open = find_open_joins(world.problem, arrangement, 0.1);
+  ASSERT_GE(open.size(), 2u);
+  double sum = 0.0;
+  for (const OpenJoin& join : open) {
+    EXPECT_EQ(join.b, 1u);
+    sum += join.probability;
+  }
+  EXPECT_NEAR(open[0].probability, open[1].probability, 0.05);
+  EXPECT_GT(open[0].probability, 0.3);
+  EXPECT_LE(sum, 1.0);
+}
+
+TEST(FindOpenJoins, OfOneGroupAreNone) {
+  World world(3);
+  world.say(0, 1, 5.0);
+  world.say(1, 2, 5.0);
+  world.say(0, 2, 5.0);
+  EXPECT_TRUE(find_open_joins(world.problem, arrange(world.problem, kAccept), 0.0).empty());
+}
+
 TEST(Arrange, AThirdMapDecidesBetweenPosesThatAreAsLikely) {
   World world(3);
   world.say(0, 1, 2.0, kWrong);

@@ -145,6 +145,7 @@ TEST(TransformsJson, IsTheDocumentedText) {
   result.components[0].members[1].probability = 0.875;
   result.components[0].members[1].sd = PoseDeviation{0.125, 0.0625};
   result.left_out_reasons.front() = Reason::ambiguous;
+  result.open_ways = {{1, 3, {4.0, 0.5, -1.5}, 0.25}};
   result.components[0].fused = {make_grid(5, 4, 1.0), 0, 0, EqualCells{5, 20}};
   EXPECT_EQ(transforms_json({"a.yaml", "b.yaml", "c.yaml", "d.yaml"}, result), R"({
   "maps": [
@@ -226,6 +227,18 @@ TEST(TransformsJson, IsTheDocumentedText) {
       "reason": "nothing_to_compare"
     }
   ],
+  "open_ways": [
+    {
+      "fixed": "b.yaml",
+      "moving": "d.yaml",
+      "transform": {
+        "x": 4.0,
+        "y": 0.5,
+        "theta": -1.5
+      },
+      "probability": 0.25
+    }
+  ],
   "expected_false_joins": null
 }
 )");
@@ -243,7 +256,7 @@ TEST(TransformsJson, NamesTheMapOfEveryComponent) {
 TEST(TransformsJson, OfNothing) {
   EXPECT_EQ(transforms_json({}, {}),
             "{\n  \"maps\": [],\n  \"components\": [],\n  \"joins\": [],\n  \"left_out\": [],\n  "
-            "\"left_out_maps\": [],\n  \"expected_false_joins\": null\n}\n");
+            "\"left_out_maps\": [],\n  \"open_ways\": [],\n  \"expected_false_joins\": null\n}\n");
 }
 
 TEST(TransformsJson, EveryMapNeedsAName) {

@@ -56,6 +56,14 @@ struct Arrangement {
   std::vector<UsedCandidate> used;  ///< ascending by pair, at most one a pair
 };
 
+/// A way to join two groups that was not taken, though it may be the true one.
+struct OpenJoin {
+  std::size_t a = 0;  ///< index into Arrangement::groups, less than `b`
+  std::size_t b = 0;
+  SE2 T_a_b;                 ///< between the groups' frames
+  double probability = 0.0;  ///< against lying otherwise, and apart
+};
+
 /// How far apart a pair's candidate and the poses of an arrangement may put the maps and still agree [m]:
 /// bent maps do not close a cycle exactly.
 double agreement_tolerance(const MapExtent& a, const MapExtent& b);
@@ -89,6 +97,13 @@ double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b, cons
 /// and b maps with c candidates a pair is weighed in O((a b c)^2), but only 50 poses of it in full. Throws
 /// std::invalid_argument for indices, numbers of maps or a probability that make no sense.
 Arrangement arrange(const ArrangementProblem& problem, double accept_probability);
+
+/// The ways to join two groups of an arrangement of the problem that have at least this probability, most
+/// probable first: rivals among which nothing decides, and ways that are not sure enough. Runs in the calling
+/// TBB arena. O(groups^2) joins are weighed, as in a round of arrange(). Throws std::invalid_argument as
+/// arrange().
+std::vector<OpenJoin> find_open_joins(const ArrangementProblem& problem, const Arrangement& arrangement,
+                                      double least_probability);
 
 /// How many joins of an arrangement are expected to be false: of each group of n maps, n - 1 times the mean
 /// doubt in a member that is not fixed. O(maps).

@@ -74,11 +74,24 @@ struct Component {
   bool in_world_frame = false;
 };
 
+/// A way in which maps that lie apart may lie together, too likely to be passed over and not sure enough to
+/// be taken, or one of several among which nothing decides.
+struct OpenWay {
+  std::size_t fixed = 0;     ///< the first map of its component, or one that was left out
+  std::size_t moving = 0;    ///< likewise, apart from `fixed` and after it
+  SE2 T_fixed_moving;        ///< between the frames of these two maps
+  double probability = 0.0;  ///< with all that the other maps say, kLeastOpenProbability or more
+};
+
+/// Ways that are less probable are not told.
+inline constexpr double kLeastOpenProbability = 0.1;
+
 struct MergeResult {
   std::vector<Component> components;     ///< of two or more maps each, most members first
   std::vector<Join> joins;               ///< every comparison made, whatever its outcome
   std::vector<std::size_t> left_out;     ///< maps that joined nothing, ascending
   std::vector<Reason> left_out_reasons;  ///< why, one for each that was left out
+  std::vector<OpenWay> open_ways;        ///< most probable first. The tree knows none
   /// How many joins are expected to be false, of all that were made. The tree does not know.
   std::optional<double> expected_false_joins = {};
 };
