@@ -3,12 +3,14 @@
 
 #include <benchmark/benchmark.h>
 
-#include "gridmerge/grid/parallel.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/search/exhaustive.hpp"
-#include "gridmerge/similarity/evidence.hpp"
-#include "gridmerge/similarity/wall_map.hpp"
 #include "office.hpp"
+#include "search/exhaustive.hpp"
+#include "similarity/evidence.hpp"
+#include "similarity/wall_map.hpp"
+
+using namespace gridmerge::internal;
 
 namespace {
 

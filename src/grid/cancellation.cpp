@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/grid/cancellation.hpp"
 
-#include "cancellation_scope.hpp"
+#include "grid/cancellation_scope.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 thread_local const std::atomic<bool>* current = nullptr;

@@ -10,15 +10,17 @@
 #include <system_error>
 #include <utility>
 
-#include "add_map.hpp"
-#include "file_reader.hpp"
-#include "image.hpp"
-#include "interpret.hpp"
-#include "map_yaml.hpp"
-#include "parse_error.hpp"
-#include "pnm.hpp"
+#include "io/add_map.hpp"
+#include "io/file_reader.hpp"
+#include "io/image.hpp"
+#include "io/interpret.hpp"
+#include "io/map_yaml.hpp"
+#include "io/parse_error.hpp"
+#include "io/pnm.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -7,10 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "gridmerge/grid/parallel.hpp"
-#include "looks.hpp"
+#include "grid/parallel.hpp"
+#include "match/looks.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/pose_figures.hpp"
-
 #include <array>
+
+#include "gridmerge/match/match_result.hpp"
 
 namespace gridmerge {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/verdict.hpp"
+#include "match/verdict.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "verdict_model.hpp"
+#include "match/verdict_model.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -242,4 +242,4 @@ const char* name_of(Reason reason) {
   return "none";
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "joins.hpp"
+#include "merge/joins.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 const char* name_of(JoinOutcome outcome) {
   switch (outcome) {
@@ -99,4 +99,4 @@ Reason why_left_out(const std::vector<Join>& joins, std::size_t map) {
   return nearest == nullptr ? Reason::nothing_to_compare : nearest->reason();
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/known_pose_check.hpp"
-
 #include <algorithm>
 #include <map>
 
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/merge/arrangement.hpp"
-#include "gridmerge/merge/coverage.hpp"
-#include "prior.hpp"
+#include "gridmerge/merge/known_pose.hpp"
+#include "merge/arrangement.hpp"
+#include "merge/coverage.hpp"
+#include "merge/prior.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "prior.hpp"
+#include "merge/prior.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -95,4 +95,4 @@ void apply_known_poses(const KnownPose& fixed, const KnownPose& moving, const Ma
     there->log_odds = std::max(there->log_odds, nats);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -13,10 +13,12 @@
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/report/json.hpp"
 #include "io/file_reader.hpp"
-#include "json_reader.hpp"
-#include "json_values.hpp"
+#include "report/json_reader.hpp"
+#include "report/json_values.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/evaluate/tables.hpp"
+#include "evaluate/tables.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,8 @@
 #include <vector>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using Json = nlohmann::json;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/known_pose_check.hpp"
-
 #include <gtest/gtest.h>
+
+#include "gridmerge/merge/known_pose.hpp"
 
 namespace gridmerge {
 namespace {

@@ -7,13 +7,15 @@
 
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/report/json.hpp"
-#include "gridmerge/report/page.hpp"
 #include "io/support.hpp"
 #include "merge/drawing.hpp"
+#include "report/page.hpp"
 #include "report/results.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using Json = nlohmann::json;
