@@ -11,6 +11,8 @@ namespace {
 thread_local const std::atomic<bool>* current = nullptr;
 }  // namespace
 
+namespace internal {
+
 const std::atomic<bool>* current_cancellation() {
   return current;
 }
@@ -22,6 +24,8 @@ CancellationScope::CancellationScope(const std::atomic<bool>* flag) : outer_(cur
 CancellationScope::~CancellationScope() {
   current = outer_;
 }
+
+}  // namespace internal
 
 Cancelled::Cancelled() : std::runtime_error("the work was cancelled") {}
 

@@ -65,16 +65,6 @@ MatchResult walk(const OccupancyGrid& fixed, const OccupancyGrid& moving, const 
 
 }  // namespace
 
-MatchResult inverse(MatchResult result) {
-  result.T_fixed_moving = inverse(result.T_fixed_moving);
-  for (Hypothesis& hypothesis : result.hypotheses) {
-    hypothesis.T_fixed_moving = inverse(hypothesis.T_fixed_moving);
-    double& free_direction = hypothesis.figures.free_direction;
-    free_direction = undirected_angle(free_direction + hypothesis.T_fixed_moving.theta);
-  }
-  return result;
-}
-
 MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options) {
   validate(options);
   if (options.search == SearchMethod::random_walk) return walk(fixed, moving, options);

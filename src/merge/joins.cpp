@@ -9,22 +9,6 @@
 
 namespace gridmerge::internal {
 
-const char* name_of(JoinOutcome outcome) {
-  switch (outcome) {
-    case JoinOutcome::accepted:
-      return "accepted";
-    case JoinOutcome::rescued:
-      return "rescued";
-    case JoinOutcome::rejected:
-      return "rejected";
-    case JoinOutcome::known:
-      return "known";
-    case JoinOutcome::refused:
-      break;
-  }
-  return "refused";
-}
-
 void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution) {
   if (!std::isfinite(resolution) || resolution < 0.0) {
     throw std::invalid_argument(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluate/tables.hpp"
+#include "match/verdict.hpp"
 
 #include <gtest/gtest.h>
 

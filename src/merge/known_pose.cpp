@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/merge/known_pose.hpp"
+
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <stdexcept>
 
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/merge/known_pose.hpp"
 #include "merge/arrangement.hpp"
 #include "merge/coverage.hpp"
 #include "merge/prior.hpp"
@@ -13,6 +16,9 @@ namespace gridmerge {
 using namespace internal;
 
 namespace {
+
+constexpr double kFarthest = 1e7;  // [m]
+constexpr double kLeastDeviation = 1e-6;
 
 struct KnownMap {
   KnownPose pose;
@@ -114,6 +120,17 @@ std::vector<ContradictedFix> find_contradicted_fixes(const std::vector<Occupancy
       contradicted.push_back({join.fixed, join.moving, distance});
   }
   return contradicted;
+}
+
+void validate(const KnownPose& known) {
+  const SE2& T = known.T_world_map;
+  if (!(std::abs(T.x) <= kFarthest && std::abs(T.y) <= kFarthest && std::isfinite(T.theta)))
+    throw std::invalid_argument("a known pose must be finite, and within 10000 km");
+  if (known.fixed) return;
+  const auto is_deviation = [](double sd) { return std::isfinite(sd) && sd >= kLeastDeviation; };
+  if (!is_deviation(known.sd_position) || !is_deviation(known.sd_theta))
+    throw std::invalid_argument(
+        "the standard deviations of a known pose must be at least 0.000001, unless it is fixed");
 }
 
 }  // namespace gridmerge

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-
 #include "gridmerge/match/match_result.hpp"
+
+#include <array>
 
 namespace gridmerge {
 
@@ -52,6 +52,40 @@ std::span<const PoseFigure> pose_figures() {
                  &F::sigma},
       PoseFigure{"outliers", "share", "share of walls that this model does not explain", &F::outliers}};
   return kFigures;
+}
+
+const char* name_of(Verdict verdict) {
+  return verdict == Verdict::accepted ? "accepted" : "refused";
+}
+
+const char* name_of(Reason reason) {
+  switch (reason) {
+    case Reason::nothing_to_compare:
+      return "nothing_to_compare";
+    case Reason::ambiguous:
+      return "ambiguous";
+    case Reason::contradiction:
+      return "contradiction";
+    case Reason::too_little_overlap:
+      return "too_little_overlap";
+    case Reason::several:
+      return "several";
+    case Reason::contradicts_others:
+      return "contradicts_others";
+    case Reason::none:
+      break;
+  }
+  return "none";
+}
+
+MatchResult inverse(MatchResult result) {
+  result.T_fixed_moving = inverse(result.T_fixed_moving);
+  for (Hypothesis& hypothesis : result.hypotheses) {
+    hypothesis.T_fixed_moving = inverse(hypothesis.T_fixed_moving);
+    double& free_direction = hypothesis.figures.free_direction;
+    free_direction = undirected_angle(free_direction + hypothesis.T_fixed_moving.theta);
+  }
+  return result;
 }
 
 }  // namespace gridmerge
