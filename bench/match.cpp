@@ -3,17 +3,18 @@
 
 #include <benchmark/benchmark.h>
 
-#include "gridmerge/grid/parallel.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/search/exhaustive.hpp"
-#include "gridmerge/similarity/evidence.hpp"
-#include "gridmerge/similarity/wall_map.hpp"
 #include "office.hpp"
+#include "search/exhaustive.hpp"
+#include "similarity/evidence.hpp"
+#include "similarity/wall_map.hpp"
+
 
 namespace {
 
 using gridmerge::OccupancyGrid;
-using gridmerge::WallMap;
+using gridmerge::internal::WallMap;
 
 /// One office twice, the second time turned and shifted.
 struct Pair {
@@ -27,25 +28,25 @@ struct Pair {
 
 void bm_make_wall_map(benchmark::State& state) {
   const OccupancyGrid grid = gridmerge::bench::make_office(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(gridmerge::make_wall_map(grid, grid.resolution));
+  for (auto _ : state) benchmark::DoNotOptimize(gridmerge::internal::make_wall_map(grid, grid.resolution));
 }
 BENCHMARK(bm_make_wall_map)->Arg(400)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
 void bm_wall_evidence(benchmark::State& state) {
   const Pair pair(400);
-  const WallMap fixed = gridmerge::make_wall_map(pair.fixed, pair.fixed.resolution);
-  const WallMap moving = gridmerge::make_wall_map(pair.moving, pair.moving.resolution);
-  const gridmerge::WallEvidence evidence(fixed, moving, static_cast<std::size_t>(state.range(0)));
+  const WallMap fixed = gridmerge::internal::make_wall_map(pair.fixed, pair.fixed.resolution);
+  const WallMap moving = gridmerge::internal::make_wall_map(pair.moving, pair.moving.resolution);
+  const gridmerge::internal::WallEvidence evidence(fixed, moving, static_cast<std::size_t>(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(evidence({5.0, 3.0, 0.3}));
 }
 BENCHMARK(bm_wall_evidence)->Arg(150)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
 void bm_search_all_poses(benchmark::State& state) {
   const Pair pair(static_cast<int>(state.range(0)));
-  const WallMap fixed = gridmerge::make_wall_map(pair.fixed, pair.fixed.resolution);
-  const WallMap moving = gridmerge::make_wall_map(pair.moving, pair.moving.resolution);
+  const WallMap fixed = gridmerge::internal::make_wall_map(pair.fixed, pair.fixed.resolution);
+  const WallMap moving = gridmerge::internal::make_wall_map(pair.moving, pair.moving.resolution);
   for (auto _ : state) {
-    gridmerge::with_threads(1, [&] { benchmark::DoNotOptimize(gridmerge::search_all_poses(fixed, moving)); });
+    gridmerge::internal::with_threads(1, [&] { benchmark::DoNotOptimize(gridmerge::internal::search_all_poses(fixed, moving)); });
   }
 }
 BENCHMARK(bm_search_all_poses)->Arg(400)->Arg(800)->Unit(benchmark::kMillisecond);

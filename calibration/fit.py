@@ -245,11 +245,11 @@ def header(names: Names, model: Model) -> str:
                 "// clang-format on", ""]
 
     lines = ["// SPDX-License-Identifier: Apache-2.0", "// Made by calibration/fit.py; not to be changed by hand.", "#pragma once", "",
-             "#include <array>", "", "namespace gridmerge {", "", "/// A term of verdict_terms() or rank_terms(), and what it weighs.",
+             "#include <array>", "", "namespace gridmerge::internal {", "", "/// A term of verdict_terms() or rank_terms(), and what it weighs.",
              "struct VerdictWeight {", "  const char* term;", "  double weight;", "};", "",
              f"inline constexpr double kVerdictBias = {model.bias:.3f};", "",
              *weights("kVerdictWeights", "verdict_terms", zip(names.terms, model.terms)),
-             *weights("kRankWeights", "rank_terms", zip(names.ranks, model.ranks)), "}  // namespace gridmerge"]
+             *weights("kRankWeights", "rank_terms", zip(names.ranks, model.ranks)), "}  // namespace gridmerge::internal"]
     return "\n".join(lines) + "\n"
 
 

@@ -3,6 +3,8 @@
 
 function(gridmerge_configure target)
   target_compile_features(${target} PUBLIC cxx_std_20)
+  # What is in src/ is gridmerge::internal: the project's own targets see it, an installed library does not have it.
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                                            -ffp-contract=off)
   if(GRIDMERGE_SANITIZE)
@@ -17,17 +19,64 @@ function(gridmerge_configure target)
   endif()
 endfunction()
 
-# gridmerge_add_library(<name> SOURCES ... [PUBLIC libs...] [PRIVATE libs...]): builds libgridmerge_<name>, exported as
+# gridmerge_choose_components(): an option for each component, GRIDMERGE_WITH_MERGE and so on. GRIDMERGE_WITH_ALL_AT_TOP
+# says whether this is the top project, and nothing is left out.
+macro(gridmerge_choose_components)
+  set(GRIDMERGE_WITH_ALL_AT_TOP ${PROJECT_IS_TOP_LEVEL})
+  set(GRIDMERGE_WITH_CORE ON)
+  foreach(component IN LISTS GRIDMERGE_COMPONENTS)
+    string(TOUPPER ${component} upper)
+    if(NOT component STREQUAL core)
+      option(GRIDMERGE_WITH_${upper} "Build the component ${component}" ON)
+    endif()
+    if(NOT GRIDMERGE_WITH_${upper})
+      set(GRIDMERGE_WITH_ALL_AT_TOP OFF)
+      continue()
+    endif()
+    foreach(needed IN LISTS gridmerge_${component}_needs)
+      string(TOUPPER ${needed} needed_upper)
+      if(NOT GRIDMERGE_WITH_${needed_upper})
+        message(FATAL_ERROR "gridmerge's component ${component} needs ${needed}: leave both out "
+                            "(-DGRIDMERGE_WITH_${upper}=OFF) or neither")
+      endif()
+    endforeach()
+  endforeach()
+endmacro()
+
+# gridmerge_find_packages(): what the chosen components need.
+macro(gridmerge_find_packages)
+  foreach(component IN LISTS GRIDMERGE_COMPONENTS)
+    string(TOUPPER ${component} upper)
+    if(NOT GRIDMERGE_WITH_${upper})
+      continue()
+    endif()
+    foreach(package IN LISTS gridmerge_${component}_packages)
+      find_package(${package} QUIET)
+      if(NOT ${package}_FOUND)
+        set(instead "")
+        if(NOT component STREQUAL core)
+          set(instead ", or leave it out: -DGRIDMERGE_WITH_${upper}=OFF, and so what needs it")
+        endif()
+        message(FATAL_ERROR "gridmerge's component ${component} needs ${package}: install it "
+                            "(Debian: ${gridmerge_debian_${package}})${instead}")
+      endif()
+    endforeach()
+  endforeach()
+endmacro()
+
+# gridmerge_add_component(<name> SOURCES ... [PUBLIC libs...] [PRIVATE libs...]): builds libgridmerge_<name>, exported as
 # gridmerge::<name>.
-function(gridmerge_add_library name)
+function(gridmerge_add_component name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target gridmerge_${name})
   add_library(${target} ${ARG_SOURCES})
   add_library(gridmerge::${name} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
+                                             VERSION ${PROJECT_VERSION}
+                                             SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                              $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
                                               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   gridmerge_configure(${target})
-  set_property(GLOBAL APPEND PROPERTY GRIDMERGE_LIBRARIES ${target})
 endfunction()

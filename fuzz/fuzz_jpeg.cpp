@@ -3,6 +3,8 @@
 #include "io/jpeg.hpp"
 #include "io/parse_error.hpp"
 
+using namespace gridmerge::internal;
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gridmerge;
   try {

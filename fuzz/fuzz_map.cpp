@@ -7,6 +7,8 @@
 #include "io/interpret.hpp"
 #include "io/parse_error.hpp"
 
+using namespace gridmerge::internal;
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gridmerge;
   constexpr std::string_view kEnd = "\n...\n";

@@ -2,8 +2,10 @@
 #include <stdexcept>
 
 #include "fuzz_target.hpp"
-#include "gridmerge/io/png.hpp"
+#include "io/png.hpp"
 #include "io/png_map.hpp"
+
+using namespace gridmerge::internal;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gridmerge;

@@ -4,7 +4,9 @@
 #include <stdexcept>
 
 #include "fuzz_target.hpp"
-#include "gridmerge/report/refine_request.hpp"
+#include "report/refine_request.hpp"
+
+using namespace gridmerge::internal;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gridmerge;

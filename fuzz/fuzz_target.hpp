@@ -24,7 +24,7 @@ inline void require(bool condition) {
 }
 
 /// What every decoder promises of its image.
-inline bool is_sound(const MapImage& image) {
+inline bool is_sound(const internal::MapImage& image) {
   const std::size_t pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   return image.width > 0 && image.height > 0 && pixels <= kMaxPixels && image.white > 0 &&
          image.lightness.size() == pixels && (image.alpha.empty() || image.alpha.size() == pixels) &&

@@ -6,6 +6,8 @@
 #include "fuzz_target.hpp"
 #include "gridmerge/io/file_error.hpp"
 
+using namespace gridmerge::internal;
+
 namespace {
 
 using namespace gridmerge;

@@ -65,7 +65,7 @@ def cut(page):
 def as_source(pieces):
     """C++ that defines each piece. As numbers: no compiler limits their count as it does a literal's length."""
     lines = ["// Made by web/assemble.py; not to be changed by hand.", '#include "report/page_template.hpp"', "",
-             "namespace gridmerge {", "", "namespace {", ""]
+             "namespace gridmerge::internal {", "", "namespace {", ""]
     for name, text in zip(PIECES, pieces):
         data = text.encode()
         lines.append(f"constexpr unsigned char {name}Bytes[] = {{")
@@ -74,7 +74,7 @@ def as_source(pieces):
     lines += ["}  // namespace", ""]
     for name in PIECES:
         lines.append(f"const std::string_view {name}(reinterpret_cast<const char*>({name}Bytes), sizeof({name}Bytes));")
-    return "\n".join([*lines, "", "}  // namespace gridmerge", ""])
+    return "\n".join([*lines, "", "}  // namespace gridmerge::internal", ""])
 
 
 def main():

@@ -12,9 +12,11 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "gridmerge/io/atomic_file.hpp"
+#include "io/atomic_file.hpp"
 
 namespace gridmerge::cli {
+
+using namespace internal;
 
 namespace {
 

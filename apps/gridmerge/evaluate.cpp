@@ -8,11 +8,13 @@
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "gridmerge/evaluate/tables.hpp"
-#include "gridmerge/io/atomic_file.hpp"
+#include "evaluate/tables.hpp"
+#include "io/atomic_file.hpp"
 #include "search_options.hpp"
 
 namespace gridmerge::cli {
+
+using namespace internal;
 
 namespace {
 

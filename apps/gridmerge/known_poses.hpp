@@ -10,7 +10,6 @@
 
 #include "console.hpp"
 #include "gridmerge/merge/known_pose.hpp"
-#include "gridmerge/merge/known_pose_check.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge::cli {

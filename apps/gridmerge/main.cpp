@@ -13,6 +13,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "gridmerge/version.hpp"
 #include "help.hpp"
 #include "interrupt.hpp"
 
@@ -75,7 +76,7 @@ int run(int argc, char** argv) {
       "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged\n\n"
       "Exit codes: 0 done, 1 error, 2 wrong usage, 3 done but refused.\n"
       "'gridmerge COMMAND --help' tells more, with an example.");
-  app.set_version_flag("--version", "gridmerge " GRIDMERGE_VERSION);
+  app.set_version_flag("--version", std::string("gridmerge ") + gridmerge::kVersion);
   app.require_subcommand(1);
   Action action;
   add_info(app, action);

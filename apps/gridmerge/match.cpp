@@ -15,10 +15,13 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "gridmerge/report/json.hpp"
+#include "match/verdict.hpp"
 #include "scale_hint.hpp"
 #include "search_options.hpp"
 
 namespace gridmerge::cli {
+
+using namespace internal;
 
 namespace {
 

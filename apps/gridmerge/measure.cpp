@@ -15,13 +15,15 @@
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "gridmerge/io/atomic_file.hpp"
-#include "gridmerge/report/distance_picture.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/similarity/distance_map.hpp"
 #include "gridmerge/similarity/lattice.hpp"
+#include "io/atomic_file.hpp"
+#include "report/distance_picture.hpp"
 
 namespace gridmerge::cli {
+
+using namespace internal;
 
 namespace {
 

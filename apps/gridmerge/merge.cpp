@@ -20,12 +20,14 @@
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"
-#include "gridmerge/report/wording.hpp"
 #include "known_poses.hpp"
+#include "report/wording.hpp"
 #include "scale_hint.hpp"
 #include "search_options.hpp"
 
 namespace gridmerge::cli {
+
+using namespace internal;
 
 namespace {
 

@@ -3,11 +3,13 @@
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "gridmerge/grid/parallel.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "saved_merge.hpp"
 
 namespace gridmerge::cli {
+
+using namespace internal;
 
 namespace {
 

@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "gridmerge/io/file_error.hpp"
-#include "gridmerge/match/scale.hpp"
+#include "match/scale.hpp"
 
 namespace gridmerge::cli {
+
+using namespace internal;
 
 std::string scale_hint(const NamedMap& fixed, const NamedMap& moving, const MatchOptions& options) {
   const std::optional<ScaleFound> found = find_scale(fixed.grid, moving.grid, options);

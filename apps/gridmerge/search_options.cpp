@@ -10,9 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "gridmerge/io/atomic_file.hpp"
+#include "io/atomic_file.hpp"
 
 namespace gridmerge::cli {
+
+using namespace internal;
 
 namespace {
 

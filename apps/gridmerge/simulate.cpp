@@ -14,9 +14,11 @@
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "gridmerge/evaluate/dataset.hpp"
+#include "evaluate/dataset.hpp"
 
 namespace gridmerge::cli {
+
+using namespace internal;
 
 namespace {
 

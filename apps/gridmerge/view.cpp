@@ -9,14 +9,16 @@
 #include "address.hpp"
 #include "commands.hpp"
 #include "console.hpp"
-#include "gridmerge/grid/parallel.hpp"
-#include "gridmerge/merge/refine_member.hpp"
-#include "gridmerge/report/page.hpp"
-#include "gridmerge/report/refine_request.hpp"
+#include "grid/parallel.hpp"
+#include "merge/refine_member.hpp"
 #include "page_server.hpp"
+#include "report/page.hpp"
+#include "report/refine_request.hpp"
 #include "saved_merge.hpp"
 
 namespace gridmerge::cli {
+
+using namespace internal;
 
 namespace {
 

@@ -3,6 +3,8 @@
 
 namespace gridmerge::example {
 
+using namespace internal;
+
 namespace {
 
 void office_shell(Draughtsman& d) {

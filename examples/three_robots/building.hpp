@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "gridmerge/simulate/draughtsman.hpp"
+#include "simulate/draughtsman.hpp"
 
 namespace gridmerge::example {
 

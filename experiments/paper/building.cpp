@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <optional>
 
-#include "gridmerge/simulate/random.hpp"
 #include "simulate/painted_floor.hpp"
+#include "simulate/random.hpp"
 
 namespace gridmerge::paper {
+
+using namespace internal;
 
 namespace {
 

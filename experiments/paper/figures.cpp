@@ -9,15 +9,17 @@
 #include <stdexcept>
 #include <vector>
 
-#include "gridmerge/io/atomic_file.hpp"
 #include "gridmerge/merge/merge.hpp"
-#include "gridmerge/report/distance_picture.hpp"
 #include "gridmerge/search/random_walk.hpp"
 #include "gridmerge/similarity/distance_map.hpp"
+#include "io/atomic_file.hpp"
 #include "pictures.hpp"
+#include "report/distance_picture.hpp"
 #include "runs.hpp"
 
 namespace gridmerge::paper {
+
+using namespace internal;
 
 namespace {
 

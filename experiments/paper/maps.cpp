@@ -9,9 +9,11 @@
 
 #include "building.hpp"
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/simulate/random.hpp"
+#include "simulate/random.hpp"
 
 namespace gridmerge::paper {
+
+using namespace internal;
 
 namespace {
 

@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "figures.hpp"
-#include "gridmerge/io/atomic_file.hpp"
+#include "io/atomic_file.hpp"
 #include "table.hpp"
+
+using namespace gridmerge::internal;
 
 namespace {
 

@@ -6,10 +6,12 @@
 #include <cstdint>
 
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/io/png.hpp"
 #include "gridmerge/merge/fuse.hpp"
+#include "io/png.hpp"
 
 namespace gridmerge::paper {
+
+using namespace internal;
 
 std::string draw(const OccupancyGrid& map) {
   constexpr std::array<std::array<std::uint8_t, 3>, 3> kColours{

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "gridmerge/grid/placed_map.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 #include "maps.hpp"
 
 namespace gridmerge::paper {

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 
-#include "gridmerge/evaluate/displacement.hpp"
+#include "evaluate/displacement.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 
 namespace gridmerge::paper {
+
+using namespace internal;
 
 namespace {
 

@@ -7,13 +7,15 @@
 #include <functional>
 #include <vector>
 
-#include "gridmerge/evaluate/displacement.hpp"
+#include "evaluate/displacement.hpp"
 #include "gridmerge/match/random_walk_match.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "runs.hpp"
 
 namespace gridmerge::paper {
+
+using namespace internal;
 
 namespace {
 

@@ -4,11 +4,13 @@
 #include <utility>
 
 #include "bindings.hpp"
-#include "gridmerge/evaluate/count.hpp"
-#include "gridmerge/evaluate/tables.hpp"
+#include "evaluate/count.hpp"
+#include "evaluate/tables.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
+
+using namespace internal;
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "bindings.hpp"
-#include "gridmerge/grid/parallel.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/search/random_walk.hpp"
 #include "gridmerge/similarity/distance_map.hpp"
 #include "gridmerge/similarity/lattice.hpp"
@@ -14,6 +14,8 @@
 #include "worker.hpp"
 
 namespace gridmerge::python {
+
+using namespace internal;
 
 namespace {
 

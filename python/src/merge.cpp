@@ -7,10 +7,12 @@
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/preview.hpp"
-#include "gridmerge/report/wording.hpp"
+#include "report/wording.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
+
+using namespace internal;
 
 namespace {
 

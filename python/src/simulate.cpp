@@ -8,10 +8,12 @@
 #include <utility>
 
 #include "bindings.hpp"
-#include "gridmerge/evaluate/dataset.hpp"
+#include "evaluate/dataset.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
+
+using namespace internal;
 
 namespace {
 

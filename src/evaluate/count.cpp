@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/evaluate/count.hpp"
+#include "evaluate/count.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -141,4 +141,4 @@ SetOutcome judge_set(const TrueSet& set, const std::vector<KnownMoments>& moment
   return outcome;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

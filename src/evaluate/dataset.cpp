@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/evaluate/dataset.hpp"
+#include "evaluate/dataset.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "gridmerge/evaluate/truth.hpp"
 #include "io/add_map.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -77,4 +77,4 @@ void write_dataset(const fs::path& directory, const Simulation& simulation,
   files.commit();
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,10 +5,12 @@
 #include <set>
 #include <stdexcept>
 
-#include "gridmerge/evaluate/count.hpp"
-#include "map_cache.hpp"
+#include "evaluate/count.hpp"
+#include "evaluate/map_cache.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

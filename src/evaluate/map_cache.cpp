@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "map_cache.hpp"
+#include "evaluate/map_cache.hpp"
 
 #include <algorithm>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 std::size_t size_in_bytes(const EvaluatedMap& map) {
@@ -42,4 +42,4 @@ EvaluatedMap MapCache::read(const std::filesystem::path& path) {
   return {std::move(loaded.grid), moments};
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
-#include "gridmerge/evaluate/displacement.hpp"
+#include "evaluate/displacement.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/io/map_file.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 struct EvaluatedMap {
   OccupancyGrid grid;
@@ -46,4 +46,4 @@ class MapCache {
   std::function<void(const std::string&)> warn_;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

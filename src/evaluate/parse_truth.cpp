@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "parse_truth.hpp"
+#include "evaluate/parse_truth.hpp"
 
 #include <algorithm>
 
-#include "gridmerge/io/text_table.hpp"
+#include "io/text_table.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -91,4 +91,4 @@ std::vector<TrueSet> parse_sets(const std::filesystem::path& path, std::string_v
   return sets;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

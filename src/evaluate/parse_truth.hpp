@@ -7,11 +7,11 @@
 
 #include "gridmerge/evaluate/truth.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// The readers of truth.hpp, given the text of the file at `path`. They throw FileError.
 std::vector<TruePair> parse_pairs(const std::filesystem::path& path, std::string_view text);
 std::vector<NegativePair> parse_negatives(const std::filesystem::path& path, std::string_view text);
 std::vector<TrueSet> parse_sets(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/evaluate/tables.hpp"
+#include "evaluate/tables.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,10 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "gridmerge/evaluate/count.hpp"
+#include "evaluate/count.hpp"
+#include "match/verdict.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -165,4 +166,4 @@ std::string evaluation_json(const Evaluation& evaluation) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

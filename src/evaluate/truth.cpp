@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/evaluate/truth.hpp"
 
+#include "evaluate/parse_truth.hpp"
 #include "io/file_reader.hpp"
-#include "parse_truth.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/grid/cancellation.hpp"
 
-#include "cancellation_scope.hpp"
+#include "grid/cancellation_scope.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 thread_local const std::atomic<bool>* current = nullptr;
 }  // namespace
+
+namespace internal {
 
 const std::atomic<bool>* current_cancellation() {
   return current;
@@ -20,6 +24,8 @@ CancellationScope::CancellationScope(const std::atomic<bool>* flag) : outer_(cur
 CancellationScope::~CancellationScope() {
   current = outer_;
 }
+
+}  // namespace internal
 
 Cancelled::Cancelled() : std::runtime_error("the work was cancelled") {}
 

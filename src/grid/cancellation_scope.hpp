@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// The flag that this thread's work is stopped by; null where there is none.
 const std::atomic<bool>* current_cancellation();
@@ -21,4 +21,4 @@ class CancellationScope {
   const std::atomic<bool>* outer_;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

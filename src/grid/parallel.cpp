@@ -4,7 +4,7 @@
 // and would call all of it a race. The atomics below say the same order once more, in a language that it
 // understands, and cmake/tsan.supp passes over this file and oneTBB's own. What is left to report is a race
 // of ours.
-#include "gridmerge/grid/parallel.hpp"
+#include "grid/parallel.hpp"
 
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
@@ -13,10 +13,10 @@
 #include <algorithm>
 #include <atomic>
 
-#include "cancellation_scope.hpp"
+#include "grid/cancellation_scope.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 void with_threads(int threads, const std::function<void()>& work) {
   std::atomic<int> begun{0};
@@ -50,4 +50,4 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
   (void)ended.load(std::memory_order_acquire);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

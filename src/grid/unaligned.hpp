@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 // Vectors (GCC's and Clang's `vector_size`) from and to memory that need not be aligned for them; one
 // instruction each. Never through a pointer to a vector type with an `aligned` of its own: Clang forgets that
@@ -20,4 +20,4 @@ inline __attribute__((always_inline)) void store(const Vector& vector, Value* to
   std::memcpy(to, &vector, sizeof vector);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

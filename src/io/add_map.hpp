@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "file_set.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "io/file_set.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Adds the files that save_map() writes, the image first, to a set that the map belongs to. `yaml_name` has
 /// no folder. Throws as save_map().
@@ -15,4 +15,4 @@ void add_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::p
 /// The same of save_probability_map().
 void add_probability_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/io/atomic_file.hpp"
+#include "io/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -14,11 +14,11 @@
 #include <system_error>
 #include <utility>
 
-#include "destination.hpp"
-#include "directory_names.hpp"
-#include "durable.hpp"
+#include "io/destination.hpp"
+#include "io/directory_names.hpp"
+#include "io/durable.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -115,4 +115,4 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
   StagedFile(path, bytes).commit();
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

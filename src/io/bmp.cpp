@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A reader of our own: what map editors write is a header and rows of bytes. Debian's one small library for
 // it (libnsbmp) is in few other systems' packages.
-#include "bmp.hpp"
+#include "io/bmp.hpp"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include <cstdlib>
 #include <vector>
 
-#include "parse_error.hpp"
+#include "io/parse_error.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -162,4 +162,4 @@ MapImage decode_bmp(std::string_view text, std::size_t max_pixels) {
   return image;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

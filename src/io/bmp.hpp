@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <string_view>
 
-#include "image.hpp"
+#include "io/image.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Whether the bytes begin as a Windows bitmap does. 18 bytes suffice.
 bool looks_like_bmp(std::string_view bytes);
@@ -20,4 +20,4 @@ ImageSize bmp_size(std::string_view head);
 /// data is missing, or a pixel has no entry in the palette. O(bytes).
 MapImage decode_bmp(std::string_view bytes, std::size_t max_pixels);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "destination.hpp"
+#include "io/destination.hpp"
 
 #include <system_error>
 
 #include "gridmerge/io/file_error.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 void check_destination(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -16,4 +16,4 @@ void check_destination(const std::filesystem::path& path) {
     throw FileError(path, "cannot be written: it is not a regular file");
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "directory_lock.hpp"
+#include "io/directory_lock.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -10,11 +10,11 @@
 #include <chrono>
 #include <thread>
 
-#include "durable.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/io/file_error.hpp"
+#include "io/durable.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -58,4 +58,4 @@ DirectoryLock::~DirectoryLock() {
   ::close(descriptor_);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "made_directories.hpp"
+#include "io/made_directories.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// A directory that one writer at a time has to itself. The lock is a file, `.gridmerge.lock`, which goes
 /// with this object; the system frees it when the program dies, whatever way. On a file system without locks
@@ -27,4 +27,4 @@ class DirectoryLock {
   int descriptor_;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

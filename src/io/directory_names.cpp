@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "directory_names.hpp"
+#include "io/directory_names.hpp"
 
 #include <dirent.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <memory>
 #include <string_view>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace fs = std::filesystem;
 
@@ -57,4 +57,4 @@ void remove_directory(const fs::path& directory) {
   if (error) throw fs::filesystem_error("cannot be removed", directory, error);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <vector>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 // What the iterators of <filesystem> are for: those of libstdc++ end the program when there is no memory for
 // a name.
@@ -19,4 +19,4 @@ std::vector<std::string> names_in(const std::filesystem::path& directory, std::e
 /// std::filesystem::filesystem_error.
 void remove_directory(const std::filesystem::path& directory);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

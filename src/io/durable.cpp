@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "durable.hpp"
+#include "io/durable.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <system_error>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -45,4 +45,4 @@ int flush_path(const std::filesystem::path& path) {
   return error;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// The system's words for an errno.
 std::string describe_errno(int error);
@@ -16,4 +16,4 @@ int write_and_flush(int descriptor, std::string_view bytes);
 /// Flushes a file, or what a directory lists, so that a rename in it outlives a power cut. 0, or an errno.
 int flush_path(const std::filesystem::path& path);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

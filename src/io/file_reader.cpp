@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "file_reader.hpp"
+#include "io/file_reader.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/io/file_error.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -70,4 +70,4 @@ const std::string& FileReader::read_all(std::size_t max_bytes) {
   return bytes_;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Who names a file. A user may name a pipe; where a file names one, the program would wait for what may
 /// never come.
@@ -34,4 +34,4 @@ class FileReader {
   std::string bytes_;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

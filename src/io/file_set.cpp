@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "file_set.hpp"
+#include "io/file_set.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -11,13 +11,13 @@
 #include <utility>
 #include <vector>
 
-#include "destination.hpp"
-#include "directory_names.hpp"
-#include "durable.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/io/file_error.hpp"
+#include "io/destination.hpp"
+#include "io/directory_names.hpp"
+#include "io/durable.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -168,4 +168,4 @@ void FileSet::replace_one_by_one() {
   flush(directory_, directory_);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "directory_lock.hpp"
+#include "io/directory_lock.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Files of one directory that belong together and are replaced together. At every point of time, and so
 /// after a kill at any point, who opens them by name finds all old ones or all new ones; other files of the
@@ -58,4 +58,4 @@ class FileSet {
   std::vector<std::string> removed_;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

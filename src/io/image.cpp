@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image.hpp"
+#include "io/image.hpp"
 
 #include <fmt/format.h>
 
@@ -8,13 +8,13 @@
 #include <optional>
 #include <stdexcept>
 
-#include "bmp.hpp"
-#include "jpeg.hpp"
-#include "parse_error.hpp"
-#include "png_map.hpp"
-#include "pnm.hpp"
+#include "io/bmp.hpp"
+#include "io/jpeg.hpp"
+#include "io/parse_error.hpp"
+#include "io/png_map.hpp"
+#include "io/pnm.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -88,4 +88,4 @@ void check_image_size(std::uint64_t width, std::uint64_t height, std::size_t max
   }
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// What a map needs of a picture, top row first. A pixel's lightness is `lightness / white`, exactly:
 /// integers, so that every value can be looked up and thresholds are never missed by a rounding.
@@ -49,4 +49,4 @@ MapImage decode_image(std::string_view bytes, std::size_t max_pixels);
 /// Throws ParseError unless width and height are positive and width * height <= max_pixels.
 void check_image_size(std::uint64_t width, std::uint64_t height, std::size_t max_pixels);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

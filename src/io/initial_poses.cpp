@@ -5,10 +5,12 @@
 #include <string>
 #include <unordered_set>
 
-#include "file_reader.hpp"
-#include "gridmerge/io/text_table.hpp"
+#include "io/file_reader.hpp"
+#include "io/text_table.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

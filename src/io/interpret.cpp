@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "interpret.hpp"
+#include "io/interpret.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "gridmerge/grid/resample.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -221,4 +221,4 @@ LoadedMap interpret(const MapYaml& yaml, const MapImage& image, bool literal_thr
   return map;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

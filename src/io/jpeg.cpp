@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "jpeg.hpp"
+#include "io/jpeg.hpp"
 
 #include <fmt/format.h>
 
@@ -13,9 +13,9 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
-#include "parse_error.hpp"
+#include "io/parse_error.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -142,4 +142,4 @@ MapImage decode_jpeg(std::string_view bytes, std::size_t max_pixels) {
   return image;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string_view>
 
-#include "image.hpp"
+#include "io/image.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Whether the bytes begin as a JPEG does.
 bool looks_like_jpeg(std::string_view bytes);
@@ -20,4 +20,4 @@ std::optional<ImageSize> jpeg_size(std::string_view head);
 /// lets a small file stand for a large image (arithmetic coding, hundreds of scans). O(pixels).
 MapImage decode_jpeg(std::string_view bytes, std::size_t max_pixels);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "made_directories.hpp"
+#include "io/made_directories.hpp"
 
 #include <unistd.h>
 
@@ -7,7 +7,7 @@
 
 #include "gridmerge/io/file_error.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace fs = std::filesystem;
 
@@ -30,4 +30,4 @@ void MadeDirectories::remove_empty() const {
   for (const fs::path& part : made_) ::rmdir(part.c_str());
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// A directory, made if need be with its parents. What was made is removed with this object unless there is
 /// something in it by then, so that work that fails leaves no empty directory behind.
@@ -22,4 +22,4 @@ class MadeDirectories {
   std::vector<std::filesystem::path> made_;  // the innermost first
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

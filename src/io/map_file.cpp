@@ -10,15 +10,17 @@
 #include <system_error>
 #include <utility>
 
-#include "add_map.hpp"
-#include "file_reader.hpp"
-#include "image.hpp"
-#include "interpret.hpp"
-#include "map_yaml.hpp"
-#include "parse_error.hpp"
-#include "pnm.hpp"
+#include "io/add_map.hpp"
+#include "io/file_reader.hpp"
+#include "io/image.hpp"
+#include "io/interpret.hpp"
+#include "io/map_yaml.hpp"
+#include "io/parse_error.hpp"
+#include "io/pnm.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 
@@ -200,12 +202,12 @@ void save_probability_map(const OccupancyGrid& grid, const std::filesystem::path
        [&](FileSet& files, const std::filesystem::path& name) { add_probability_map(files, grid, name); });
 }
 
-void add_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name) {
+void internal::add_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name) {
   validate(grid);
   add_files(files, grid, MapMode::trinary, to_pixels(grid), yaml_name);
 }
 
-void add_probability_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name) {
+void internal::add_probability_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name) {
   validate(grid);
   if (grid.probability.empty()) throw std::invalid_argument("the map has no probabilities");
   add_files(files, grid, MapMode::raw, to_percentages(grid), yaml_name);

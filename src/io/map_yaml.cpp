@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "map_yaml.hpp"
+#include "io/map_yaml.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
@@ -13,10 +13,10 @@
 #include <string>
 
 #include "gridmerge/io/map_file.hpp"
-#include "number.hpp"
-#include "parse_error.hpp"
+#include "io/number.hpp"
+#include "io/parse_error.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -234,4 +234,4 @@ void check_resolution(double resolution) {
   }
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

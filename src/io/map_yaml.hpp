@@ -8,7 +8,7 @@
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/io/map_file.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// How pixels become cells; see load_map.
 enum class MapMode { trinary, scale, raw };
@@ -35,4 +35,4 @@ std::string format_map_yaml(const MapYaml& map);
 /// Throws ParseError unless a map of `resolution` [m/cell] is within [kMinResolution, kMaxResolution].
 void check_resolution(double resolution);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

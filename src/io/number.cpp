@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "number.hpp"
+#include "io/number.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 std::optional<double> parse_number(std::string_view text) {
   if (text.starts_with('+')) {
@@ -28,4 +28,4 @@ std::string format_number(double value) {
   return text;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// The finite number that `text` is, all of it, in any locale: "0.05", "-3", "+1e-2", ".5".
 std::optional<double> parse_number(std::string_view text);
@@ -14,4 +14,4 @@ std::optional<double> parse_number(std::string_view text);
 /// without which YAML 1.1 readers take it for an integer or for text.
 std::string format_number(double value);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Bytes that are not what they should be: the cause alone. Parsers see no file names; load_map adds them.
 class ParseError : public std::runtime_error {
@@ -11,4 +11,4 @@ class ParseError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/io/png.hpp"
+#include "io/png.hpp"
 
 #include <fmt/format.h>
 #include <png.h>
@@ -14,11 +14,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "image.hpp"
-#include "parse_error.hpp"
-#include "png_rows.hpp"
+#include "io/image.hpp"
+#include "io/parse_error.hpp"
+#include "io/png_rows.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -171,4 +171,4 @@ std::string encode_png(const PngImage& image) {
   return bytes;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "png_map.hpp"
+#include "io/png_map.hpp"
 
 #include <cstdint>
 
-#include "png_rows.hpp"
+#include "io/png_rows.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -74,4 +74,4 @@ MapImage decode_png_map(std::string_view bytes, std::size_t max_pixels) {
   return image;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string_view>
 
-#include "image.hpp"
+#include "io/image.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Whether the bytes begin as a PNG does.
 bool looks_like_png(std::string_view bytes);
@@ -19,4 +19,4 @@ std::optional<ImageSize> png_size(std::string_view head);
 /// and a few rows.
 MapImage decode_png_map(std::string_view bytes, std::size_t max_pixels);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string_view>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// What the pixels of a PNG become: palettes RGB, 1, 2 and 4 bits 8, transparent colours an alpha channel.
 struct PngFormat {
@@ -33,4 +33,4 @@ void read_png(std::string_view bytes, std::size_t max_pixels,
               const std::function<void(const PngFormat&)>& begin,
               const std::function<void(const PngRow&)>& row);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // A reader of our own: the formats are a few lines, while Debian's readers of them are either netpbm's
 // library, which ends the process on bad input, or image suites many times the size of this project.
-#include "pnm.hpp"
+#include "io/pnm.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
 
-#include "parse_error.hpp"
+#include "io/parse_error.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -161,4 +161,4 @@ std::string encode_pgm(int width, int height, std::span<const std::uint8_t> valu
   return bytes;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "image.hpp"
+#include "io/image.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Whether the bytes begin as a PGM (P2 plain, P5 raw) or PPM (P3, P6) does.
 bool looks_like_pnm(std::string_view bytes);
@@ -26,4 +26,4 @@ MapImage decode_pnm(std::string_view bytes, std::size_t max_pixels);
 /// The bytes of a raw 8-bit PGM of `width` x `height` values, top row first.
 std::string encode_pgm(int width, int height, std::span<const std::uint8_t> values);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

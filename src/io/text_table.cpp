@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/io/text_table.hpp"
+#include "io/text_table.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -9,7 +9,7 @@
 
 #include "gridmerge/io/file_error.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -107,4 +107,4 @@ void TextTable::fail_at_line(std::size_t line, const std::string& cause) const {
   throw FileError(path_.string() + ":" + std::to_string(line), cause);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

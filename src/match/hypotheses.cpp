@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hypotheses.hpp"
+#include "match/hypotheses.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "gridmerge/similarity/wall_lines.hpp"
+#include "similarity/wall_lines.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -255,4 +255,4 @@ void weigh(std::vector<Hypothesis>& hypotheses, const ComparedMaps& maps) {
                    [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -7,13 +7,13 @@
 
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/match/prepared_map.hpp"
-#include "gridmerge/match/refine.hpp"
-#include "gridmerge/match/verdict.hpp"
-#include "gridmerge/match/walls_met.hpp"
-#include "gridmerge/search/exhaustive.hpp"
-#include "gridmerge/similarity/agreement.hpp"
+#include "match/refine.hpp"
+#include "match/verdict.hpp"
+#include "match/walls_met.hpp"
+#include "search/exhaustive.hpp"
+#include "similarity/agreement.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Two maps in the cells in which they are compared. Not owned.
 struct ComparedMaps {
@@ -92,4 +92,4 @@ void weigh(std::vector<Hypothesis>& hypotheses, const ComparedMaps& maps);
 /// The figures of each.
 std::vector<PoseFigures> figures_of(const std::vector<Hypothesis>& hypotheses);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "looks.hpp"
+#include "match/looks.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "gridmerge/grid/parallel.hpp"
-#include "gridmerge/search/thorough.hpp"
+#include "grid/parallel.hpp"
+#include "search/thorough.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -139,4 +139,4 @@ std::vector<Hypothesis> find_hypotheses(const ComparedMaps& maps, const LookOpti
   return hypotheses;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -4,9 +4,9 @@
 #include <functional>
 #include <vector>
 
-#include "hypotheses.hpp"
+#include "match/hypotheses.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 struct LookOptions {
   SearchMethod search = SearchMethod::exhaustive;
@@ -18,4 +18,4 @@ struct LookOptions {
 /// without those that on the whole speak against themselves. Runs in the calling TBB arena.
 std::vector<Hypothesis> find_hypotheses(const ComparedMaps& maps, const LookOptions& options = {});
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -7,10 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "gridmerge/grid/parallel.hpp"
-#include "looks.hpp"
+#include "grid/parallel.hpp"
+#include "match/looks.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 
@@ -62,16 +64,6 @@ MatchResult walk(const OccupancyGrid& fixed, const OccupancyGrid& moving, const 
 }
 
 }  // namespace
-
-MatchResult inverse(MatchResult result) {
-  result.T_fixed_moving = inverse(result.T_fixed_moving);
-  for (Hypothesis& hypothesis : result.hypotheses) {
-    hypothesis.T_fixed_moving = inverse(hypothesis.T_fixed_moving);
-    double& free_direction = hypothesis.figures.free_direction;
-    free_direction = undirected_angle(free_direction + hypothesis.T_fixed_moving.theta);
-  }
-  return result;
-}
 
 MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options) {
   validate(options);

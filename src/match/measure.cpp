@@ -5,12 +5,14 @@
 #include <stdexcept>
 #include <string>
 
-#include "../similarity/lattice_frames.hpp"
-#include "gridmerge/grid/parallel.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/match/refine_pose.hpp"
 #include "gridmerge/similarity/lattice.hpp"
+#include "similarity/lattice_frames.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -6,8 +6,11 @@
 #include <utility>
 
 #include "gridmerge/grid/resample.hpp"
+#include "similarity/wall_map.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 
@@ -56,6 +59,8 @@ PreparedMap::PreparedMap(const OccupancyGrid& grid) {
   known_ = in_canonical_orientation(crop_to_known(without_painted(crop_to_known(grid))));
   counts_ = count_cells(known_);
 }
+
+PreparedMap::~PreparedMap() = default;
 
 const WallMap& PreparedMap::walls(double cell) const {
   const std::lock_guard lock(drawing_);

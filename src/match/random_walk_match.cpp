@@ -11,11 +11,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "gridmerge/grid/parallel.hpp"
-#include "gridmerge/similarity/agreement.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/similarity/lattice.hpp"
+#include "similarity/agreement.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/refine.hpp"
+#include "match/refine.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "grid/parallel.hpp"
 #include "gridmerge/grid/cancellation.hpp"
-#include "gridmerge/grid/parallel.hpp"
-#include "gridmerge/search/thorough.hpp"
+#include "search/thorough.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -173,4 +173,4 @@ std::vector<ScoredPose> refine(const WallEvidence& all_points, const WallMap& mo
   return poses;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <vector>
 
-#include "../similarity/lattice_frames.hpp"
-#include "looks.hpp"
+#include "match/looks.hpp"
+#include "similarity/lattice_frames.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/scale.hpp"
+#include "match/scale.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -40,4 +40,4 @@ std::optional<ScaleFound> find_scale(const OccupancyGrid& fixed, const Occupancy
   return best;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/search_method.hpp"
-
 #include <array>
 #include <cstddef>
+
+#include "gridmerge/match/match.hpp"
 
 namespace gridmerge {
 

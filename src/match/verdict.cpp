@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/verdict.hpp"
+#include "match/verdict.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "verdict_model.hpp"
+#include "match/verdict_model.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -218,28 +218,4 @@ const char* name_of(TermKind kind) {
   return "excuse";
 }
 
-const char* name_of(Verdict verdict) {
-  return verdict == Verdict::accepted ? "accepted" : "refused";
-}
-
-const char* name_of(Reason reason) {
-  switch (reason) {
-    case Reason::nothing_to_compare:
-      return "nothing_to_compare";
-    case Reason::ambiguous:
-      return "ambiguous";
-    case Reason::contradiction:
-      return "contradiction";
-    case Reason::too_little_overlap:
-      return "too_little_overlap";
-    case Reason::several:
-      return "several";
-    case Reason::contradicts_others:
-      return "contradicts_others";
-    case Reason::none:
-      break;
-  }
-  return "none";
-}
-
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

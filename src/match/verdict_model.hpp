@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// A term of verdict_terms() or rank_terms(), and what it weighs.
 struct VerdictWeight {
@@ -41,4 +41,4 @@ inline constexpr std::array kRankWeights{
 };
 // clang-format on
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

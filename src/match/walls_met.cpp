@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/walls_met.hpp"
+#include "match/walls_met.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "gridmerge/grid/parallel.hpp"
-#include "gridmerge/match/refine.hpp"
-#include "gridmerge/similarity/evidence.hpp"
+#include "grid/parallel.hpp"
+#include "match/refine.hpp"
+#include "similarity/evidence.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -250,4 +250,4 @@ WallsMet measure_walls_met(const WallMap& fixed, const WallPatches& moving, cons
           share(local.things_met, local.seen_things)};
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "alignment.hpp"
+#include "merge/alignment.hpp"
 
 #include <algorithm>
 #include <memory>
 #include <set>
 
 #include "gridmerge/match/match.hpp"
-#include "pose_problem.hpp"
-#include "wall_error.hpp"
+#include "merge/pose_problem.hpp"
+#include "merge/wall_error.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -101,4 +101,4 @@ std::vector<std::optional<PoseDeviation>> find_deviations(const std::vector<Alig
   return deviations;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "gridmerge/match/prepared_map.hpp"
-#include "gridmerge/merge/arrangement.hpp"
 #include "gridmerge/merge/known_pose.hpp"
 #include "gridmerge/merge/merge_result.hpp"
-#include "pose_graph.hpp"
+#include "merge/arrangement.hpp"
+#include "merge/pose_graph.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// A map whose pose is to be adjusted together with those of others.
 struct AlignedMap {
@@ -37,4 +37,4 @@ std::vector<std::optional<PoseDeviation>> find_deviations(const std::vector<Alig
                                                           const std::vector<RelativePose>& measured,
                                                           std::size_t held);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

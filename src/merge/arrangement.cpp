@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/arrangement.hpp"
+#include "merge/arrangement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "gridmerge/grid/parallel.hpp"
-#include "join_weights.hpp"
+#include "grid/parallel.hpp"
+#include "merge/join_weights.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -344,4 +344,4 @@ Arrangement arrange_within(const ArrangementProblem& problem, double accept_prob
   return arrangement;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "candidates.hpp"
+#include "merge/candidates.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -28,4 +28,4 @@ std::vector<CandidateJoin> candidate_joins(const MatchResult& match) {
   return candidates;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

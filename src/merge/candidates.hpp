@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/merge/arrangement.hpp"
+#include "merge/arrangement.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// How many hypotheses of a pair are kept for the arrangement.
 inline constexpr std::size_t kKeptHypotheses = 12;
@@ -15,4 +15,4 @@ inline constexpr std::size_t kKeptHypotheses = 12;
 /// than one in a thousand are left out.
 std::vector<CandidateJoin> candidate_joins(const MatchResult& match);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

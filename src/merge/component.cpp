@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "component.hpp"
+#include "merge/component.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "alignment.hpp"
-#include "joins.hpp"
+#include "merge/alignment.hpp"
+#include "merge/joins.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -66,4 +66,4 @@ Component make_component(const NodeGroup& group, const ArrangementProblem& probl
   return component;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "gridmerge/match/prepared_map.hpp"
-#include "gridmerge/merge/arrangement.hpp"
 #include "gridmerge/merge/known_pose.hpp"
 #include "gridmerge/merge/merge_result.hpp"
+#include "merge/arrangement.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// All maps of a merge in one order, whatever is known of each.
 struct MergeInputs {
@@ -24,4 +24,4 @@ struct MergeInputs {
 Component make_component(const NodeGroup& group, const ArrangementProblem& problem,
                          const Arrangement& arrangement, const MergeInputs& inputs, double resolution);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "copies.hpp"
+#include "merge/copies.hpp"
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
 #include "gridmerge/merge/fuse.hpp"
-#include "joins.hpp"
+#include "merge/joins.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -127,4 +127,4 @@ void add_copies(const std::vector<Copy>& copies, const std::vector<const Occupan
   }
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

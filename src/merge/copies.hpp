@@ -8,7 +8,7 @@
 #include "gridmerge/match/prepared_map.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// A map that holds the same cells as another input: given twice, it counts once.
 struct Copy {
@@ -29,4 +29,4 @@ SE2 between_copies(const PreparedMap& a, const PreparedMap& b);
 void add_copies(const std::vector<Copy>& copies, const std::vector<const OccupancyGrid*>& grids,
                 double resolution, MergeResult& result);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/coverage.hpp"
+#include "merge/coverage.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "gridmerge/grid/cancellation.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -97,4 +97,4 @@ InCommon Coverage::in_common(const Coverage& other, const SE2& T_this_other, con
   return common;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

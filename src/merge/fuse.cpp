@@ -8,8 +8,11 @@
 
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/similarity/lattice.hpp"
+#include "merge/log_odds.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

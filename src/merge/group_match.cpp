@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "group_match.hpp"
+#include "merge/group_match.hpp"
 
 #include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "candidates.hpp"
-#include "gridmerge/grid/parallel.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/merge/fuse.hpp"
-#include "gridmerge/similarity/agreement.hpp"
-#include "join_weights.hpp"
-#include "joins.hpp"
+#include "merge/candidates.hpp"
+#include "merge/join_weights.hpp"
+#include "merge/joins.hpp"
+#include "similarity/agreement.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -121,4 +121,4 @@ ArrangementProblem GroupMatches::heard(const ArrangementProblem& problem, const 
   return next;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,10 +5,10 @@
 #include <map>
 #include <vector>
 
-#include "component.hpp"
 #include "gridmerge/match/match.hpp"
+#include "merge/component.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Matches maps that were left alone with what a whole group has seen: a map may share little with each of
 /// them, and much with all.
@@ -36,4 +36,4 @@ class GroupMatches {
   std::map<Key, MatchResult> kept_;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "join_weights.hpp"
+#include "merge/join_weights.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <numeric>
 #include <utility>
 
-#include "pose_graph.hpp"
+#include "merge/pose_graph.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -257,4 +257,4 @@ std::pair<NodeGroup, NodeGroup> taken_out(const NodeGroup& group, std::size_t pl
   return {rest, {group[place]}};
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "gridmerge/merge/arrangement.hpp"
+#include "merge/arrangement.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 using NodeGroups = std::vector<NodeGroup>;
 
@@ -119,4 +119,4 @@ class JoinWeights {
 /// A group without one of its maps, and that map, both in the group's frame.
 std::pair<NodeGroup, NodeGroup> taken_out(const NodeGroup& group, std::size_t place);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "joins.hpp"
+#include "merge/joins.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,23 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace gridmerge {
-
-const char* name_of(JoinOutcome outcome) {
-  switch (outcome) {
-    case JoinOutcome::accepted:
-      return "accepted";
-    case JoinOutcome::rescued:
-      return "rescued";
-    case JoinOutcome::rejected:
-      return "rejected";
-    case JoinOutcome::known:
-      return "known";
-    case JoinOutcome::refused:
-      break;
-  }
-  return "refused";
-}
+namespace gridmerge::internal {
 
 void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution) {
   if (!std::isfinite(resolution) || resolution < 0.0) {
@@ -99,4 +83,4 @@ Reason why_left_out(const std::vector<Join>& joins, std::size_t map) {
   return nearest == nullptr ? Reason::nothing_to_compare : nearest->reason();
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

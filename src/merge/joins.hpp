@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "gridmerge/merge/arrangement.hpp"
 #include "gridmerge/merge/merge_result.hpp"
+#include "merge/arrangement.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Throws std::invalid_argument for an invalid map, naming it by its index, or an invalid resolution of the
 /// merged maps.
@@ -34,4 +34,4 @@ Join inverted(Join join);
 /// Why a map joined nothing: the reason of the refused join of it that was most probable.
 Reason why_left_out(const std::vector<Join>& joins, std::size_t map);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

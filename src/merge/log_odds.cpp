@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/log_odds.hpp"
+#include "merge/log_odds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include "gridmerge/grid/cancellation.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -275,4 +275,4 @@ LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice) {
   return patch;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

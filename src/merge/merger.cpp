@@ -10,21 +10,23 @@
 #include <string>
 #include <utility>
 
-#include "candidates.hpp"
-#include "component.hpp"
-#include "copies.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/grid/cancellation.hpp"
-#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/prepared_map.hpp"
-#include "gridmerge/merge/arrangement.hpp"
-#include "gridmerge/merge/coverage.hpp"
-#include "gridmerge/similarity/agreement.hpp"
-#include "group_match.hpp"
-#include "joins.hpp"
-#include "prior.hpp"
+#include "merge/arrangement.hpp"
+#include "merge/candidates.hpp"
+#include "merge/component.hpp"
+#include "merge/copies.hpp"
+#include "merge/coverage.hpp"
+#include "merge/group_match.hpp"
+#include "merge/joins.hpp"
+#include "merge/prior.hpp"
+#include "similarity/agreement.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

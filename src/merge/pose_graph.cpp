@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pose_graph.hpp"
+#include "merge/pose_graph.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pose_problem.hpp"
+#include "merge/pose_problem.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 RelativePose measured_between(std::size_t fixed, std::size_t moving, const SE2& T_fixed_moving,
                               const MapExtent& fixed_extent, const MapExtent& moving_extent, double sd) {
@@ -29,4 +29,4 @@ std::vector<SE2> adjust_poses(const std::vector<AdjustablePose>& poses,
   return adjusted;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "gridmerge/grid/se2.hpp"
-#include "gridmerge/merge/coverage.hpp"
+#include "merge/coverage.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// What is measured between two poses.
 struct RelativePose {
@@ -35,4 +35,4 @@ struct AdjustablePose {
 std::vector<SE2> adjust_poses(const std::vector<AdjustablePose>& poses,
                               const std::vector<RelativePose>& measured);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

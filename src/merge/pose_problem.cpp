@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pose_problem.hpp"
+#include "merge/pose_problem.hpp"
 
 #include <ceres/covariance.h>
 
@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -117,4 +117,4 @@ std::vector<std::optional<PoseDeviation>> PoseProblem::deviations() {
   return deviations;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "gridmerge/merge/merge_result.hpp"
-#include "pose_graph.hpp"
+#include "merge/pose_graph.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Poses of frames in a common one, adjusted to what is measured between them (Ceres, robust least squares).
 ///
@@ -47,4 +47,4 @@ class PoseProblem {
   ceres::Problem problem_;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "prior.hpp"
+#include "merge/prior.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
 /// What it is worth to lie where it is known to, if that is known as well as a match tells a pose: as much as
 /// the most that two maps say by themselves.
 constexpr double kKnownNats = 6.0;
-constexpr double kFarthest = 1e7;  // [m]
-constexpr double kLeastDeviation = 1e-6;
 
 /// The odds of each candidate after those at known places have become likelier by so much, and the others
 /// less likely: with "none of these", which it leaves as it was, their probabilities are one whole. So the
@@ -40,17 +38,6 @@ void weigh_again(std::vector<CandidateJoin>& candidates, const std::vector<bool>
 }
 
 }  // namespace
-
-void validate(const KnownPose& known) {
-  const SE2& T = known.T_world_map;
-  if (!(std::abs(T.x) <= kFarthest && std::abs(T.y) <= kFarthest && std::isfinite(T.theta)))
-    throw std::invalid_argument("a known pose must be finite, and within 10000 km");
-  if (known.fixed) return;
-  const auto is_deviation = [](double sd) { return std::isfinite(sd) && sd >= kLeastDeviation; };
-  if (!is_deviation(known.sd_position) || !is_deviation(known.sd_theta))
-    throw std::invalid_argument(
-        "the standard deviations of a known pose must be at least 0.000001, unless it is fixed");
-}
 
 double sd_between(const KnownPose& fixed, const KnownPose& moving, const MapExtent& fixed_extent,
                   const MapExtent& moving_extent) {
@@ -95,4 +82,4 @@ void apply_known_poses(const KnownPose& fixed, const KnownPose& moving, const Ma
     there->log_odds = std::max(there->log_odds, nats);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "gridmerge/merge/arrangement.hpp"
 #include "gridmerge/merge/known_pose.hpp"
+#include "merge/arrangement.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// A true pose lies within so many standard deviations of what is known.
 inline constexpr double kDeviationsOfKnown = 3.0;
@@ -20,4 +20,4 @@ double sd_between(const KnownPose& fixed, const KnownPose& moving, const MapExte
 void apply_known_poses(const KnownPose& fixed, const KnownPose& moving, const MapExtent& fixed_extent,
                        const MapExtent& moving_extent, PairCandidates& pair);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

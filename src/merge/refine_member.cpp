@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/refine_member.hpp"
+#include "merge/refine_member.hpp"
 
 #include <stdexcept>
 #include <string>
 
 #include "gridmerge/merge/fuse.hpp"
-#include "joins.hpp"
+#include "merge/joins.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -38,4 +38,4 @@ RefinedPose refine_member(const std::vector<PlacedMap>& fixed, const PlacedMap& 
   return refined;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -6,9 +6,11 @@
 #include <set>
 #include <utility>
 
-#include "joins.hpp"
+#include "merge/joins.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "wall_error.hpp"
+#include "merge/wall_error.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "gridmerge/similarity/evidence.hpp"
+#include "similarity/evidence.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -90,4 +90,4 @@ bool WallError::Evaluate(const double* const* poses, double* residuals, double**
   return true;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "gridmerge/similarity/wall_map.hpp"
+#include "similarity/wall_map.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// How far the moving map's walls lie from the fixed map's, as residuals of both poses (x, y, theta).
 ///
@@ -39,4 +39,4 @@ class WallError : public ceres::CostFunction {
   double weight_;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

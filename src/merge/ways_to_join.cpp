@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "join_weights.hpp"
+#include "merge/join_weights.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -155,4 +155,4 @@ double JoinWeights::probability_of_lying_so(const NodeGroup& a, const NodeGroup&
   return ways.front().probability;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

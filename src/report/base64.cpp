@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base64.hpp"
+#include "report/base64.hpp"
 
 #include <algorithm>
 #include <cstdint>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 std::string to_base64(std::string_view bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -21,4 +21,4 @@ std::string to_base64(std::string_view bytes) {
   return text;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Base64 with padding (RFC 4648, section 4).
 std::string to_base64(std::string_view bytes);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "canvas.hpp"
+#include "report/canvas.hpp"
 
 #include <algorithm>
 #include <cstddef>
 
-#include "style.hpp"
+#include "report/style.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 constexpr std::size_t kChannels = 3;
@@ -70,4 +70,4 @@ void Canvas::blend(int x, int y, Colour colour, double share) {
   fill(x, y, 1, 1, blended);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -3,11 +3,11 @@
 
 #include <string_view>
 
-#include "font.hpp"
-#include "gridmerge/io/png.hpp"
 #include "gridmerge/report/preview.hpp"
+#include "io/png.hpp"
+#include "report/font.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// An RGB picture to draw on, in pixels from its upper left corner. What lies outside is cut off.
 class Canvas {
@@ -31,4 +31,4 @@ class Canvas {
   PngImage image_;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

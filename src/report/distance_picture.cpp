@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/distance_picture.hpp"
+#include "report/distance_picture.hpp"
 
 #include <algorithm>
 
-#include "canvas.hpp"
+#include "report/canvas.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -58,4 +58,4 @@ std::string distance_map_png(const DistanceMap& map) {
   return encode_png(canvas.image());
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

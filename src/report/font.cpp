@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "font.hpp"
+#include "report/font.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
 
-#include "font_characters.hpp"
-#include "font_picture.hpp"
-#include "gridmerge/io/png.hpp"
+#include "io/png.hpp"
+#include "report/font_characters.hpp"
+#include "report/font_picture.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -144,4 +144,4 @@ TextCoverage draw_text(std::string_view text, TextSize size) {
   return drawn;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -7,7 +7,7 @@
 
 #include "gridmerge/report/preview.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// How large a text is: the pixels of the font's picture in one pixel of the text.
 enum class TextSize : int {
@@ -40,4 +40,4 @@ struct TextCoverage {
 /// O(pixels).
 TextCoverage draw_text(std::string_view text, TextSize size);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

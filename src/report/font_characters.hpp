@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 struct CharacterRange {
   char32_t first;
@@ -15,4 +15,4 @@ struct CharacterRange {
 inline constexpr std::array<CharacterRange, 6> kFontCharacters{
     {{0x20, 0x7e}, {0xa0, 0x17f}, {0x391, 0x3c9}, {0x400, 0x45f}, {0x2026, 0x2026}, {0xfffd, 0xfffd}}};
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -3,9 +3,9 @@
 
 #include <string_view>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// The bytes of font.png; made from it when the project is built.
 extern const std::string_view kFontPicture;
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -3,9 +3,11 @@
 
 #include <utility>
 
-#include "json_values.hpp"
+#include "report/json_values.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

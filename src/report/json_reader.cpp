@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "json_reader.hpp"
+#include "report/json_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 JsonReader JsonReader::at(const char* key) const {
   if (!value_.is_object()) fail("is no object");
@@ -65,4 +65,4 @@ nlohmann::json parse_json(std::string_view text) {
   }
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

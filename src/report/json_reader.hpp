@@ -11,7 +11,7 @@
 
 #include "gridmerge/grid/se2.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Text that is not the JSON that was expected. The message names the place: "joins[2].transform.x is no
 /// number".
@@ -53,4 +53,4 @@ class JsonReader {
 /// The value of a text. Throws JsonError.
 nlohmann::json parse_json(std::string_view text);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "json_values.hpp"
+#include "report/json_values.hpp"
 
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 Json number_json(double value) {
   if (!std::isfinite(value))
@@ -72,4 +72,4 @@ std::string text_of(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

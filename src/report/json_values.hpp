@@ -9,7 +9,7 @@
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 // What all JSON outputs write in the same way. Numbers that are not finite throw std::invalid_argument.
 
@@ -42,4 +42,4 @@ Json deviation_json(const std::optional<PoseDeviation>& sd);
 /// As text; `indent` below 0 is one line. What is not UTF-8 becomes U+FFFD.
 std::string text_of(const Json& json, int indent);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "map_panel.hpp"
+#include "report/map_panel.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "style.hpp"
+#include "report/style.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -132,4 +132,4 @@ Canvas draw_panel(const MapPanel& panel, TextSize title) {
   return canvas;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "canvas.hpp"
-#include "gridmerge/merge/log_odds.hpp"
+#include "merge/log_odds.hpp"
+#include "report/canvas.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Maps that are drawn over each other in their colours, and how large.
 struct MapPanel {
@@ -34,4 +34,4 @@ Colour free_tint(Colour map);
 /// A cell that several maps know: so many call it free, so many occupied. The report page has the same rule.
 Colour shared_colour(std::uint32_t free, std::uint32_t occupied);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

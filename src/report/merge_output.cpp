@@ -15,13 +15,15 @@
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/report/json.hpp"
-#include "gridmerge/report/page.hpp"
 #include "gridmerge/report/preview.hpp"
 #include "io/add_map.hpp"
 #include "io/directory_names.hpp"
 #include "io/made_directories.hpp"
+#include "report/page.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -13,10 +13,12 @@
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/report/json.hpp"
 #include "io/file_reader.hpp"
-#include "json_reader.hpp"
-#include "json_values.hpp"
+#include "report/json_reader.hpp"
+#include "report/json_values.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 
@@ -54,6 +56,7 @@ class RecordReader {
     read_components(json.at("components"));
     read_joins(json.at("joins"));
     read_left_out(json);
+    if (json.has("open_ways")) read_open_ways(json.at("open_ways"));
     // Not in what earlier versions wrote, nor where the tree was asked for.
     if (json.has("expected_false_joins") && !json.at("expected_false_joins").is_null())
       record_.result.expected_false_joins = json.at("expected_false_joins").number_in(0.0, kInfinity);
@@ -230,6 +233,20 @@ class RecordReader {
       if (has_objects && reason.at("source").text() != record_.names[left_out[i]])
         reason.at("source").fail("does not go with left_out");
       record_.result.left_out_reasons.push_back(read_reason(has_objects ? reason.at("reason") : reason));
+    }
+  }
+
+  /// Not in what earlier versions wrote. Of equal maps the first.
+  void read_open_ways(const JsonReader& json) {
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      const JsonReader one = json.at(i);
+      OpenWay way;
+      way.fixed = map_at(one.at("fixed"));
+      way.moving = map_at(one.at("moving"));
+      if (way.fixed == way.moving) one.fail("is of a map and itself");
+      way.T_fixed_moving = one.at("transform").transform(kFarthest);
+      way.probability = share(one.at("probability"));
+      record_.result.open_ways.push_back(way);
     }
   }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/page.hpp"
+#include "report/page.hpp"
 
 #include <string_view>
 
-#include "page_data.hpp"
-#include "page_template.hpp"
+#include "report/page_data.hpp"
+#include "report/page_template.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -58,4 +58,4 @@ std::string live_report_page(const std::vector<std::string>& names, const std::v
   return assemble("'self'", data);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "page_data.hpp"
+#include "report/page_data.hpp"
 
 #include <fmt/format.h>
 
 #include <utility>
 
-#include "gridmerge/grid/parallel.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/preview.hpp"
-#include "gridmerge/report/shown_map.hpp"
-#include "gridmerge/report/wording.hpp"
+#include "gridmerge/version.hpp"
+#include "report/shown_map.hpp"
+#include "report/wording.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -96,9 +97,9 @@ Json page_data(const std::vector<std::string>& names, const std::vector<Occupanc
                         {"reason", name_of(reason)},
                         {"explanation", explain_left_out(result, i)}});
   }
-  return {{"version", GRIDMERGE_VERSION},  {"live", false},
+  return {{"version", kVersion},           {"live", false},
           {"maps", std::move(shown_maps)}, {"components", std::move(components)},
           {"joins", std::move(joins)},     {"left_out", std::move(left_out)}};
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -7,14 +7,16 @@
 #include <array>
 #include <cmath>
 
-#include "canvas.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/report/json.hpp"
-#include "map_panel.hpp"
-#include "short_names.hpp"
-#include "style.hpp"
+#include "report/canvas.hpp"
+#include "report/map_panel.hpp"
+#include "report/short_names.hpp"
+#include "report/style.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

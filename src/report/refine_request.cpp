@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/refine_request.hpp"
+#include "report/refine_request.hpp"
 
 #include <fmt/format.h>
 
 #include <set>
 #include <stdexcept>
 
-#include "json_reader.hpp"
-#include "json_values.hpp"
+#include "report/json_reader.hpp"
+#include "report/json_values.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -67,4 +67,4 @@ std::string refined_pose_json(const RefinedPose& pose) {
   return text_of(json, -1) + "\n";
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

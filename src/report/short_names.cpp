@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "short_names.hpp"
+#include "report/short_names.hpp"
 
 #include <algorithm>
 #include <cstddef>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -32,4 +32,4 @@ std::vector<std::string> short_names(const std::vector<std::string>& names) {
   return shortened;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/shown_map.hpp"
+#include "report/shown_map.hpp"
 
 #include <zlib.h>
 
@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "base64.hpp"
 #include "gridmerge/grid/resample.hpp"
+#include "report/base64.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -42,4 +42,4 @@ ShownMap show_map(const OccupancyGrid& grid) {
   return {known.width, known.height, known.resolution, known.origin, to_base64(deflated(known.cells))};
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

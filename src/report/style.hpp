@@ -6,7 +6,7 @@
 
 #include "gridmerge/report/preview.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// The colours of a preview beside the maps.
 struct Style {
@@ -23,4 +23,4 @@ inline Colour mix(Colour a, Colour b, double share) {
   return {channel(a.red, b.red), channel(a.green, b.green), channel(a.blue, b.blue)};
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

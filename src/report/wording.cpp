@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/wording.hpp"
+#include "report/wording.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 const char* explain_left_out(const MergeResult& result, std::size_t index) {
   switch (result.left_out_reasons.at(index)) {
@@ -24,4 +24,4 @@ const char* explain_left_out(const MergeResult& result, std::size_t index) {
   return "nothing speaks for it clearly enough";
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "correlate.hpp"
+#include "search/correlate.hpp"
 
 #include <algorithm>
 
-#include "../grid/multiversion.hpp"
-#include "../grid/unaligned.hpp"
+#include "grid/multiversion.hpp"
+#include "grid/unaligned.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -194,4 +194,4 @@ std::vector<ScoreBlock> correlate_where(const EvidenceImage& image, std::vector<
   return looked_at;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// An integer image, row-major.
 struct ScoreImage {
@@ -89,4 +89,4 @@ struct ScoreBlock {
 std::vector<ScoreBlock> correlate_where(const EvidenceImage& image, std::vector<Sample> samples,
                                         const ScoreImage& bounds, int least, ScoreImage& output);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

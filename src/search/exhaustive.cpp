@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/search/exhaustive.hpp"
+#include "search/exhaustive.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "correlate.hpp"
 #include "gridmerge/grid/cancellation.hpp"
-#include "gridmerge/similarity/evidence.hpp"
-#include "rotations.hpp"
-#include "search_frame.hpp"
+#include "search/correlate.hpp"
+#include "search/rotations.hpp"
+#include "search/search_frame.hpp"
+#include "similarity/evidence.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -103,4 +103,4 @@ std::vector<PoseCandidate> search_all_poses(const WallMap& fixed, const WallMap&
                           [&] { return PeakFinder(frame, walls, evidence, pooled); });
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

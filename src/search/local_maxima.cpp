@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "local_maxima.hpp"
+#include "search/local_maxima.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-#include "../grid/multiversion.hpp"
+#include "grid/multiversion.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::vector<LocalMaximum> find_local_maxima(const ScoreImage& scores, int column
   return maxima;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "correlate.hpp"
+#include "search/correlate.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 struct LocalMaximum {
   int x;
@@ -21,4 +21,4 @@ int find_maximum(const ScoreImage& scores, int columns);
 /// O(scores); vectorised.
 std::vector<LocalMaximum> find_local_maxima(const ScoreImage& scores, int columns, int floor);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -12,12 +12,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "../similarity/lattice_frames.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/grid/cancellation.hpp"
-#include "gridmerge/grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
+#include "similarity/lattice_frames.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -7,11 +7,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "gridmerge/grid/parallel.hpp"
-#include "gridmerge/search/exhaustive.hpp"
-#include "search_frame.hpp"
+#include "grid/parallel.hpp"
+#include "search/exhaustive.hpp"
+#include "search/search_frame.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 inline constexpr std::size_t kPilotStep = 8;  // every 8th rotation tells what the others have to reach
 
@@ -58,4 +58,4 @@ std::vector<PoseCandidate> search_rotations(const SearchFrame& frame, std::size_
   return candidates;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

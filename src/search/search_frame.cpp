@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "search_frame.hpp"
+#include "search/search_frame.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <string>
 #include <unordered_map>
 
-#include "local_maxima.hpp"
+#include "search/local_maxima.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -150,4 +150,4 @@ void resize(ScoreImage& scores, int columns, int rows) {
   scores.values.resize(static_cast<std::size_t>(scores.width) * scores.height);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -6,11 +6,11 @@
 #include <tuple>
 #include <vector>
 
-#include "correlate.hpp"
-#include "gridmerge/search/exhaustive.hpp"
-#include "gridmerge/similarity/wall_map.hpp"
+#include "search/correlate.hpp"
+#include "search/exhaustive.hpp"
+#include "similarity/wall_map.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// A local maximum of a search's score, in steps of the search.
 struct Peak {
@@ -74,4 +74,4 @@ std::vector<Peak> together(const std::vector<std::vector<Peak>>& by_rotation);
 /// Fits `columns` and `rows` of scores, the width rounded up to whole blocks.
 void resize(ScoreImage& scores, int columns, int rows);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/search/thorough.hpp"
+#include "search/thorough.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,13 +7,13 @@
 #include <cstdint>
 #include <utility>
 
-#include "correlate.hpp"
 #include "gridmerge/grid/cancellation.hpp"
-#include "gridmerge/similarity/evidence.hpp"
-#include "rotations.hpp"
-#include "search_frame.hpp"
+#include "search/correlate.hpp"
+#include "search/rotations.hpp"
+#include "search/search_frame.hpp"
+#include "similarity/evidence.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -266,4 +266,4 @@ std::vector<PoseCandidate> search_thoroughly(const WallMap& fixed, const WallMap
   return search_rotations(frame, options.max_candidates, kPilotMargin, [&] { return PeakFinder(searched); });
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/similarity/agreement.hpp"
+#include "similarity/agreement.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "gridmerge/grid/cancellation.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -97,4 +97,4 @@ double measure_overlap(const OccupancyGrid& fixed, const OccupancyGrid& moving,
   return smaller > 0.0 ? std::min(1.0, both / smaller) : 0.0;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

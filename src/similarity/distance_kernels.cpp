@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "distance_kernels.hpp"
+#include "similarity/distance_kernels.hpp"
 
 #include <algorithm>
 
-#include "../grid/multiversion.hpp"
-#include "../grid/unaligned.hpp"
+#include "grid/multiversion.hpp"
+#include "grid/unaligned.hpp"
 #include "gridmerge/similarity/distance_map.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -245,4 +245,4 @@ CommonCells count_common(const std::uint8_t* a, const std::uint8_t* b, std::size
   return common;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

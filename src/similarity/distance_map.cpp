@@ -5,9 +5,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "distance_kernels.hpp"
+#include "similarity/distance_kernels.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/similarity/evidence.hpp"
+#include "similarity/evidence.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
-#include "../grid/multiversion.hpp"
-#include "../grid/unaligned.hpp"
+#include "grid/multiversion.hpp"
+#include "grid/unaligned.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -316,4 +316,4 @@ Evidence WallEvidence::operator()(const SE2& T_fixed_moving_cells, double min_si
   return best;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -7,14 +7,16 @@
 #include <stdexcept>
 #include <string>
 
-#include "distance_kernels.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/similarity/distance_map.hpp"
 #include "gridmerge/similarity/lattice.hpp"
-#include "lattice_frames.hpp"
-#include "nearest_cells.hpp"
+#include "similarity/distance_kernels.hpp"
+#include "similarity/lattice_frames.hpp"
+#include "similarity/nearest_cells.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "gridmerge/grid/resample.hpp"
-#include "lattice_frames.hpp"
-#include "nearest_cells.hpp"
+#include "similarity/lattice_frames.hpp"
+#include "similarity/nearest_cells.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lattice_frames.hpp"
+#include "similarity/lattice_frames.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 bool is_finite(const SE2& T) {
   return std::isfinite(T.x) && std::isfinite(T.y) && std::isfinite(T.theta);
@@ -25,4 +25,4 @@ void check_resolutions(const OccupancyGrid& fixed, const OccupancyGrid& moving) 
     throw std::invalid_argument("the maps' resolutions differ by more than 100 times");
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

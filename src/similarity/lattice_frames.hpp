@@ -3,7 +3,7 @@
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 bool is_finite(const SE2& T);
 
@@ -16,4 +16,4 @@ void check_resolutions(const OccupancyGrid& fixed, const OccupancyGrid& moving);
 /// T_fixedgrid_movinggrid, between the lower-left corners [m], from a transform between map frames.
 SE2 between_grids(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& T_fixed_moving);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

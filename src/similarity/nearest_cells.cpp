@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nearest_cells.hpp"
+#include "similarity/nearest_cells.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "../grid/multiversion.hpp"
+#include "grid/multiversion.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -170,4 +170,4 @@ void draw_nearest_cells(const OccupancyGrid& grid, const SE2& T_lattice_grid, do
   }
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

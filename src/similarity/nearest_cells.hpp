@@ -6,7 +6,7 @@
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// A rectangle of cells.
 struct CellBox {
@@ -63,4 +63,4 @@ CellBox intersect(const CellBox& a, const CellBox& b);
 void draw_nearest_cells(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution,
                         const CellBox& box, std::size_t stride_multiple, CellsOnLattice& result);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

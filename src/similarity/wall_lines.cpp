@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/similarity/wall_lines.hpp"
+#include "similarity/wall_lines.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "gridmerge/grid/cancellation.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -155,4 +155,4 @@ WallSupport measure_wall_support(const WallMap& fixed, const WallMap& moving,
           least_spread(points)};
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/similarity/wall_map.hpp"
+#include "similarity/wall_map.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "gridmerge/grid/cancellation.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -266,4 +266,4 @@ WallMap make_wall_map(const OccupancyGrid& grid, double cell) {
   return map;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

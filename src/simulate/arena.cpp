@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "arena.hpp"
+#include "simulate/arena.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "building_parts.hpp"
+#include "simulate/building_parts.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -170,4 +170,4 @@ void draw_arena(Draughtsman& pen, Random& random, double width, double height) {
   for (const std::vector<Edge>& lone : arena.lone) place(pen, lone, T_building_arena);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

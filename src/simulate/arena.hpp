@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "gridmerge/simulate/draughtsman.hpp"
-#include "gridmerge/simulate/random.hpp"
+#include "simulate/draughtsman.hpp"
+#include "simulate/random.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// An arena in a frame with its middle at the origin.
 struct Arena {
@@ -18,4 +18,4 @@ struct Arena {
 /// Of `width` x `height` metres, or, if it is fourfold, a square of the shorter side.
 Arena make_arena(Random& random, double width, double height);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

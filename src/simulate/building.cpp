@@ -7,10 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "building_parts.hpp"
-#include "floor_plan.hpp"
+#include "simulate/building_parts.hpp"
+#include "simulate/floor_plan.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "building_parts.hpp"
+#include "simulate/building_parts.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -141,4 +141,4 @@ void draw_maze(Draughtsman& pen, Random& random, double width, double height) {
   }
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

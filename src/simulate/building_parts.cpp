@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "building_parts.hpp"
+#include "simulate/building_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 void place(Draughtsman& pen, const std::vector<Edge>& edges, const SE2& T_building_frame) {
   for (const Edge& edge : edges)
@@ -119,4 +119,4 @@ void draw_row_of_rooms(const Hands& hands, double length, double depth) {
   hands.pen.wall({0.0, 0.0}, {length, 0.0}, doors, random.chance(0.1) ? kGlass : 1.0);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -2,9 +2,10 @@
 #pragma once
 
 #include "gridmerge/simulate/building.hpp"
-#include "gridmerge/simulate/random.hpp"
+#include "simulate/draughtsman.hpp"
+#include "simulate/random.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// A rectangle of floor [m].
 struct Room {
@@ -50,4 +51,4 @@ void draw_arena(Draughtsman& pen, Random& random, double width, double height);
 void draw_maze(Draughtsman& pen, Random& random, double width, double height);
 void draw_bare(Draughtsman& pen, Random& random, double width, double height);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

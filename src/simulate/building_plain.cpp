@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "painted_floor.hpp"
+#include "simulate/painted_floor.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -145,4 +145,4 @@ void draw_bare(Draughtsman& pen, Random& random, double width, double height) {
   }
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

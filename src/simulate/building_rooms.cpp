@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "building_parts.hpp"
+#include "simulate/building_parts.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -147,4 +147,4 @@ void draw_loop(Draughtsman& pen, Random& random, double width, double height) {
   }
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

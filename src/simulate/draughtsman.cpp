@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/simulate/draughtsman.hpp"
+#include "simulate/draughtsman.hpp"
 
 #include <cmath>
 #include <cstddef>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 void Draughtsman::polygon(const std::vector<Point2>& corners, double echo) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -86,4 +86,4 @@ void Draughtsman::desk(Point2 center, int side, int front) {
   chair({center.x - side * 0.2, center.y + front * 0.7});
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

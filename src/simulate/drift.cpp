@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drift.hpp"
+#include "simulate/drift.hpp"
 
 #include <cmath>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -66,4 +66,4 @@ SE2 DriftingPose::follow(const SE2& T_building_robot) {
                           random_.normal(kTurnJitter + drift_ * kMoreTurnJitter))};
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,9 +5,9 @@
 #include <unordered_map>
 
 #include "gridmerge/grid/se2.hpp"
-#include "gridmerge/simulate/random.hpp"
+#include "simulate/random.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// What a robot believes of its pose. Its odometry turns a little too far for a while, then too little, and
 /// takes ways for longer or shorter than they are; where it comes by a place that it has mapped before, its
@@ -43,4 +43,4 @@ class DriftingPose {
   std::unordered_map<long long, Remembered> places_;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

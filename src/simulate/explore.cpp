@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "explore.hpp"
+#include "simulate/explore.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "gridmerge/grid/cancellation.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -110,4 +110,4 @@ Exploration explore(const FloorPlan& plan, const RayCaster& caster, const Errand
   return result;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "floor_plan.hpp"
-#include "gridmerge/simulate/range_finder.hpp"
-#include "gridmerge/simulate/ray_caster.hpp"
+#include "gridmerge/simulate/simulate.hpp"
+#include "simulate/floor_plan.hpp"
+#include "simulate/ray_caster.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// What has been seen of a floor: a raster of kPlanCells plan cells.
 class SeenFloor {
@@ -55,4 +55,4 @@ struct Exploration {
 /// is long enough. The eyes see less far than the range finder, so that it comes near to things.
 Exploration explore(const FloorPlan& plan, const RayCaster& caster, const Errand& errand);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "floor_plan.hpp"
+#include "simulate/floor_plan.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "gridmerge/grid/cancellation.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -179,4 +179,4 @@ std::vector<Point2> PathSearch::path_to(int cell) const {
   return path;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -5,9 +5,9 @@
 #include <functional>
 #include <vector>
 
-#include "gridmerge/simulate/draughtsman.hpp"
+#include "simulate/draughtsman.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Where a robot can stand: a raster of the inside of a building, without what is nearer to an edge than the
 /// robot's radius. Of several rooms that no way connects it keeps the largest.
@@ -62,4 +62,4 @@ class PathSearch {
   std::uint32_t searches_ = 0;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

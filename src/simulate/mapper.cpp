@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapper.hpp"
+#include "simulate/mapper.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "gridmerge/grid/resample.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -75,4 +75,4 @@ OccupancyGrid Mapper::grid() const {
   return crop_to_known(grid);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

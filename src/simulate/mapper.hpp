@@ -5,7 +5,7 @@
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// A map that is drawn beam by beam: log-odds of each cell, clamped (Moravec & Elfes 1985). The frame's
 /// origin lies in its middle.
@@ -30,4 +30,4 @@ class Mapper {
   std::vector<float> log_odds_;  // NaN: no beam came there
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

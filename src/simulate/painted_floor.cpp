@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "painted_floor.hpp"
+#include "simulate/painted_floor.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -159,4 +159,4 @@ int add_features(PaintedFloor& floor, Random& random, const Room& room, Side sid
   return added;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

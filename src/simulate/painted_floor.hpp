@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "building_parts.hpp"
-#include "gridmerge/simulate/random.hpp"
+#include "simulate/building_parts.hpp"
+#include "simulate/random.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 enum class Side { bottom, right, top, left };
 
@@ -69,4 +69,4 @@ struct Features {
 int add_features(PaintedFloor& floor, Random& random, const Room& room, Side side, int space,
                  const Features& features);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/simulate/random.hpp"
+#include "simulate/random.hpp"
 
 #include <cmath>
 #include <numbers>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 std::uint64_t Random::bits() {
   state_ += 0x9e3779b97f4a7c15ULL;
@@ -27,4 +27,4 @@ double Random::normal(double deviation) {
   return deviation * radius * std::cos(2.0 * std::numbers::pi * uniform());
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/simulate/ray_caster.hpp"
+#include "simulate/ray_caster.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -123,4 +123,4 @@ Hit RayCaster::cast(Point2 from, Point2 direction, double max_range, double beyo
   return nearest;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

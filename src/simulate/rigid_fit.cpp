@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rigid_fit.hpp"
+#include "simulate/rigid_fit.hpp"
 
 #include <cmath>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 RigidFit fit_rigid(const std::vector<PointPair>& points) {
   if (points.empty()) return {};
@@ -34,4 +34,4 @@ RigidFit fit_rigid(const std::vector<PointPair>& points) {
   return fit;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

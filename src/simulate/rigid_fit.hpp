@@ -5,7 +5,7 @@
 
 #include "gridmerge/grid/se2.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// A point in two frames.
 struct PointPair {
@@ -22,4 +22,4 @@ struct RigidFit {
 /// plane). The identity for no points. O(points).
 RigidFit fit_rigid(const std::vector<PointPair>& points);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

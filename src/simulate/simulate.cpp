@@ -9,11 +9,13 @@
 #include <string>
 #include <utility>
 
-#include "gridmerge/grid/parallel.hpp"
-#include "survey.hpp"
-#include "team.hpp"
+#include "grid/parallel.hpp"
+#include "simulate/survey.hpp"
+#include "simulate/team.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 
 namespace {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "survey.hpp"
+#include "simulate/survey.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "drift.hpp"
 #include "gridmerge/grid/cancellation.hpp"
-#include "mapper.hpp"
-#include "tidy.hpp"
-#include "visit.hpp"
+#include "simulate/drift.hpp"
+#include "simulate/mapper.hpp"
+#include "simulate/tidy.hpp"
+#include "simulate/visit.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -144,4 +144,4 @@ Survey survey(const SimulateOptions& options, const Building& building, const Vi
   return result;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

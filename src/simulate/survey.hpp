@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "gridmerge/simulate/random.hpp"
 #include "gridmerge/simulate/simulate.hpp"
-#include "rigid_fit.hpp"
-#include "team.hpp"
+#include "simulate/random.hpp"
+#include "simulate/rigid_fit.hpp"
+#include "simulate/team.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Where in its own frame a robot drew each place of the building, on average: squares of kCell metres. What
 /// two robots' maps have in common, and how they should be laid on each other, follows from it without any
@@ -51,4 +51,4 @@ struct Survey {
 Survey survey(const SimulateOptions& options, const Building& building, const Visit& visit,
               std::vector<SE2> path, Random random);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

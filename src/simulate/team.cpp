@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "team.hpp"
+#include "simulate/team.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 #include <string>
 #include <utility>
 
-#include "gridmerge/grid/parallel.hpp"
+#include "grid/parallel.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -189,4 +189,4 @@ Team plan_team(const SimulateOptions& options, const Building& building, const F
   throw no_such_overlap(wanted, nearest.overlap);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -4,12 +4,12 @@
 #include <stdexcept>
 #include <vector>
 
-#include "explore.hpp"
-#include "gridmerge/simulate/random.hpp"
 #include "gridmerge/simulate/simulate.hpp"
-#include "visit.hpp"
+#include "simulate/explore.hpp"
+#include "simulate/random.hpp"
+#include "simulate/visit.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// Who starts where, what the building is like then, and how far each goes.
 struct Team {
@@ -28,4 +28,4 @@ std::invalid_argument no_such_overlap(double wanted, double nearest);
 Team plan_team(const SimulateOptions& options, const Building& building, const FloorPlan& plan,
                Random& random);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

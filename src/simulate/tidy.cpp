@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tidy.hpp"
+#include "simulate/tidy.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "gridmerge/grid/resample.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -101,4 +101,4 @@ OccupancyGrid tidied(OccupancyGrid map, double thicken) {
   return crop_to_known(thick);
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "visit.hpp"
+#include "simulate/visit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 namespace {
 
@@ -108,4 +108,4 @@ double Walkers::distance_to(Point2 from, Point2 direction, double range) const {
   return nearest;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

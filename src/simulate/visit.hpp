@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "floor_plan.hpp"
-#include "gridmerge/simulate/random.hpp"
-#include "gridmerge/simulate/ray_caster.hpp"
+#include "simulate/floor_plan.hpp"
+#include "simulate/random.hpp"
+#include "simulate/ray_caster.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// A building as one robot finds it, with what happens to stand about at that time.
 struct Visit {
@@ -42,4 +42,4 @@ class Walkers {
   std::vector<Walker> walkers_;
 };
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -6,12 +6,14 @@
 #include <sstream>
 
 #include "fixture.hpp"
-#include "gridmerge/io/png.hpp"
 #include "gridmerge/similarity/distance_map.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 #include "gridmerge/similarity/lattice.hpp"
+#include "io/png.hpp"
 
 namespace gridmerge::test {
+
+using namespace internal;
 namespace {
 
 std::string pose_text(const SE2& T) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gridmerge/version.hpp"
 #include "program.hpp"
 
 namespace gridmerge::test {
@@ -123,7 +124,7 @@ TEST(Usage, HelpOfEvaluateNamesTheColumnsOfItsTables) {
 TEST(Usage, VersionIsPrinted) {
   const Outcome outcome = run({"--version"});
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_EQ(outcome.out, "gridmerge " GRIDMERGE_VERSION "\n");
+  EXPECT_EQ(outcome.out, std::string("gridmerge ") + kVersion + "\n");
 }
 
 }  // namespace

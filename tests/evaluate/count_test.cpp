@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/evaluate/count.hpp"
+#include "evaluate/count.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 MatchOutcome pair_outcome(Verdict verdict, double probability, double error, const std::string& tier = "A") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/evaluate/dataset.hpp"
+#include "evaluate/dataset.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +13,8 @@
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 SimulateOptions quick(int robots) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/evaluate/displacement.hpp"
+#include "evaluate/displacement.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -8,6 +8,8 @@
 #include <numbers>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 double brute_force(const OccupancyGrid& map, const SE2& T_estimate, const SE2& T_truth) {

@@ -8,12 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "gridmerge/evaluate/displacement.hpp"
+#include "evaluate/displacement.hpp"
+#include "evaluate/map_cache.hpp"
 #include "gridmerge/io/map_file.hpp"
-#include "map_cache.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using test::draw_building;

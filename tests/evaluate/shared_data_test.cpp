@@ -5,10 +5,12 @@
 
 #include <filesystem>
 
-#include "gridmerge/evaluate/count.hpp"
+#include "evaluate/count.hpp"
 #include "gridmerge/evaluate/evaluate.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 constexpr std::size_t kPairStep = 4;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/evaluate/tables.hpp"
+#include "evaluate/tables.hpp"
+#include "match/verdict.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +11,8 @@
 #include <vector>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using Json = nlohmann::json;

@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <stdexcept>
 
-#include "gridmerge/grid/parallel.hpp"
+#include "grid/parallel.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 TEST(Cancellation, EndsAParallelLoopLongBeforeItsEnd) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/grid/parallel.hpp"
+#include "grid/parallel.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -14,6 +14,8 @@
 #include <vector>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 TEST(ParallelFor, CallsTheBodyOnceForEveryIndex) {

@@ -8,6 +8,8 @@
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 namespace fs = std::filesystem;

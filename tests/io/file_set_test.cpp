@@ -17,6 +17,8 @@
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using test::contains;

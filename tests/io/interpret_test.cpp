@@ -10,6 +10,8 @@
 #include "io/support.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using test::contains;

@@ -13,6 +13,8 @@
 #include "io/support.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using test::contains;

@@ -9,6 +9,8 @@
 #include <cstdint>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 TEST(ParseNumber, TakesWhatYamlAuthorsWrite) {

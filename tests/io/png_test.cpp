@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/io/png.hpp"
+#include "io/png.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -13,6 +13,8 @@
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using test::bytes;

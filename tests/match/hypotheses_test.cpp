@@ -7,11 +7,13 @@
 #include <numbers>
 
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/match/refine.hpp"
-#include "gridmerge/similarity/agreement.hpp"
+#include "match/refine.hpp"
+#include "similarity/agreement.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 /// One empty hall of this side [m], with a wall around it.

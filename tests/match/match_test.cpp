@@ -11,9 +11,12 @@
 
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/resample.hpp"
+#include "similarity/wall_map.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;

@@ -9,11 +9,13 @@
 #include <random>
 #include <stdexcept>
 
-#include "gridmerge/grid/parallel.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/match/match.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;

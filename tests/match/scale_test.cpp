@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/scale.hpp"
+#include "match/scale.hpp"
 
 #include <gtest/gtest.h>
 
 #include "support/building.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 OccupancyGrid with_resolution(OccupancyGrid map, double factor) {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/search_method.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/verdict.hpp"
+#include "match/verdict.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -15,6 +15,8 @@
 #include "match/verdict_model.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 /// Two clean maps of one place that share half a floor.

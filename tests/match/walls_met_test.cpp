@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/walls_met.hpp"
+#include "match/walls_met.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,8 @@
 #include "support/building.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 constexpr double kCell = 0.1;

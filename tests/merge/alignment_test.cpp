@@ -8,12 +8,14 @@
 #include <numbers>
 #include <optional>
 
-#include "gridmerge/merge/coverage.hpp"
+#include "merge/coverage.hpp"
 #include "merge/pose_graph.hpp"
 #include "merge/wall_error.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 /// A map that knows nothing, so that only what is measured counts.

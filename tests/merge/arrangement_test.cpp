@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/arrangement.hpp"
+#include "merge/arrangement.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -11,6 +11,8 @@
 #include <set>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 constexpr double kAccept = 0.8;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
-#include "gridmerge/merge/log_odds.hpp"
+#include "merge/log_odds.hpp"
 
 namespace gridmerge::test {
 
@@ -79,7 +79,7 @@ inline int count_wall_pieces(const OccupancyGrid& map) {
   return count_pieces(map.width, map.height, occupied);
 }
 
-inline int count_wall_pieces(const LogOddsPatch& patch) {
+inline int count_wall_pieces(const internal::LogOddsPatch& patch) {
   std::vector<bool> occupied;
   for (const std::int16_t log_odds : patch.log_odds) occupied.push_back(log_odds > 0);
   return count_pieces(patch.width, patch.height, occupied);

@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "../../src/merge/join_weights.hpp"
-#include "gridmerge/merge/coverage.hpp"
+#include "merge/coverage.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 /// A map, where it lies in its building, and all that a merge keeps of it.

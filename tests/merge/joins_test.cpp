@@ -7,6 +7,8 @@
 #include <stdexcept>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 const SE2 kBest{1.0, 2.0, 0.3};

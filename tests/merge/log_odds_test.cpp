@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/log_odds.hpp"
+#include "merge/log_odds.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -12,6 +12,8 @@
 #include "merge/drawing.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using test::count_wall_pieces;

@@ -7,6 +7,8 @@
 #include <cmath>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 const MapExtent kExtent{{5.0, 5.0}, 6.0, 20.0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/distance_picture.hpp"
+#include "report/distance_picture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,11 @@
 #include <cstdlib>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
-#include "gridmerge/io/png.hpp"
+#include "io/png.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 /// The gray of a pixel, which must be one.

@@ -10,6 +10,8 @@
 #include "report/font_characters.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 constexpr TextSize kSizes[] = {TextSize::large, TextSize::small, TextSize::tiny};

@@ -7,14 +7,16 @@
 #include <nlohmann/json.hpp>
 
 #include "gridmerge/io/map_file.hpp"
-#include "gridmerge/io/png.hpp"
 #include "io/file_size_limit.hpp"
+#include "io/png.hpp"
 #include "io/support.hpp"
 #include "merge/drawing.hpp"
 #include "report/results.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using test::contains;

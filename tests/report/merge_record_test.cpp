@@ -7,13 +7,15 @@
 
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/report/json.hpp"
-#include "gridmerge/report/page.hpp"
 #include "io/support.hpp"
 #include "merge/drawing.hpp"
+#include "report/page.hpp"
 #include "report/results.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using Json = nlohmann::json;
@@ -50,6 +52,7 @@ MergeResult any_result() {
     result.joins.push_back(refused);
   }
   result.left_out_reasons.back() = Reason::contradicts_others;
+  result.open_ways = {{0, 1, {-4.0, 1.0 / 3.0, 2.5}, 0.375}, {1, 3, {}, 0.125}};
   return result;
 }
 
@@ -97,6 +100,7 @@ TEST(MergeRecord, ReadsWhatEarlierVersionsWrote) {
     join["reason"] = join["by_themselves"]["reason"];
     join.erase("by_themselves");
   }
+  json.erase("open_ways");
   const MergeRecord read = parse(json.dump());
   EXPECT_EQ(read.result.left_out_reasons, any_result().left_out_reasons);
   EXPECT_EQ(read.result.joins[4].match.reason, Reason::too_little_overlap);
@@ -162,6 +166,7 @@ TEST(MergeRecord, SaysWhatIsWrongAndWhere) {
   EXPECT_TRUE(
       contains(complaint("/joins/0/fixed", "z.yaml"), "joins[0].fixed is none of the maps: 'z.yaml'"));
   EXPECT_TRUE(contains(complaint("/joins/0/fixed", "c.yaml"), "joins[0] is of a map and itself"));
+  EXPECT_TRUE(contains(complaint("/open_ways/0/moving", "a.yaml"), "open_ways[0] is of a map and itself"));
   EXPECT_TRUE(contains(complaint("/joins/0/outcome", "maybe"), "is unknown: 'maybe'"));
   EXPECT_TRUE(contains(complaint("/joins/0/verdict", "refused"), "does not go with the outcome"));
   EXPECT_TRUE(contains(complaint("/joins/0/agreement", 1.5), "whole number"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/page.hpp"
+#include "report/page.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,15 @@
 
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/report/preview.hpp"
+#include "gridmerge/version.hpp"
 #include "io/support.hpp"
 #include "merge/drawing.hpp"
 #include "report/cells.hpp"
 #include "report/results.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using Json = nlohmann::json;
@@ -64,7 +67,7 @@ Json transform(double x, double y, double theta) {
 
 TEST(ReportPage, HoldsTheMaps) {
   const Json data = data_of(report_page(kNames, kMaps, two_of_four()));
-  EXPECT_EQ(data.at("version"), GRIDMERGE_VERSION);
+  EXPECT_EQ(data.at("version"), kVersion);
   EXPECT_EQ(data.at("live"), false);
   ASSERT_EQ(data.at("maps").size(), 4u);
   const Json& map = data.at("maps").at(2);

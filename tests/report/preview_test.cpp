@@ -10,11 +10,13 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "gridmerge/io/png.hpp"
+#include "io/png.hpp"
 #include "merge/drawing.hpp"
 #include "report/results.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using test::map_from;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/refine_request.hpp"
+#include "report/refine_request.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,8 @@
 #include "io/support.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using test::contains;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using Names = std::vector<std::string>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/shown_map.hpp"
+#include "report/shown_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,8 @@
 #include "report/cells.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 using test::map_from;

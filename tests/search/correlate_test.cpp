@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "correlate.hpp"
+#include "search/correlate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "gridmerge/search/exhaustive.hpp"
+#include "search/exhaustive.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 int below(std::mt19937& random, int limit) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/search/exhaustive.hpp"
+#include "search/exhaustive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,12 @@
 #include <numbers>
 
 #include "../similarity/random_grid.hpp"
-#include "gridmerge/grid/parallel.hpp"
-#include "gridmerge/similarity/evidence.hpp"
+#include "grid/parallel.hpp"
+#include "similarity/evidence.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 /// The score as the header defines it, from nothing but that definition.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "local_maxima.hpp"
+#include "search/local_maxima.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 /// Few values, so that there are plateaus.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/search/thorough.hpp"
+#include "search/thorough.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,12 +13,14 @@
 #include <vector>
 
 #include "../similarity/random_grid.hpp"
-#include "gridmerge/grid/parallel.hpp"
-#include "gridmerge/similarity/evidence.hpp"
+#include "grid/parallel.hpp"
+#include "similarity/evidence.hpp"
 #include "support/building.hpp"
 #include "support/effort.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 /// The score as the header defines it, from nothing but that definition: cell by cell and sample by sample.

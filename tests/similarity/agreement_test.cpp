@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/similarity/agreement.hpp"
+#include "similarity/agreement.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -9,6 +9,8 @@
 #include "random_grid.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 /// Literal: every cell centre taken through the map frames.

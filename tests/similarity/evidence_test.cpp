@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/similarity/evidence.hpp"
+#include "similarity/evidence.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -12,6 +12,8 @@
 #include "random_grid.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/similarity/wall_lines.hpp"
+#include "similarity/wall_lines.hpp"
 
 #include <gtest/gtest.h>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 constexpr int kSide = 160;

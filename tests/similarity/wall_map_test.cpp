@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/similarity/wall_map.hpp"
+#include "similarity/wall_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,8 @@
 #include "random_grid.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 /// Centre of a cell of the wall map, in the map frame.

@@ -8,10 +8,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "floor_plan.hpp"
-#include "visit.hpp"
+#include "simulate/floor_plan.hpp"
+#include "simulate/visit.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 TEST(Building, KindsHaveNames) {

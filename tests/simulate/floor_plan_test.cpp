@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "floor_plan.hpp"
+#include "simulate/floor_plan.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "explore.hpp"
 #include "gridmerge/simulate/building.hpp"
-#include "gridmerge/simulate/random.hpp"
+#include "simulate/explore.hpp"
+#include "simulate/random.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 /// Two rooms of 6 m x 6 m with a door between them, and one that is closed.

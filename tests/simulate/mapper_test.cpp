@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mapper.hpp"
+#include "simulate/mapper.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "gridmerge/simulate/random.hpp"
+#include "simulate/random.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 Cell value_at(const OccupancyGrid& grid, Point2 p) {

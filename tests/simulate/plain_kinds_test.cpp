@@ -12,12 +12,14 @@
 #include <utility>
 #include <vector>
 
-#include "arena.hpp"
-#include "floor_plan.hpp"
 #include "gridmerge/simulate/building.hpp"
-#include "painted_floor.hpp"
+#include "simulate/arena.hpp"
+#include "simulate/floor_plan.hpp"
+#include "simulate/painted_floor.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 constexpr std::uint64_t kSeeds = 40;

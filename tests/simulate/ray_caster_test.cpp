@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/simulate/ray_caster.hpp"
+#include "simulate/ray_caster.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "gridmerge/simulate/random.hpp"
+#include "simulate/random.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 Point2 direction(double angle) {

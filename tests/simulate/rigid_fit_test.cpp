@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rigid_fit.hpp"
+#include "simulate/rigid_fit.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "gridmerge/simulate/random.hpp"
+#include "simulate/random.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 double rms(const std::vector<PointPair>& points, const SE2& T_a_b) {

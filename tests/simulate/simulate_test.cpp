@@ -12,10 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "gridmerge/evaluate/displacement.hpp"
+#include "evaluate/displacement.hpp"
 #include "support/effort.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 SimulateOptions small(BuildingKind kind = BuildingKind::office) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tidy.hpp"
+#include "simulate/tidy.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,8 @@
 #include <vector>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 OccupancyGrid floor_with(const std::vector<std::pair<int, int>>& occupied) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "visit.hpp"
+#include "simulate/visit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,8 @@
 #include <vector>
 
 namespace gridmerge {
+
+using namespace internal;
 namespace {
 
 /// A square room of 20 m.

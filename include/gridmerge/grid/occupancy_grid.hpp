@@ -60,4 +60,10 @@ CellCounts count_cells(const OccupancyGrid& grid);
 /// them, and resolution and origin are finite (resolution also positive).
 void validate(const OccupancyGrid& grid);
 
+/// A map, and the transform that takes its frame to the output's.
+struct PlacedMap {
+  const OccupancyGrid* map = nullptr;  ///< not owned; outlives its use
+  SE2 T_output_map;
+};
+
 }  // namespace gridmerge

@@ -2,13 +2,66 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "gridmerge/grid/se2.hpp"
-#include "gridmerge/match/pose_figures.hpp"
-#include "gridmerge/match/verdict.hpp"
 
 namespace gridmerge {
+
+enum class Verdict { refused, accepted };
+
+/// The verdict's one word in every output: "refused" or "accepted".
+const char* name_of(Verdict verdict);
+
+/// Why a pair was refused: what, were it otherwise, would let the best hypothesis be accepted.
+enum class Reason {
+  none,                ///< it was accepted
+  nothing_to_compare,  ///< a map has nothing to go by, or no pose speaks for the maps
+  ambiguous,      ///< another hypothesis explains the maps nearly as well, or the maps slide along each other
+  contradiction,  ///< the maps disagree where they know the same places
+  too_little_overlap,  ///< they agree, but on too little
+  several,             ///< more than one of these
+  contradicts_others,  ///< of a merge: believed by itself, but not with what the other maps say
+};
+
+/// As outputs spell it: "ambiguous", "too_little_overlap", ...; "none" for an accepted pair.
+const char* name_of(Reason reason);
+
+/// What speaks for a pose of two maps and against it. pose_figures() lists them with their meanings.
+struct PoseFigures {
+  double score = 0.0;
+  double lead = 0.0;
+  double stands_out = 0.0;
+  double wall_score = 0.0;
+  double seen_walls = 0.0;
+  double walls_met = 0.0;
+  double walls_met_locally = 0.0;
+  double wall_lines = 0.0;
+  double seen_things = 0.0;
+  double things_met = 0.0;
+  double spread = 0.0;
+  double held = 0.0;
+  double held_most = 0.0;
+  double free_direction = 0.0;
+  double acceptance_index = 0.0;
+  double next_acceptance_index = 0.0;
+  double common_area = 0.0;
+  double overlap = 0.0;
+  double sigma = 0.0;
+  double outliers = 0.0;
+};
+
+/// One of the figures: the one place where its name, unit and meaning stand.
+struct PoseFigure {
+  const char* name;
+  const char* unit;
+  const char* meaning;
+  double PoseFigures::*value;
+};
+
+/// All of them, in the order of PoseFigures.
+std::span<const PoseFigure> pose_figures();
 
 /// One way in which the moving map may lie on the fixed one.
 struct Hypothesis {

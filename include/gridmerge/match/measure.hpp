@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "gridmerge/grid/placed_map.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 

@@ -6,9 +6,12 @@
 #include <mutex>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
-#include "gridmerge/similarity/wall_map.hpp"
 
 namespace gridmerge {
+
+namespace internal {
+struct WallMap;
+}
 
 /// A map with all that matches of it have in common, so that it is worked out once and not for every other
 /// map that it is matched with. May be used by several threads at once.
@@ -16,18 +19,20 @@ class PreparedMap {
  public:
   /// Copies what is known of `grid`. Throws std::invalid_argument for an invalid grid (see validate()).
   explicit PreparedMap(const OccupancyGrid& grid);
+  ~PreparedMap();
 
   const OccupancyGrid& known() const { return known_; }  ///< cropped to its known cells
   const CellCounts& counts() const { return counts_; }
 
-  /// The map as the engine compares it, in cells of `cell` metres; drawn when first asked for. O(cells) then.
-  const WallMap& walls(double cell) const;
+  /// For the engine: the map as it compares it, in cells of `cell` metres; drawn when first asked for.
+  /// O(cells) then.
+  const internal::WallMap& walls(double cell) const;
 
  private:
   OccupancyGrid known_;
   CellCounts counts_;
   mutable std::mutex drawing_;
-  mutable std::map<double, std::unique_ptr<const WallMap>> walls_;  // by cell
+  mutable std::map<double, std::unique_ptr<const internal::WallMap>> walls_;  // by cell
 };
 
 /// Orders maps by what they hold, not by where they come from: by their known area, and what differs between

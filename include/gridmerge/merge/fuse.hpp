@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
-#include "gridmerge/merge/log_odds.hpp"
 
 namespace gridmerge {
 

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/grid/se2.hpp"
+#include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
 
@@ -16,5 +22,46 @@ struct KnownPose {
 /// Throws std::invalid_argument for a pose that is not finite or farther off than 10^7 m, or a deviation that
 /// is less than 10^-6; those of a fixed pose may be 0.
 void validate(const KnownPose& known);
+
+/// A known pose that a merge did not follow, and why.
+struct UnusedPose {
+  enum class Why {
+    overruled,        ///< the map lies elsewhere: the maps say so
+    not_sure_enough,  ///< the map was left out, and its pose alone joins it to none
+    contradicted,     ///< the map was left out, though its pose is sure enough to join it
+  };
+
+  std::size_t map = 0;  ///< index of the input map
+  Why why = Why::overruled;
+  double distance = 0.0;  ///< of an overruled pose from where the map lies [m, root mean square of its cells]
+  /// Of a pose that is not sure enough: the map whose known pose goes with it best, how far off the two put
+  /// the maps (standard deviation [m]), and how far off they may for known poses alone to join them [m].
+  std::size_t other = 0;
+  double sd = 0.0;
+  double sd_allowed = 0.0;
+};
+
+/// Which of the poses that were known beforehand merge() did not follow, ascending by map. Of the members of
+/// a component as many poses as can be true together are believed; which one is overruled of two that
+/// contradict each other cannot be said, and it is the later one. A pose is believed within three standard
+/// deviations, and the tolerance that bent maps need. Arguments as of merge(), with what it returned.
+/// O(cells), and O(known^2) a component.
+std::vector<UnusedPose> find_unused_poses(const std::vector<OccupancyGrid>& maps,
+                                          const std::vector<std::optional<KnownPose>>& known_poses,
+                                          const MergeResult& result);
+
+/// Two maps whose poses were fixed, and which alone would surely lie elsewhere.
+struct ContradictedFix {
+  std::size_t fixed = 0;   ///< index of an input map
+  std::size_t moving = 0;  ///< index of a later one
+  double distance = 0.0;   ///< of the fixed pose of `moving` from where it fits `fixed` [m, as UnusedPose]
+};
+
+/// The fixed poses that merge() followed against what the maps say: of each pair that the maps' own match
+/// accepts elsewhere, beyond the tolerance that bent maps need. In the order of the joins. Arguments as of
+/// merge(), with what it returned. O(cells + joins).
+std::vector<ContradictedFix> find_contradicted_fixes(const std::vector<OccupancyGrid>& maps,
+                                                     const std::vector<std::optional<KnownPose>>& known_poses,
+                                                     const MergeResult& result);
 
 }  // namespace gridmerge

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "gridmerge/grid/placed_map.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge {
 

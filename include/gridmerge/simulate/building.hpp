@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
-#include "gridmerge/simulate/draughtsman.hpp"
 
 namespace gridmerge {
 
@@ -31,6 +30,15 @@ enum class BuildingKind {
 std::span<const BuildingKind> building_kinds();
 const char* name_of(BuildingKind kind);
 std::optional<BuildingKind> building_kind(std::string_view name);
+
+/// A straight edge that stops a laser beam. Metres, in the building's frame.
+struct Edge {
+  Point2 a;
+  Point2 b;
+  double echo = 1.0;  ///< probability that a beam which meets the edge ends there; glass lets most pass
+};
+
+inline constexpr double kGlass = 0.7;  ///< the echo of a window
 
 /// What stands still: walls, windows, pillars, furniture.
 struct Building {

@@ -1,0 +1,47 @@
+# The components: the packages that each needs, its rooms in include/gridmerge, and what provides a package on Debian.
+# The build reads these lists, and so does the installed package.
+
+# In an order in which each comes after those that it needs.
+set(GRIDMERGE_COMPONENTS core merge io simulate evaluate report)
+
+set(gridmerge_core_packages TBB Eigen3)
+set(gridmerge_merge_packages Ceres)
+set(gridmerge_io_packages yaml-cpp PNG JPEG fmt)
+set(gridmerge_simulate_packages)
+set(gridmerge_evaluate_packages nlohmann_json fmt)
+set(gridmerge_report_packages nlohmann_json fmt ZLIB)
+
+# Folders of include/gridmerge.
+set(gridmerge_core_rooms grid similarity search match)
+set(gridmerge_merge_rooms merge)
+set(gridmerge_io_rooms io)
+set(gridmerge_simulate_rooms simulate)
+set(gridmerge_evaluate_rooms evaluate)
+set(gridmerge_report_rooms report)
+
+# Of gridmerge itself, all that a component needs.
+set(gridmerge_core_needs)
+set(gridmerge_merge_needs core)
+set(gridmerge_io_needs core)
+set(gridmerge_simulate_needs core)
+set(gridmerge_evaluate_needs core merge io simulate)
+set(gridmerge_report_needs core merge io)
+
+set(gridmerge_debian_TBB libtbb-dev)
+set(gridmerge_debian_Eigen3 libeigen3-dev)
+set(gridmerge_debian_Ceres libceres-dev)
+set(gridmerge_debian_yaml-cpp libyaml-cpp-dev)
+set(gridmerge_debian_PNG libpng-dev)
+set(gridmerge_debian_JPEG libjpeg-dev)
+set(gridmerge_debian_ZLIB zlib1g-dev)
+set(gridmerge_debian_nlohmann_json nlohmann-json3-dev)
+set(gridmerge_debian_fmt libfmt-dev)
+
+# How pkg-config's users link a package that a static library needs.
+set(gridmerge_link_TBB -ltbb)
+set(gridmerge_link_Ceres "-lceres -lglog")
+set(gridmerge_link_yaml-cpp -lyaml-cpp)
+set(gridmerge_link_PNG -lpng)
+set(gridmerge_link_JPEG -ljpeg)
+set(gridmerge_link_ZLIB -lz)
+set(gridmerge_link_fmt -lfmt)

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+/// All that is installed of what most programs use: match two maps, merge many, read and write them.
+#pragma once
+
+#include "gridmerge/match/match.hpp"
+#include "gridmerge/match/measure.hpp"
+#include "gridmerge/match/refine_pose.hpp"
+#include "gridmerge/version.hpp"
+
+#if __has_include("gridmerge/merge/merge.hpp")
+#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/merger.hpp"
+#endif
+#if __has_include("gridmerge/io/map_file.hpp")
+#include "gridmerge/io/initial_poses.hpp"
+#include "gridmerge/io/map_file.hpp"
+#endif
+#if __has_include("gridmerge/report/merge_output.hpp")
+#include "gridmerge/report/merge_output.hpp"
+#include "gridmerge/report/merge_record.hpp"
+#endif

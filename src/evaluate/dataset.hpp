@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "gridmerge/simulate/simulate.hpp"
+
+namespace gridmerge::internal {
+
+/// Simulated maps and the truth about them, as files.
+struct DatasetOptions {
+  bool probabilities = false;  ///< maps in mode `raw`, with their probabilities, instead of `trinary`
+};
+
+/// Writes a simulation to `directory`, which is made if need be: `robot_1.yaml` and so on with their images,
+/// `building.yaml` (the building itself, for a person to look at), and `pairs.tsv`, `negatives.tsv` and
+/// `sets.tsv`. The maps of `elsewhere`, which are of other buildings, become `elsewhere_1.yaml` and so on,
+/// each of them a negative with every robot's map. Negatives are also the strangers of the simulation.
+///
+/// All files take their places at one point of time, even if the program is killed. Throws FileError.
+void write_dataset(const std::filesystem::path& directory, const Simulation& simulation,
+                   const std::vector<Simulation>& elsewhere, const DatasetOptions& options = {});
+
+}  // namespace gridmerge::internal

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "gridmerge/io/file_error.hpp"
+
+namespace gridmerge::internal {
+
+/// A file in two steps: the constructor writes the bytes to a temporary file in the same directory and
+/// flushes them to the disk; commit() renames it into place and flushes the directory. Without commit the
+/// temporary file disappears with this object. What a killed program has left is removed by the next file
+/// that is staged in the same directory; a lock tells it from the file of a program that still runs.
+///
+/// An existing file is replaced as a whole (of a symbolic link, the file that it leads to); readers see the
+/// old bytes or the new ones. A link that leads to nothing is itself replaced by the file. Anything else that
+/// exists, a device or a pipe for example, is an error. Permissions are those of any new file: 0666 less the
+/// umask. A process over its file size limit gets a FileError only if it ignores SIGXFSZ.
+class StagedFile {
+ public:
+  /// Throws FileError; then nothing is left behind.
+  StagedFile(std::filesystem::path path, std::string_view bytes);
+  ~StagedFile();
+  StagedFile(const StagedFile&) = delete;
+  StagedFile& operator=(const StagedFile&) = delete;
+
+  /// Once only. Throws FileError: the destination is as it was, or, if the directory alone cannot be flushed,
+  /// it is the new file.
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;  // empty once it is gone
+  int descriptor_ = -1;              // open, as it holds the lock
+};
+
+/// One file, staged and committed. Throws FileError.
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace gridmerge::internal

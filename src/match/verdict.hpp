@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "gridmerge/match/match_result.hpp"
+
+namespace gridmerge::internal {
+
+/// What a term of the model speaks of.
+enum class TermKind {
+  amount,   ///< how much the maps have in common
+  quality,  ///< how well they agree where both have seen
+  rivals,   ///< how far it stands above other poses of the pair
+  excuse,   ///< what lets a pose be believed although one of the others is poor
+};
+
+/// "amount", "quality", "rivals", "excuse".
+const char* name_of(TermKind kind);
+
+/// A term of the model: the one place where its name, meaning and formula stand. Tables, fit and docs follow.
+struct VerdictTerm {
+  const char* name;
+  const char* formula;  ///< in words, of the names of pose_figures()
+  TermKind kind;
+  double least;  ///< bounds: beyond them a figure says how large or clean maps are, not whether they belong
+                 ///< together
+  double most;
+  double (*raw)(const PoseFigures&);  ///< before the bounds
+
+  double operator()(const PoseFigures& figures) const;  ///< larger speaks for the pose
+};
+
+/// All terms, in the order of the model's weights.
+std::span<const VerdictTerm> verdict_terms();
+
+/// A term of the ranking, which says which of several poses of one pair is the best: the one place where its
+/// name and formula stand.
+struct RankTerm {
+  const char* name;
+  const char* formula;  ///< in words, of the names of pose_figures()
+  double (*value)(const PoseFigures&);
+};
+
+/// All of them, in the order of the ranking's weights.
+std::span<const RankTerm> rank_terms();
+
+/// What speaks for a pose against others of its pair: the weighted sum of its rank terms [nats]. Quality
+/// counts more here than amount, so that a true pose that overlaps little stands before wrong ones that
+/// overlap much.
+double rank_of(const PoseFigures& figures);
+
+/// Gives each of several distinct hypotheses of one pair what it has before its rivals: `lead`, `stands_out`
+/// and, of the rivals that have half of its score or more, `next_acceptance_index`. All others are its
+/// rivals, except those that are near (`are_near`, of two indices) and score less: bent maps have no exact
+/// pose, so that a second maximum beside the first says nothing against it. O(hypotheses^2).
+void compare_rivals(std::span<PoseFigures> hypotheses,
+                    const std::function<bool(std::size_t, std::size_t)>& are_near = {});
+
+/// What speaks for a pose against "none of these", its rivals left aside: the weighted sum of its terms
+/// [nats].
+double log_odds_of(const PoseFigures& figures);
+
+/// The probability of each of several distinct hypotheses of one pair, after compare_rivals(). The best one,
+/// b, is that of the largest rank_of(). It has its share among its rivals times the belief in it,
+///   p_b = 1 / (1 + exp(-stands_out_b)) * 1 / (1 + exp(-log_odds_of(b))),
+/// a nested logit model (McFadden 1978). The others divide what it leaves of the belief by their exp(rank).
+/// So two that are equally good share what there is, and the order is that of the ranks. O(hypotheses).
+std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses);
+
+/// Whether the maps can slide along each other at hardly any loss, as two pieces of a corridor can:
+/// PoseFigures::free_direction says which way.
+bool slides(const PoseFigures& figures);
+
+/// Why the first of these hypotheses, which is the best, is refused where `accept_probability` is asked for;
+/// `none` if it is not, `nothing_to_compare` if there is no hypothesis.
+Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_probability);
+
+}  // namespace gridmerge::internal

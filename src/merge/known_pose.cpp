@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/merge/known_pose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "gridmerge/grid/resample.hpp"
+#include "merge/arrangement.hpp"
+#include "merge/coverage.hpp"
+#include "merge/prior.hpp"
+
+namespace gridmerge {
+
+using namespace internal;
+
+namespace {
+
+constexpr double kFarthest = 1e7;  // [m]
+constexpr double kLeastDeviation = 1e-6;
+
+struct KnownMap {
+  KnownPose pose;
+  MapExtent extent;
+};
+
+using KnownMaps = std::map<std::size_t, KnownMap>;
+
+KnownMaps known_maps(const std::vector<OccupancyGrid>& maps,
+                     const std::vector<std::optional<KnownPose>>& known_poses) {
+  KnownMaps known;
+  for (std::size_t i = 0; i < std::min(maps.size(), known_poses.size()); ++i) {
+    if (!known_poses[i]) continue;
+    const bool is_blank = count_cells(maps[i]).known() == 0;
+    known[i] = {*known_poses[i], is_blank ? MapExtent{} : Coverage(crop_to_known(maps[i])).extent()};
+  }
+  return known;
+}
+
+/// The members of a component whose poses are not true if that of `anchor` is.
+std::vector<UnusedPose> overruled_by(const Member& anchor, const std::vector<Member>& members,
+                                     const KnownMaps& known) {
+  const KnownMap& first = known.at(anchor.map);
+  const SE2 T_component_world = anchor.T_component_map * inverse(first.pose.T_world_map);
+  std::vector<UnusedPose> overruled;
+  for (const Member& member : members) {
+    const KnownMap& one = known.at(member.map);
+    const double distance =
+        displacement(one.extent, member.T_component_map, T_component_world * one.pose.T_world_map);
+    const double believed = agreement_tolerance(first.extent, one.extent) +
+                            kDeviationsOfKnown * sd_between(first.pose, one.pose, first.extent, one.extent);
+    if (distance > believed)
+      overruled.push_back({member.map, UnusedPose::Why::overruled, distance, 0, 0.0, 0.0});
+  }
+  return overruled;
+}
+
+std::vector<UnusedPose> overruled_in(const Component& component, const KnownMaps& known) {
+  std::vector<Member> members;
+  for (const Member& member : component.members) {
+    if (known.contains(member.map)) members.push_back(member);
+  }
+  std::vector<Member> anchors = members;
+  if (component.in_world_frame)
+    std::erase_if(anchors, [&](const Member& member) { return !known.at(member.map).pose.fixed; });
+  std::optional<std::vector<UnusedPose>> fewest;
+  for (const Member& anchor : anchors) {
+    std::vector<UnusedPose> overruled = overruled_by(anchor, members, known);
+    if (!fewest || overruled.size() < fewest->size()) fewest = std::move(overruled);
+  }
+  return fewest.value_or(std::vector<UnusedPose>{});
+}
+
+std::optional<UnusedPose> unused_of(std::size_t map, const KnownMaps& known) {
+  const KnownMap& one = known.at(map);
+  std::optional<UnusedPose> best;
+  for (const auto& [other, its] : known) {
+    if (other == map) continue;
+    const double sd = sd_between(one.pose, its.pose, one.extent, its.extent);
+    const double allowed = agreement_tolerance(one.extent, its.extent);
+    if (best && sd / allowed >= best->sd / best->sd_allowed) continue;
+    const auto why = sd > allowed ? UnusedPose::Why::not_sure_enough : UnusedPose::Why::contradicted;
+    best = UnusedPose{map, why, 0.0, other, sd, allowed};
+  }
+  return best;  // none where no other pose is known: it says nothing then
+}
+
+}  // namespace
+
+std::vector<UnusedPose> find_unused_poses(const std::vector<OccupancyGrid>& maps,
+                                          const std::vector<std::optional<KnownPose>>& known_poses,
+                                          const MergeResult& result) {
+  const KnownMaps known = known_maps(maps, known_poses);
+  std::vector<UnusedPose> unused;
+  for (const Component& component : result.components) {
+    for (const UnusedPose& one : overruled_in(component, known)) unused.push_back(one);
+  }
+  for (const std::size_t map : result.left_out) {
+    if (!known.contains(map)) continue;
+    if (const std::optional<UnusedPose> one = unused_of(map, known)) unused.push_back(*one);
+  }
+  std::sort(unused.begin(), unused.end(),
+            [](const UnusedPose& a, const UnusedPose& b) { return a.map < b.map; });
+  return unused;
+}
+
+std::vector<ContradictedFix> find_contradicted_fixes(const std::vector<OccupancyGrid>& maps,
+                                                     const std::vector<std::optional<KnownPose>>& known_poses,
+                                                     const MergeResult& result) {
+  const KnownMaps known = known_maps(maps, known_poses);
+  const auto is_fixed = [&](std::size_t map) { return known.contains(map) && known.at(map).pose.fixed; };
+  std::vector<ContradictedFix> contradicted;
+  for (const Join& join : result.joins) {
+    if (join.match.verdict != Verdict::accepted || !is_fixed(join.fixed) || !is_fixed(join.moving)) continue;
+    const KnownMap &fixed = known.at(join.fixed), &moving = known.at(join.moving);
+    const SE2 T_given = inverse(fixed.pose.T_world_map) * moving.pose.T_world_map;
+    const double distance = displacement(moving.extent, T_given, join.match.T_fixed_moving);
+    if (distance > agreement_tolerance(fixed.extent, moving.extent))
+      contradicted.push_back({join.fixed, join.moving, distance});
+  }
+  return contradicted;
+}
+
+void validate(const KnownPose& known) {
+  const SE2& T = known.T_world_map;
+  if (!(std::abs(T.x) <= kFarthest && std::abs(T.y) <= kFarthest && std::isfinite(T.theta)))
+    throw std::invalid_argument("a known pose must be finite, and within 10000 km");
+  if (known.fixed) return;
+  const auto is_deviation = [](double sd) { return std::isfinite(sd) && sd >= kLeastDeviation; };
+  if (!is_deviation(known.sd_position) || !is_deviation(known.sd_theta))
+    throw std::invalid_argument(
+        "the standard deviations of a known pose must be at least 0.000001, unless it is fixed");
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gridmerge/report/json.hpp>
+
+int main() {
+  return gridmerge::transforms_json({}, {}).empty() ? 1 : 0;
+}

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "gridmerge/merge/known_pose.hpp"
+
+namespace gridmerge {
+namespace {
+
+using Why = UnusedPose::Why;
+
+// Three square rooms in a row, 10 m a side, as one component; a fourth is left out.
+struct Rooms {
+  Rooms() {
+    maps.assign(4, make_grid(100, 100, 0.1, {}, Cell::free));
+    Component component;
+    for (std::size_t i = 0; i < 3; ++i) component.members.push_back({i, at(i)});
+    result.components.push_back(std::move(component));
+    result.left_out = {3};
+    for (std::size_t i = 0; i < 4; ++i) known.push_back(KnownPose{T_world * at(i), 0.1, 0.01});
+  }
+
+  static SE2 at(std::size_t i) { return {8.0 * static_cast<double>(i), 0.0, 0.0}; }
+
+  std::vector<UnusedPose> unused() const { return find_unused_poses(maps, known, result); }
+
+  const SE2 T_world{5.0, -3.0, 0.7};
+  std::vector<OccupancyGrid> maps;
+  std::vector<std::optional<KnownPose>> known;
+  MergeResult result;
+};
+
+TEST(UnusedPoses, AreNoneWhereAllAreFollowed) {
+  Rooms rooms;
+  rooms.known[3].reset();
+  EXPECT_TRUE(rooms.unused().empty());
+  EXPECT_TRUE(find_unused_poses(rooms.maps, {}, rooms.result).empty());
+}
+
+TEST(UnusedPoses, NameTheOneThatLiesElsewhereAndHowFar) {
+  Rooms rooms;
+  rooms.known[3].reset();
+  for (std::size_t wrong = 0; wrong < 3; ++wrong) {
+    Rooms one = rooms;
+    one.known[wrong]->T_world_map = rooms.T_world * Rooms::at(wrong) * SE2{0.0, 24.0, 0.0};
+    const std::vector<UnusedPose> unused = one.unused();
+    ASSERT_EQ(unused.size(), 1u) << wrong;
+    EXPECT_EQ(unused[0].map, wrong);
+    EXPECT_EQ(unused[0].why, Why::overruled);
+    EXPECT_NEAR(unused[0].distance, 24.0, 1e-6);
+  }
+}
+
+TEST(ContradictedFixes, AreTheFixedPairsThatMatchElsewhere) {
+  Rooms rooms;
+  Join join;
+  join.fixed = 0;
+  join.moving = 1;
+  join.match.verdict = Verdict::accepted;
+  join.match.T_fixed_moving = Rooms::at(1);
+  rooms.result.joins = {join};
+  const auto contradicted = [&] { return find_contradicted_fixes(rooms.maps, rooms.known, rooms.result); };
+
+  rooms.known[0]->fixed = rooms.known[1]->fixed = true;
+  EXPECT_TRUE(contradicted().empty());
+  rooms.known[1]->T_world_map = rooms.T_world * Rooms::at(1) * SE2{0.0, 24.0, 0.0};
+  ASSERT_EQ(contradicted().size(), 1u);
+  EXPECT_EQ(contradicted()[0].fixed, 0u);
+  EXPECT_EQ(contradicted()[0].moving, 1u);
+  EXPECT_NEAR(contradicted()[0].distance, 24.0, 1e-6);
+
+  rooms.known[1]->fixed = false;  // an unused pose then
+  EXPECT_TRUE(contradicted().empty());
+  rooms.known[1]->fixed = true;
+  rooms.result.joins[0].match.verdict = Verdict::refused;  // the maps are not sure of it
+  EXPECT_TRUE(contradicted().empty());
+}
+
+TEST(UnusedPoses, ATurnCountsAsADistanceToo) {
+  Rooms rooms;
+  rooms.known[3].reset();
+  rooms.known[1]->T_world_map.theta += 1.5;
+  const std::vector<UnusedPose> unused = rooms.unused();
+  ASSERT_EQ(unused.size(), 1u);
+  EXPECT_EQ(unused[0].map, 1u);
+  EXPECT_GT(unused[0].distance, 3.0);
+}
+
+TEST(UnusedPoses, AFixedPoseIsBelievedAgainstMany) {
+  Rooms rooms;
+  rooms.known[3].reset();
+  rooms.known[0]->fixed = true;
+  rooms.result.components[0].in_world_frame = true;
+  for (Member& member : rooms.result.components[0].members)
+    member.T_component_map = rooms.T_world * member.T_component_map;
+  EXPECT_TRUE(rooms.unused().empty());
+  for (const std::size_t map : {1U, 2U})
+    rooms.known[map]->T_world_map = SE2{0.0, 30.0, 0.0} * rooms.known[map]->T_world_map;
+  const std::vector<UnusedPose> unused = rooms.unused();
+  ASSERT_EQ(unused.size(), 2u);
+  EXPECT_EQ(unused[0].map, 1u);
+  EXPECT_EQ(unused[1].map, 2u);
+}
+
+TEST(UnusedPoses, OfAMapThatWasLeftOutSayWhatIsMissing) {
+  Rooms rooms;
+  ASSERT_EQ(rooms.unused().size(), 1u);
+  EXPECT_EQ(rooms.unused()[0].map, 3u);
+  EXPECT_EQ(rooms.unused()[0].why, Why::contradicted) << "10 cm is sure enough to join";
+
+  for (auto& one : rooms.known) one->sd_position = 1.0;
+  const UnusedPose unused = rooms.unused().at(0);
+  EXPECT_EQ(unused.why, Why::not_sure_enough);
+  EXPECT_EQ(unused.other, 2u) << "the nearest: directions err less over a short way";
+  EXPECT_GT(unused.sd, 1.4);
+  EXPECT_EQ(unused.sd_allowed, 0.5);
+
+  for (std::size_t i = 0; i < 3; ++i) rooms.known[i].reset();
+  EXPECT_TRUE(rooms.unused().empty()) << "the only pose says nothing";
+}
+
+}  // namespace
+}  // namespace gridmerge
