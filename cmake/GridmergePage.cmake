@@ -1,5 +1,9 @@
 # The report page: esbuild bundles web/src/main.ts, web/assemble.py puts page, style and script into one, as C++ source.
-# Sets GRIDMERGE_PAGE_SOURCE, for a target of the including folder.
+# Sets GRIDMERGE_PAGE_SOURCE, for a target of the including folder. A release's sources have it ready.
+set(GRIDMERGE_PAGE_SOURCE ${PROJECT_SOURCE_DIR}/web/bundled/page_template.cpp)
+if(EXISTS ${GRIDMERGE_PAGE_SOURCE})
+  return()
+endif()
 find_program(GRIDMERGE_ESBUILD esbuild HINTS ${PROJECT_SOURCE_DIR}/web/node_modules/.bin
              DOC "Bundles the report page (Debian package: esbuild)" REQUIRED)
 

@@ -1,0 +1,56 @@
+# CPack: Debian packages. `gridmerge` has the command line tool; `libgridmerge-dev` the libraries, their headers and the
+# files for find_package() and pkg-config. `./dev release` makes them.
+set(CPACK_PACKAGE_NAME gridmerge)
+set(CPACK_PACKAGE_VENDOR gridmerge)
+set(CPACK_PACKAGE_CONTACT "The gridmerge developers <gridmerge@localhost.localdomain>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_COMPONENTS_ALL tool ${GRIDMERGE_COMPONENTS})
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+set(CPACK_DEBIAN_TOOL_PACKAGE_NAME gridmerge)
+set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_TOOL_DESCRIPTION "merges occupancy grid maps of several robots
+ Takes the maps that robots built without knowing where the others were, and
+ returns one map, the transform of every input, and a verdict on each join.")
+
+set(dev_depends "")
+foreach(component IN LISTS GRIDMERGE_COMPONENTS)
+  foreach(package IN LISTS gridmerge_${component}_packages)
+    list(APPEND dev_depends ${gridmerge_debian_${package}})
+  endforeach()
+endforeach()
+list(REMOVE_DUPLICATES dev_depends)
+list(JOIN dev_depends ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS)
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libgridmerge-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_DESCRIPTION "merges occupancy grid maps (development files)
+ C++ libraries with their headers: grids, matching of two maps, merging of many,
+ map files, simulated maps, evaluation, reports.")
+
+# What Debian wants to find in usr/share/doc.
+set(documents ${PROJECT_BINARY_DIR}/debian)
+string(TIMESTAMP GRIDMERGE_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)  # of SOURCE_DATE_EPOCH, where that is set
+configure_file(${CMAKE_CURRENT_LIST_DIR}/debian/copyright ${documents}/copyright COPYONLY)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/debian/changelog.in ${documents}/changelog.Debian @ONLY)
+find_program(GRIDMERGE_GZIP gzip)
+if(GRIDMERGE_GZIP)
+  execute_process(COMMAND ${GRIDMERGE_GZIP} -9 -n -k -f ${documents}/changelog.Debian COMMAND_ERROR_IS_FATAL ANY)
+  install(FILES ${documents}/copyright ${documents}/changelog.Debian.gz DESTINATION share/doc/gridmerge COMPONENT tool)
+  install(FILES ${documents}/copyright ${documents}/changelog.Debian.gz DESTINATION share/doc/libgridmerge-dev
+          COMPONENT core)
+endif()
+
+include(CPack)
+cpack_add_component_group(tool)
+cpack_add_component_group(dev)
+cpack_add_component(tool GROUP tool)
+foreach(component IN LISTS GRIDMERGE_COMPONENTS)
+  cpack_add_component(${component} GROUP dev)
+endforeach()
