@@ -100,6 +100,17 @@ def assert_equals_the_command_lines(
     assert to_bits(as_json(result)) == to_bits(transforms)
 
 
+def test_a_way_that_is_not_sure_enough_stays_open(robots: list[str]) -> None:
+    sure = gridmerge.merge(robots[:2])
+    asked_for_more = gridmerge.merge(robots[:2], accept=1.0)
+    assert sure.open_ways == ()
+    assert not asked_for_more.components
+    way = asked_for_more.open_ways[0]
+    assert (way.fixed, way.moving) == (0, 1)
+    assert tuple(way.transform) == pytest.approx(tuple(sure.joins[0].match.transform))
+    assert way.probability == pytest.approx(sure.joins[0].probability)
+
+
 def test_files_and_results_equal_the_command_lines(
     cli: Cli, robots: list[str], elsewhere: str, tmp_path: Path
 ) -> None:
