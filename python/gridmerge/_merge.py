@@ -245,7 +245,9 @@ def merge(
     if up_the_tree and (init is not None or fix is not None):
         raise ValueError("strategy: init and fix need 'joint'")
     if search == "random-walk" and not up_the_tree:
-        raise ValueError("search: 'random-walk' needs the strategy 'tree': it has one pose per pair, no probability")
+        raise ValueError(
+            "search: 'random-walk' needs the strategy 'tree': it has one pose per pair, no probability"
+        )
     # The program may go to another directory before it saves.
     more_inputs = (os.fsencode(os.path.abspath(init)),) if isinstance(init, (str, os.PathLike)) else ()
     merged = _core.merge(

@@ -103,10 +103,14 @@ def test_progress_ends_with_one(robots: list[str]) -> None:
 
 def test_a_search_is_chosen_by_name(robots: list[str]) -> None:
     fixed, moving = robots[:2]
-    found = {name: gridmerge.match(fixed, moving, search=name) for name in ("exhaustive", "quick", "thorough")}
+    found = {
+        name: gridmerge.match(fixed, moving, search=name) for name in ("exhaustive", "quick", "thorough")
+    }
     assert all(one.accepted for one in found.values())
     assert found["exhaustive"].transform == found["quick"].transform  # it decides the pair
-    with pytest.raises(ValueError, match="search: must be one of exhaustive, quick, thorough, random-walk, is 'fast'"):
+    with pytest.raises(
+        ValueError, match="search: must be one of exhaustive, quick, thorough, random-walk, is 'fast'"
+    ):
         gridmerge.match(fixed, moving, search="fast")
     with pytest.raises(ValueError, match="search: must be one of"):
         gridmerge.merge([fixed, moving], search="fast")
