@@ -10,7 +10,6 @@
 #include "similarity/evidence.hpp"
 #include "similarity/wall_map.hpp"
 
-
 namespace {
 
 using gridmerge::OccupancyGrid;
@@ -46,7 +45,8 @@ void bm_search_all_poses(benchmark::State& state) {
   const WallMap fixed = gridmerge::internal::make_wall_map(pair.fixed, pair.fixed.resolution);
   const WallMap moving = gridmerge::internal::make_wall_map(pair.moving, pair.moving.resolution);
   for (auto _ : state) {
-    gridmerge::internal::with_threads(1, [&] { benchmark::DoNotOptimize(gridmerge::internal::search_all_poses(fixed, moving)); });
+    gridmerge::internal::with_threads(
+        1, [&] { benchmark::DoNotOptimize(gridmerge::internal::search_all_poses(fixed, moving)); });
   }
 }
 BENCHMARK(bm_search_all_poses)->Arg(400)->Arg(800)->Unit(benchmark::kMillisecond);

@@ -207,7 +207,8 @@ void internal::add_map(FileSet& files, const OccupancyGrid& grid, const std::fil
   add_files(files, grid, MapMode::trinary, to_pixels(grid), yaml_name);
 }
 
-void internal::add_probability_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name) {
+void internal::add_probability_map(FileSet& files, const OccupancyGrid& grid,
+                                   const std::filesystem::path& yaml_name) {
   validate(grid);
   if (grid.probability.empty()) throw std::invalid_argument("the map has no probabilities");
   add_files(files, grid, MapMode::raw, to_percentages(grid), yaml_name);

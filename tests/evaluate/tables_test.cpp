@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluate/tables.hpp"
-#include "match/verdict.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,8 @@
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "match/verdict.hpp"
 
 namespace gridmerge {
 

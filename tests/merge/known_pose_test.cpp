@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
-
 #include "gridmerge/merge/known_pose.hpp"
+
+#include <gtest/gtest.h>
 
 namespace gridmerge {
 namespace {
