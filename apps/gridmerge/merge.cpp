@@ -8,7 +8,6 @@
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <ranges>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -52,21 +51,26 @@ void tell_of_copies(const MergeCommandOptions& options, const std::vector<Occupa
                     Console& console) {
   std::vector<std::string> twice;   // named before
   std::vector<std::string> copies;  // of another file's cells
+  const auto is_one_file = [&](std::size_t i, std::size_t j) {
+    std::error_code absent;
+    return std::filesystem::equivalent(options.maps[i], options.maps[j], absent);
+  };
+  const auto has_equal_cells = [&](std::size_t i, std::size_t j) {
+    return maps[i].width == maps[j].width && maps[i].resolution == maps[j].resolution &&
+           maps[i].cells == maps[j].cells;
+  };
   for (std::size_t i = 1; i < maps.size(); ++i) {
-    const auto is_file_of = [&, i](std::size_t j) {
-      std::error_code absent;
-      return std::filesystem::equivalent(options.maps[i], options.maps[j], absent);
-    };
-    const auto is_copy_of = [&, i](std::size_t j) {
-      return maps[i].width == maps[j].width && maps[i].resolution == maps[j].resolution &&
-             maps[i].cells == maps[j].cells;
-    };
     if (count_cells(maps[i]).known() == 0) continue;
-    const auto before = std::views::iota(std::size_t{0}, i);
-    if (std::ranges::any_of(before, is_file_of)) {
+    bool is_twice = false;
+    std::optional<std::size_t> original;
+    for (std::size_t j = 0; j < i; ++j) {
+      is_twice = is_twice || is_one_file(i, j);
+      if (!original && has_equal_cells(i, j)) original = j;
+    }
+    if (is_twice) {
       twice.push_back(options.maps[i]);
-    } else if (const auto other = std::ranges::find_if(before, is_copy_of); other != before.end()) {
-      copies.push_back(fmt::format("{} (of {})", options.maps[i], options.maps[*other]));
+    } else if (original) {
+      copies.push_back(fmt::format("{} (of {})", options.maps[i], options.maps[*original]));
     }
   }
   if (!twice.empty())
