@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "evaluate/displacement.hpp"
+#include "gridmerge/evaluate/displacement.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluate/displacement.hpp"
+#include "gridmerge/evaluate/displacement.hpp"
 #include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evaluate/displacement.hpp"
+#include "gridmerge/evaluate/displacement.hpp"
 
 #include <cmath>
 
-namespace gridmerge::internal {
+namespace gridmerge {
 
 KnownMoments known_moments(const OccupancyGrid& map) {
   // In cells about the grid's middle, row by row: within a row all sums are exact integers, and keeping the
@@ -50,4 +50,4 @@ double rms_displacement(const OccupancyGrid& moving, const SE2& T_estimate, cons
   return rms_displacement(known_moments(moving), T_estimate, T_truth);
 }
 
-}  // namespace gridmerge::internal
+}  // namespace gridmerge

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evaluate/displacement.hpp"
+#include "gridmerge/evaluate/displacement.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

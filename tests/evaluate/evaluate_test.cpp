@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "evaluate/displacement.hpp"
 #include "evaluate/map_cache.hpp"
+#include "gridmerge/evaluate/displacement.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "support/building.hpp"
 

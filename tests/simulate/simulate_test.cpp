@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "evaluate/displacement.hpp"
+#include "gridmerge/evaluate/displacement.hpp"
 #include "support/effort.hpp"
 
 namespace gridmerge {

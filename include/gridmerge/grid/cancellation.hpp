@@ -13,12 +13,12 @@ class Cancelled : public std::runtime_error {
   Cancelled();
 };
 
-/// Runs `work` so that it ends with Cancelled soon after `cancelled` becomes true, from whichever thread:
-/// when its next parallel_for() begins a call, or at its next throw_if_cancelled(). The threads of its
-/// parallel_for() and with_threads() belong to it. An exception of `work` is passed on.
+/// Runs `work` so that it ends with Cancelled soon after `cancelled` becomes true, from whichever thread. All
+/// long functions of the library look at it, in the threads too that they use. An exception of `work` is
+/// passed on.
 void with_cancellation(const std::atomic<bool>& cancelled, const std::function<void()>& work);
 
-/// For long loops that call no parallel_for(): throws Cancelled if the work they belong to was asked to stop.
+/// For long loops of your own: throws Cancelled if the work they belong to was asked to stop.
 /// A few nanoseconds; without with_cancellation() it never throws.
 void throw_if_cancelled();
 

@@ -17,8 +17,8 @@ namespace gridmerge {
 /// How match() searches the poses of a pair.
 enum class SearchMethod {
   exhaustive,   ///< the quick look; the thorough one as well where that leaves the pair undecided
-  quick,        ///< search_all_poses(): finds what overlaps much
-  thorough,     ///< search_thoroughly(): finds what overlaps little too, in a few times the time
+  quick,        ///< every pose, coarsely: finds what overlaps much
+  thorough,     ///< by the way walls face, too: finds what overlaps little, in a few times the time
   random_walk,  ///< match_by_random_walk(): as Birk & Carpin (2006), with their acceptance index
 };
 

@@ -3,7 +3,7 @@
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 
-namespace gridmerge::internal {
+namespace gridmerge {
 
 /// What rms_displacement() needs to know of a map: how the centres of its known cells lie in the map frame.
 struct KnownMoments {
@@ -21,4 +21,4 @@ double rms_displacement(const KnownMoments& moving, const SE2& T_estimate, const
 /// The same for a single use. O(cells).
 double rms_displacement(const OccupancyGrid& moving, const SE2& T_estimate, const SE2& T_truth);
 
-}  // namespace gridmerge::internal
+}  // namespace gridmerge
