@@ -17,11 +17,12 @@ namespace gridmerge {
 
 /// What the engine is to be compared with.
 struct Truth {
-  std::vector<TruePair> pairs;
-  std::vector<NegativePair> negatives;
-  std::vector<TrueSet> sets;
+  std::vector<TruePair> pairs;          ///< maps of one place, and how they lie
+  std::vector<NegativePair> negatives;  ///< maps of different places
+  std::vector<TrueSet> sets;            ///< maps to be merged
 };
 
+/// How the engine is run and what is told meanwhile.
 struct EvaluateOptions {
   /// How two maps are compared; match() as it is, if empty.
   Matcher matcher;
@@ -39,26 +40,28 @@ struct EvaluateOptions {
 
 /// A hypothesis beside the truth.
 struct JudgedHypothesis {
-  Hypothesis hypothesis;
+  Hypothesis hypothesis;        ///< as the engine has it
   std::optional<double> error;  ///< rms_displacement() [m]; none for a negative
 };
 
 /// How one pair went: a true pair, or a negative.
 struct MatchOutcome {
-  std::string fixed;   ///< as the truth file writes it
-  std::string moving;  ///< as the truth file writes it
-  std::string tier;    ///< empty for a negative
-  Verdict verdict = Verdict::refused;
-  double probability = 0.0;
+  std::string fixed;                   ///< as the truth file writes it
+  std::string moving;                  ///< as the truth file writes it
+  std::string tier;                    ///< empty for a negative
+  Verdict verdict = Verdict::refused;  ///< on the best hypothesis
+  double probability = 0.0;            ///< that the best hypothesis is the true pose
   /// rms_displacement() of the best hypothesis [m]; none for a negative, and none when there is no
   /// hypothesis.
   std::optional<double> error;
-  std::optional<double> tolerance;  ///< [m]; none for a negative
-  double seconds = 0.0;             ///< from grids in memory to the verdict
-  Reason reason = Reason::none;     ///< why it was refused
-  std::vector<JudgedHypothesis> hypotheses;
+  std::optional<double> tolerance;           ///< [m]; none for a negative
+  double seconds = 0.0;                      ///< from grids in memory to the verdict
+  Reason reason = Reason::none;              ///< why it was refused
+  std::vector<JudgedHypothesis> hypotheses;  ///< most probable first
 
+  /// The maps have no common place.
   bool negative() const { return !tolerance; }
+  /// The engine believed its best hypothesis.
   bool accepted() const { return verdict == Verdict::accepted; }
   /// The best hypothesis is the true pose, accepted or not.
   bool correct() const { return error && tolerance && *error <= *tolerance; }
@@ -66,15 +69,17 @@ struct MatchOutcome {
 
 /// How one set of maps went. A map alone in its component is left out; every other is correct or wrong.
 struct SetOutcome {
-  std::string name;
-  std::size_t maps = 0;
-  std::size_t correct = 0;
-  std::size_t wrong = 0;
-  std::size_t left_out = 0;
+  std::string name;          ///< as the truth file writes it
+  std::size_t maps = 0;      ///< how many there are
+  std::size_t correct = 0;   ///< within their tolerance
+  std::size_t wrong = 0;     ///< in a component, but not within their tolerance
+  std::size_t left_out = 0;  ///< alone
 
+  /// Every map is correct.
   bool complete() const { return correct == maps; }
 };
 
+/// How everything went.
 struct Evaluation {
   std::vector<MatchOutcome> matches;  ///< the pairs, then the negatives, each in file order
   std::vector<SetOutcome> sets;       ///< in file order

@@ -18,8 +18,8 @@ struct TruthMap {
 
 /// Two maps of one place.
 struct TruePair {
-  TruthMap fixed;
-  TruthMap moving;
+  TruthMap fixed;          ///< the map that stays
+  TruthMap moving;         ///< the map that is laid on it
   SE2 T_fixed_moving;      ///< between the map frames [m, rad]
   double tolerance = 0.0;  ///< largest rms_displacement() of a correct estimate [m]
   std::string
@@ -29,20 +29,21 @@ struct TruePair {
 
 /// Two maps with no common place: the only right answer is to refuse.
 struct NegativePair {
-  TruthMap fixed;
-  TruthMap moving;
+  TruthMap fixed;   ///< the map that stays
+  TruthMap moving;  ///< the map that is laid on it
 };
 
+/// A map of a set.
 struct TrueMember {
-  TruthMap map;
+  TruthMap map;            ///< as the file names it
   SE2 T_set_map;           ///< takes the map's frame to the set's [m, rad]
   double tolerance = 0.0;  ///< as in TruePair [m]
 };
 
 /// Maps of one place by several robots: at least two.
 struct TrueSet {
-  std::string name;
-  std::vector<TrueMember> members;
+  std::string name;                 ///< as the file writes it
+  std::vector<TrueMember> members;  ///< in file order
 };
 
 /// Readers of ground-truth files: tab-separated text whose first line names the columns, in any order. Every
@@ -62,7 +63,9 @@ std::vector<TrueSet> read_sets(const std::filesystem::path& path);
 /// The text of a ground-truth file, which reads back to the same values (numbers to the bit). Names are those
 /// of the maps, not their paths; throws std::invalid_argument for one with a tab or a line break.
 std::string format_pairs(const std::vector<TruePair>& pairs);
+/// As format_pairs().
 std::string format_negatives(const std::vector<NegativePair>& negatives);
+/// As format_pairs().
 std::string format_sets(const std::vector<TrueSet>& sets);
 
 }  // namespace gridmerge

@@ -10,6 +10,7 @@ namespace gridmerge {
 /// What work ends with that was asked to stop.
 class Cancelled : public std::runtime_error {
  public:
+  /// With a message that says so.
   Cancelled();
 };
 

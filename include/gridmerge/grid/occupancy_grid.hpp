@@ -10,7 +10,11 @@
 namespace gridmerge {
 
 /// What a map says of a cell.
-enum class Cell : std::uint8_t { unknown = 0, free = 1, occupied = 2 };
+enum class Cell : std::uint8_t {
+  unknown = 0,   ///< that it was not seen
+  free = 1,      ///< that nothing stands there
+  occupied = 2,  ///< that something stands there
+};
 
 /// An occupancy grid map: the layout of `nav_msgs/OccupancyGrid`.
 ///
@@ -26,11 +30,15 @@ struct OccupancyGrid {
   /// has none.
   std::vector<float> probability;
 
+  /// Where `cells` and `probability` hold a cell, which has to be inside.
   std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
   }
+  /// The value of a cell, which has to be inside.
   Cell at(int column, int row) const { return cells[index(column, row)]; }
+  /// The same, to be changed.
   Cell& at(int column, int row) { return cells[index(column, row)]; }
+  /// Whether there is such a cell.
   bool contains(int column, int row) const {
     return column >= 0 && column < width && row >= 0 && row < height;
   }
@@ -45,11 +53,13 @@ struct OccupancyGrid {
 OccupancyGrid make_grid(int width, int height, double resolution, const SE2& origin = {},
                         Cell fill = Cell::unknown);
 
+/// How many cells of each value a map has.
 struct CellCounts {
-  std::size_t unknown = 0;
-  std::size_t free = 0;
-  std::size_t occupied = 0;
+  std::size_t unknown = 0;   ///< of Cell::unknown
+  std::size_t free = 0;      ///< of Cell::free
+  std::size_t occupied = 0;  ///< of Cell::occupied
 
+  /// Of cells that are not unknown.
   std::size_t known() const { return free + occupied; }
 };
 
@@ -63,7 +73,7 @@ void validate(const OccupancyGrid& grid);
 /// A map, and the transform that takes its frame to the output's.
 struct PlacedMap {
   const OccupancyGrid* map = nullptr;  ///< not owned; outlives its use
-  SE2 T_output_map;
+  SE2 T_output_map;                    ///< takes the map's frame to the output's [m, rad]
 };
 
 }  // namespace gridmerge

@@ -5,9 +5,10 @@ namespace gridmerge {
 
 /// A point of the plane, in metres, in the frame that its context names.
 struct Point2 {
-  double x = 0.0;
-  double y = 0.0;
+  double x = 0.0;  ///< [m]
+  double y = 0.0;  ///< [m]
 
+  /// Whether both coordinates are equal.
   friend bool operator==(const Point2&, const Point2&) = default;
 };
 
@@ -16,10 +17,11 @@ struct Point2 {
 /// (`x`, `y`) (Birk & Carpin 2006, eq. 1). Metres and radians; `theta` is kept in (-pi, pi].
 /// Named after its frames: `T_a_b` takes a point given in frame b to frame a.
 struct SE2 {
-  double x = 0.0;
-  double y = 0.0;
-  double theta = 0.0;
+  double x = 0.0;      ///< [m]
+  double y = 0.0;      ///< [m]
+  double theta = 0.0;  ///< [rad]
 
+  /// Whether all three are equal.
   friend bool operator==(const SE2&, const SE2&) = default;
 };
 
@@ -41,8 +43,10 @@ SE2 inverse(const SE2& T_a_b);
 /// A transform for many points: its sine and cosine are computed once. To the bit as with the SE2.
 class ManyPointsTransform {
  public:
+  /// Takes points of frame b to frame a.
   explicit ManyPointsTransform(const SE2& T_a_b);
 
+  /// p_a.
   Point2 operator*(const Point2& p_b) const {
     return {cos_ * p_b.x - sin_ * p_b.y + x_, sin_ * p_b.x + cos_ * p_b.y + y_};
   }

@@ -12,12 +12,14 @@ namespace gridmerge {
 /// What is escaped already stays as it is.
 std::string escape_controls(std::string_view text);
 
-/// A file that cannot be read or written. The message names the file and the cause, "a.yaml: missing key
-/// 'origin'", on one line: control characters (file names and file contents are not ours to choose) are shown
-/// as escapes. Of one above 10,000 bytes the middle is left out.
+/// A file that cannot be read or written. The message names the file and the cause, on one line:
+/// "a.yaml: missing key 'origin'". Control characters (file names and file contents are not ours to choose)
+/// are shown as escapes. Of a message above 10,000 bytes the middle is left out.
 class FileError : public std::runtime_error {
  public:
+  /// The message as it is, but for control characters and length.
   explicit FileError(std::string_view message);
+  /// "file: cause".
   FileError(const std::filesystem::path& file, std::string_view cause);
 };
 

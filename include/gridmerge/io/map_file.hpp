@@ -11,14 +11,16 @@
 
 namespace gridmerge {
 
-/// Resolutions [m/cell] beyond these are no map's: a file that has one is damaged or hostile.
+/// Resolutions below this are no map's [m/cell]: a file that has one is damaged or hostile.
 inline constexpr double kMinResolution = 1e-6;
+/// Nor are resolutions above this [m/cell].
 inline constexpr double kMaxResolution = 1e3;
 
 /// [m] Origins further from zero are no map's: far beyond any, and still far from where a double stops
 /// resolving micrometres.
 inline constexpr double kMaxOrigin = 1e9;
 
+/// How map files are read.
 struct LoadOptions {
   double resolution = 0.0;           ///< [m/cell] of a bare image; 0 = a bare image is an error
   std::size_t max_cells = 1u << 28;  ///< larger maps are refused before memory is taken for them
@@ -32,26 +34,28 @@ struct LoadOptions {
 
 /// What a warning about a map's file is about. Warnings of one kind differ in their figures only.
 enum class MapWarningKind {
-  unknown_gray,     ///< the gray that map savers write for unknown is unknown, whatever the thresholds say
-  gray_is_known,    ///< that gray is loaded as free or occupied
-  alpha,            ///< nav2 would read the picture's transparent pixels otherwise
-  image_elsewhere,  ///< the image is not where the YAML says, but beside it
-  yaw_not_a_number,
-  long_origin,  ///< the origin has a fourth number
-  negate_in_raw_mode,
-  no_known_cell,
-  no_occupied_cell,
-  no_free_cell,
-  painted_black,  ///< most of the map is occupied, far from any free cell
+  unknown_gray,        ///< the gray that map savers write for unknown is unknown, whatever the thresholds say
+  gray_is_known,       ///< that gray is loaded as free or occupied
+  alpha,               ///< nav2 would read the picture's transparent pixels otherwise
+  image_elsewhere,     ///< the image is not where the YAML says, but beside it
+  yaw_not_a_number,    ///< it is read as 0
+  long_origin,         ///< the origin has a fourth number
+  negate_in_raw_mode,  ///< where it has no effect
+  no_known_cell,       ///< all are unknown
+  no_occupied_cell,    ///< all known ones are free
+  no_free_cell,        ///< all known ones are occupied
+  painted_black,       ///< most of the map is occupied, far from any free cell
 };
 
+/// What a map's file may not have meant.
 struct MapWarning {
-  MapWarningKind kind;
-  std::string text;  ///< a sentence, without the file's name
+  MapWarningKind kind;  ///< what it is about
+  std::string text;     ///< a sentence, without the file's name
 };
 
+/// A map, and what there is to say of its files.
 struct LoadedMap {
-  OccupancyGrid grid;
+  OccupancyGrid grid;                        ///< what the files hold
   std::vector<MapWarning> warnings;          ///< what the file says that its author may not have meant
   std::vector<std::filesystem::path> files;  ///< what it was read from, as map_files() tells
 };
@@ -64,9 +68,8 @@ struct LoadedMap {
 /// - `trinary`: occupied where p > occupied_thresh, free where p < free_thresh, else unknown.
 /// - `scale`: the same cells; `probability` is 1, 0 and, between the thresholds, p stretched to [0, 1].
 /// - `raw`: the 8-bit lightness is the occupancy in percent, above 100 unknown; `probability` holds it.
-/// Occupied from
-///   occupied_thresh on, free up to free_thresh (what map_saver does with percentages), else unknown. No
-///   `negate`.
+///   Occupied from occupied_thresh on, free up to free_thresh (what map_saver does with percentages), else
+///   unknown. No `negate`.
 ///
 /// This is nav2's map_io but for alpha: a pixel that is not opaque is unknown in `trinary` and `scale`, and
 /// alpha never counts as colour. (nav2 averages it into the lightness in `trinary`; a warning says where that

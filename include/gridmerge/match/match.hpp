@@ -24,7 +24,7 @@ enum class SearchMethod {
 
 /// A method: the one place where its name and meaning stand.
 struct SearchMethodName {
-  SearchMethod method;
+  SearchMethod method;  ///< which one
   const char* name;     ///< as the command line, Python and outputs spell it
   const char* meaning;  ///< in a few words
 };
@@ -38,6 +38,7 @@ const char* name_of(SearchMethod method);
 /// The method of that name; none if there is none.
 std::optional<SearchMethod> search_method(std::string_view name);
 
+/// How two maps are matched.
 struct MatchOptions {
   SearchMethod search = SearchMethod::exhaustive;  ///< how poses are found
   /// Of SearchMethod::random_walk, which has its own rule of acceptance. Its threads, number of hypotheses

@@ -9,7 +9,11 @@
 
 namespace gridmerge {
 
-enum class Verdict { refused, accepted };
+/// Whether the best hypothesis is believed.
+enum class Verdict {
+  refused,   ///< it is not: see Reason
+  accepted,  ///< it is
+};
 
 /// The verdict's one word in every output: "refused" or "accepted".
 const char* name_of(Verdict verdict);
@@ -30,6 +34,10 @@ const char* name_of(Reason reason);
 
 /// What speaks for a pose of two maps and against it. pose_figures() lists them with their meanings.
 struct PoseFigures {
+  /// @name Figures
+  ///@{
+
+  /// See pose_figures().
   double score = 0.0;
   double lead = 0.0;
   double stands_out = 0.0;
@@ -50,14 +58,15 @@ struct PoseFigures {
   double overlap = 0.0;
   double sigma = 0.0;
   double outliers = 0.0;
+  ///@}
 };
 
 /// One of the figures: the one place where its name, unit and meaning stand.
 struct PoseFigure {
-  const char* name;
-  const char* unit;
-  const char* meaning;
-  double PoseFigures::*value;
+  const char* name;            ///< as outputs spell it
+  const char* unit;            ///< "m", "nats", "share", ...
+  const char* meaning;         ///< in a few words
+  double PoseFigures::*value;  ///< where PoseFigures holds it
 };
 
 /// All of them, in the order of PoseFigures.
@@ -72,8 +81,9 @@ struct Hypothesis {
   PoseFigures figures = {};  ///< what speaks for it
 };
 
+/// How two maps lie, and whether that is to be believed.
 struct MatchResult {
-  Verdict verdict = Verdict::refused;
+  Verdict verdict = Verdict::refused;          ///< on the best hypothesis
   Reason reason = Reason::nothing_to_compare;  ///< why it was refused
   SE2 T_fixed_moving;                          ///< the best hypothesis, given for a refused pair too
   double probability = 0.0;                    ///< that the best hypothesis is the true pose

@@ -22,7 +22,7 @@ class PreparedMap {
   ~PreparedMap();
 
   const OccupancyGrid& known() const { return known_; }  ///< cropped to its known cells
-  const CellCounts& counts() const { return counts_; }
+  const CellCounts& counts() const { return counts_; }   ///< of known()
 
   /// For the engine: the map as it compares it, in cells of `cell` metres; drawn when first asked for.
   /// O(cells) then.

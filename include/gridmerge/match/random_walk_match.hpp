@@ -12,8 +12,9 @@
 
 namespace gridmerge {
 
+/// How two maps are matched by random walks.
 struct RandomWalkMatchOptions {
-  StartPoseOptions start;
+  StartPoseOptions start;  ///< the lattice of poses from which walks start
   /// T_fixed_moving from which all walks start, instead of the best poses of that lattice [m, rad].
   std::optional<SE2> start_pose = {};
   /// Of each walk. Its seed is the first walk's, and those of the others are derived from it; its c_lock is

@@ -15,9 +15,11 @@ struct EqualCells {
   std::int64_t equal = 0;  ///< cells of the map at which all inputs have the same value, unknown included
   std::int64_t cells = 0;  ///< of the map
 
+  /// Of all cells, in [0, 1]; 0 when there are none.
   double share() const { return cells == 0 ? 0.0 : static_cast<double>(equal) / static_cast<double>(cells); }
 };
 
+/// One map of several, and how these agree.
 struct FusedMap {
   OccupancyGrid grid;           ///< upright (yaw 0), in the output frame; ternary cells and probabilities
   std::size_t agreeing = 0;     ///< cells known in two or more inputs, all equal

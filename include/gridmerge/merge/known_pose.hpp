@@ -25,20 +25,20 @@ void validate(const KnownPose& known);
 
 /// A known pose that a merge did not follow, and why.
 struct UnusedPose {
+  /// Why it was not followed.
   enum class Why {
     overruled,        ///< the map lies elsewhere: the maps say so
     not_sure_enough,  ///< the map was left out, and its pose alone joins it to none
     contradicted,     ///< the map was left out, though its pose is sure enough to join it
   };
 
-  std::size_t map = 0;  ///< index of the input map
-  Why why = Why::overruled;
+  std::size_t map = 0;       ///< index of the input map
+  Why why = Why::overruled;  ///< why it was not followed
   double distance = 0.0;  ///< of an overruled pose from where the map lies [m, root mean square of its cells]
-  /// Of a pose that is not sure enough: the map whose known pose goes with it best, how far off the two put
-  /// the maps (standard deviation [m]), and how far off they may for known poses alone to join them [m].
+  /// Of a pose that is not sure enough: the map whose known pose goes with it best.
   std::size_t other = 0;
-  double sd = 0.0;
-  double sd_allowed = 0.0;
+  double sd = 0.0;          ///< how far off the two put the maps (standard deviation [m])
+  double sd_allowed = 0.0;  ///< how far off they may for known poses alone to join them [m]
 };
 
 /// Which of the poses that were known beforehand merge() did not follow, ascending by map. Of the members of

@@ -13,6 +13,7 @@
 
 namespace gridmerge {
 
+/// How maps are merged.
 struct MergeOptions {
   /// How each pair is matched, and from which probability on maps are joined; its progress callback is
   /// not used.

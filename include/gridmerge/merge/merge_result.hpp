@@ -29,14 +29,13 @@ struct Join {
   std::size_t fixed = 0;   ///< index of the input map
   std::size_t moving = 0;  ///< index of the input map
   MatchResult match;       ///< what the two say by themselves, between the frames of these two input maps
-  JoinOutcome outcome = JoinOutcome::refused;
-  SE2 T_fixed_moving;        ///< the pose that was used, or the best hypothesis of a join that was not
-  double probability = 0.0;  ///< of that pose, from these two maps alone
-  // Of that pose, as MatchResult has them of the best hypothesis.
-  double acceptance_index = 0.0;
-  std::int64_t agreement = 0;
-  std::int64_t disagreement = 0;
-  double overlap = 0.0;
+  JoinOutcome outcome = JoinOutcome::refused;  ///< what became of it
+  SE2 T_fixed_moving;             ///< the pose that was used, or the best hypothesis of a join that was not
+  double probability = 0.0;       ///< of that pose, from these two maps alone
+  double acceptance_index = 0.0;  ///< of that pose, as MatchResult has it of the best hypothesis
+  std::int64_t agreement = 0;     ///< likewise
+  std::int64_t disagreement = 0;  ///< likewise
+  double overlap = 0.0;           ///< likewise
 
   /// Whether the maps lie so in the result.
   bool used() const { return outcome != JoinOutcome::refused && outcome != JoinOutcome::rejected; }
@@ -57,6 +56,7 @@ struct PoseDeviation {
   double theta = 0.0;     ///< standard deviation of the direction [rad]
 };
 
+/// A map of a component.
 struct Member {
   std::size_t map = 0;  ///< index of the input map
   SE2 T_component_map;  ///< takes the map's frame to the component's
@@ -69,7 +69,7 @@ struct Member {
 /// Maps that were joined.
 struct Component {
   std::vector<Member> members;  ///< ascending
-  FusedMap fused;
+  FusedMap fused;               ///< the map that they make, in the component's frame
   /// The frame is that of the first member, or, where a member's pose is fixed, the world's (see KnownPose).
   bool in_world_frame = false;
 };
@@ -86,6 +86,7 @@ struct OpenWay {
 /// Ways that are less probable are not told.
 inline constexpr double kLeastOpenProbability = 0.1;
 
+/// What a merge made of its maps.
 struct MergeResult {
   std::vector<Component> components;     ///< of two or more maps each, most members first
   std::vector<Join> joins;               ///< every comparison made, whatever its outcome

@@ -15,12 +15,15 @@ namespace gridmerge {
 /// they were added.
 class Merger {
  public:
+  /// What add() calls a map; it is not given again when the map is removed.
   using MapId = std::size_t;
 
   /// Throws std::invalid_argument for invalid options.
   explicit Merger(MergeOptions options = {});
   ~Merger();
+  /// The maps and their matches move; what is left may only be assigned to or end.
   Merger(Merger&&) noexcept;
+  /// Likewise.
   Merger& operator=(Merger&&) noexcept;
 
   /// Takes in one more map, with what is known of its pose; nothing is matched before result(). Throws

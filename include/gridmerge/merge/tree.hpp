@@ -11,6 +11,7 @@ namespace gridmerge {
 /// How two grids are compared: what merge_up_tree() asks of match().
 using Matcher = std::function<MatchResult(const OccupancyGrid& fixed, const OccupancyGrid& moving)>;
 
+/// How maps are merged up a tree.
 struct TreeOptions {
   double resolution = 0.0;  ///< of the merged maps [m]; 0 = the finest among a map's inputs
   /// Called after every comparison with the number of finished ones and of those to be expected in all if

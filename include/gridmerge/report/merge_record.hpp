@@ -22,8 +22,8 @@ struct MergeRecord {
 
 /// Reads the text of a `transforms.json`. Strict: every key that transforms_json() writes has to be there and
 /// to make sense with the others, angles lie in (-pi, pi], each map is in one place. Keys that it does not
-/// know are passed over. `file` is what to call it. Throws FileError, "file: joins[2].transform.x is no
-/// number". O(bytes).
+/// know are passed over. `file` is what to call it. Throws FileError that says what is wrong where:
+/// "file: joins[2].transform.x is no number". O(bytes).
 MergeRecord parse_transforms(const std::filesystem::path& file, std::string_view text);
 
 /// The same of `directory`/transforms.json. Throws FileError also when there is none, or it exceeds 256 MiB.

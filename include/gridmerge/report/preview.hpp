@@ -10,17 +10,19 @@
 
 namespace gridmerge {
 
+/// A colour, 8 bits a channel.
 struct Colour {
-  std::uint8_t red = 0;
-  std::uint8_t green = 0;
-  std::uint8_t blue = 0;
+  std::uint8_t red = 0;    ///< 0 to 255
+  std::uint8_t green = 0;  ///< 0 to 255
+  std::uint8_t blue = 0;   ///< 0 to 255
 
+  /// Whether all channels are equal.
   friend bool operator==(const Colour&, const Colour&) = default;
 };
 
 /// The colours of a preview. Free space that one map saw has a light tint of the map's colour.
 struct PreviewColours {
-  static constexpr Colour kUnknown{221, 221, 217};
+  static constexpr Colour kUnknown{221, 221, 217};     ///< known to no map
   static constexpr Colour kSharedFree{255, 255, 255};  ///< free in two maps or more
   static constexpr Colour kSharedWall{32, 32, 36};     ///< occupied in two maps or more
   /// Free in as many maps as occupied; nothing else has it. The fewer say otherwise than the rest, the nearer

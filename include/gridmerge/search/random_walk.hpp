@@ -21,23 +21,24 @@ struct StartPoseOptions {
 
 /// A pose and what the paper measures there.
 struct MeasuredPose {
-  SE2 T_fixed_moving;  ///< between map frames [m, rad]
-  ImageSimilarity similarity;
+  SE2 T_fixed_moving;          ///< between map frames [m, rad]
+  ImageSimilarity similarity;  ///< at the pose
 };
 
 /// Which samples a walk's trace holds.
 enum class WalkTrace {
-  none,
+  none,      ///< nothing
   accepted,  ///< the start, and those that the walk went to
   all,       ///< every proposal; a wide one that the walk went to later stands there once more
 };
 
+/// How a walk goes.
 struct RandomWalkOptions {
   double c_lock = 0.0;          ///< weight of (dis - agr) in Delta; not negative
   std::size_t memory = 10;      ///< M: accepted steps that set the mean and covariance of proposals, >= 4
   double first_step = 10.0;     ///< standard deviation of proposals before anything is accepted [cells]
   double smallest_step = 0.25;  ///< bounds of a proposal's standard deviation in any direction [cells]
-  double largest_step = 40.0;
+  double largest_step = 40.0;   ///< the upper one of these bounds [cells]
   /// Share of proposals that are drawn from all poses at which the maps may touch, in [0, 1]: what lets the
   /// walk leave the place where it is (see random_walk()). From wrong starts, shares from 0.02 to 0.5 came to
   /// the truth after some thousand proposals; a small one leaves most of them to the walk. Without any, the
@@ -52,8 +53,8 @@ struct RandomWalkOptions {
   /// the walk still goes to worse samples and back is none.
   std::size_t patience = 2000;
   std::size_t max_proposals = 200000;  ///< stop then in any case
-  std::uint64_t seed = 1;
-  WalkTrace trace = WalkTrace::none;
+  std::uint64_t seed = 1;              ///< of the proposals
+  WalkTrace trace = WalkTrace::none;   ///< what RandomWalkResult::trace holds
 };
 
 /// A sample of a walk.
@@ -65,15 +66,16 @@ struct WalkSample {
   /// Whether it was measured before it was refused: what lies apart need not be. Without, `delta` and
   /// `similarity` say nothing.
   bool measured = true;
-  double delta = 0.0;
-  ImageSimilarity similarity;
+  double delta = 0.0;          ///< psi + c_lock * (dis - agr)
+  ImageSimilarity similarity;  ///< what Delta is made of
 };
 
+/// What a walk found.
 struct RandomWalkResult {
-  SE2 T_fixed_moving;          ///< the best sample, between map frames [m, rad]
-  ImageSimilarity similarity;  ///< there
-  double delta = 0.0;          ///< there
-  std::size_t proposals = 0;
+  SE2 T_fixed_moving;             ///< the best sample, between map frames [m, rad]
+  ImageSimilarity similarity;     ///< there
+  double delta = 0.0;             ///< there
+  std::size_t proposals = 0;      ///< samples that were tried
   std::size_t accepted = 0;       ///< moves of the walk
   std::vector<WalkSample> trace;  ///< what WalkTrace asks for, by step
 };
@@ -125,6 +127,7 @@ RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& mo
 
 /// Throws std::invalid_argument, saying what is wrong, for options that make no sense.
 void validate(const RandomWalkOptions& options);
+/// Throws std::invalid_argument, saying what is wrong, for options that make no sense.
 void validate(const StartPoseOptions& options);
 
 }  // namespace gridmerge

@@ -17,10 +17,11 @@ inline constexpr int kMaxDistanceMapSides = 32000;
 /// d-map_c of Birk & Carpin 2006: for every cell of a grid the Manhattan distance [cells] to the nearest cell
 /// of one value, row-major as the grid; kNoDistance everywhere if there is none.
 struct DistanceMap {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint16_t> distances;
+  int width = 0;                         ///< columns
+  int height = 0;                        ///< rows
+  std::vector<std::uint16_t> distances;  ///< width * height values [cells]
 
+  /// The distance at a cell, which has to be inside.
   std::uint16_t at(int column, int row) const {
     return distances[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
                      static_cast<std::size_t>(column)];

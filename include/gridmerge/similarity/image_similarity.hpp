@@ -39,15 +39,16 @@ struct DirectedDistance {
 
   /// A value that is missing in either map leaves the distance undefined: it counts as 0.
   bool defined() const { return count > 0; }
+  /// d(m1, m2, c) [cells].
   double mean() const { return defined() ? static_cast<double>(sum) / static_cast<double>(count) : 0.0; }
 };
 
 /// What the paper measures of a pose.
 struct ImageSimilarity {
-  DirectedDistance fixed_to_moving_free;
-  DirectedDistance moving_to_fixed_free;
-  DirectedDistance fixed_to_moving_occupied;
-  DirectedDistance moving_to_fixed_occupied;
+  DirectedDistance fixed_to_moving_free;      ///< d(fixed, moving, free)
+  DirectedDistance moving_to_fixed_free;      ///< d(moving, fixed, free)
+  DirectedDistance fixed_to_moving_occupied;  ///< d(fixed, moving, occupied)
+  DirectedDistance moving_to_fixed_occupied;  ///< d(moving, fixed, occupied)
   std::int64_t omega = 0;         ///< cells of the fixed map that have the same value, unknown included
   std::int64_t agreement = 0;     ///< agr: cells known in both maps and equal
   std::int64_t disagreement = 0;  ///< dis: cells known in both maps and different
@@ -73,9 +74,9 @@ struct ImageSimilarity {
 
 /// The cells known in both maps, by what the maps say of them.
 struct CommonClasses {
-  std::int64_t occupied_occupied = 0;
-  std::int64_t free_free = 0;
-  std::int64_t contradicting = 0;  ///< free in one map, occupied in the other
+  std::int64_t occupied_occupied = 0;  ///< occupied in both maps
+  std::int64_t free_free = 0;          ///< free in both maps
+  std::int64_t contradicting = 0;      ///< free in one map, occupied in the other
 };
 
 /// Whether `a` is the better pose of the two: fewer undefined distances (which count nothing, and would
@@ -94,6 +95,7 @@ class SimilarityMeter {
   /// a half times that of the moving map's, in cells of the fixed one, are kMaxDistanceMapSides at most: a
   /// turned map is wider by the square root of 2 at most. O(cells).
   SimilarityMeter(const OccupancyGrid& fixed, const OccupancyGrid& moving);
+  /// Shares what belongs to the maps, and has memory of its own.
   SimilarityMeter(const SimilarityMeter& other);
   SimilarityMeter& operator=(const SimilarityMeter&) = delete;
   ~SimilarityMeter();

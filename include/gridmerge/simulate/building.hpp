@@ -11,6 +11,7 @@
 
 namespace gridmerge {
 
+/// What a building is like.
 enum class BuildingKind {
   office,     ///< corridors between rows of rooms, many of one width
   hall,       ///< a large room with pillars, recesses and a few side rooms
@@ -28,13 +29,17 @@ enum class BuildingKind {
 
 /// All kinds, in the order above.
 std::span<const BuildingKind> building_kinds();
+
+/// As the command line and Python spell it.
 const char* name_of(BuildingKind kind);
+
+/// The kind of that name; none if there is none.
 std::optional<BuildingKind> building_kind(std::string_view name);
 
 /// A straight edge that stops a laser beam. Metres, in the building's frame.
 struct Edge {
-  Point2 a;
-  Point2 b;
+  Point2 a;           ///< one end
+  Point2 b;           ///< the other end
   double echo = 1.0;  ///< probability that a beam which meets the edge ends there; glass lets most pass
 };
 
@@ -42,10 +47,10 @@ inline constexpr double kGlass = 0.7;  ///< the echo of a window
 
 /// What stands still: walls, windows, pillars, furniture.
 struct Building {
-  BuildingKind kind = BuildingKind::office;
-  double width = 0.0;   ///< [m], along x; the lower left corner is near the origin
-  double height = 0.0;  ///< [m], along y
-  std::vector<Edge> edges;
+  BuildingKind kind = BuildingKind::office;  ///< what it was drawn as
+  double width = 0.0;                        ///< [m], along x; the lower left corner is near the origin
+  double height = 0.0;                       ///< [m], along y
+  std::vector<Edge> edges;                   ///< what stops a beam
 };
 
 inline constexpr double kMinBuildingSide = 8.0;    ///< [m]

@@ -30,10 +30,10 @@ struct RangeFinder {
 
 /// What maps are wanted. Metres and radians.
 struct SimulateOptions {
-  BuildingKind kind = BuildingKind::office;
-  double width = 40.0;   ///< of the building [m]
-  double height = 25.0;  ///< [m]
-  int robots = 2;
+  BuildingKind kind = BuildingKind::office;  ///< of the building
+  double width = 40.0;                       ///< of the building [m]
+  double height = 25.0;                      ///< [m]
+  int robots = 2;                            ///< how many maps are wanted
   /// Wanted overlap in [0, 1]: the mean over the robots of the largest share of its known area that it has in
   /// common with another one (of the smaller of the two). It is reached by how far robots go from where they
   /// start. Without it each goes wherever it can.
@@ -44,8 +44,8 @@ struct SimulateOptions {
   /// robot with a heading looks that way at first, and goes only to places that lie ahead of its start: two
   /// that set off back to back part for good.
   std::vector<double> headings;
-  double longest_way = 0.0;  ///< a robot stops after so much way [m]; 0 = when it has seen all it wants
-  RangeFinder sensor;
+  double longest_way = 0.0;   ///< a robot stops after so much way [m]; 0 = when it has seen all it wants
+  RangeFinder sensor;         ///< of each robot
   double robot_radius = 0.2;  ///< [m]: where it fits through
   double scan_every = 0.3;    ///< of way [m]
   /// How much the maps bend: 0 not at all, 1 as hand-held mapping does, by several decimetres over a floor.
@@ -57,8 +57,8 @@ struct SimulateOptions {
   /// Draw as mappers do that clean up after themselves: without specks, and with walls so much thicker on
   /// each side [m]; as the range finder left them, if not given.
   std::optional<double> tidy;
-  std::uint64_t seed = 1;
-  int threads = 0;  ///< worker threads; 0 = one a core. The result does not depend on it.
+  std::uint64_t seed = 1;  ///< of everything that chance decides
+  int threads = 0;         ///< worker threads; 0 = one a core. The result does not depend on it.
   /// Called now and then with the share of the work that is done, in [0, 1]; never from two threads at once.
   std::function<void(double)> progress;
 };
@@ -80,8 +80,8 @@ inline constexpr double kLeastTolerance = 0.5;
 
 /// Two maps that share a place.
 struct SimulatedPair {
-  std::size_t fixed = 0;
-  std::size_t moving = 0;
+  std::size_t fixed = 0;   ///< index of the map that stays
+  std::size_t moving = 0;  ///< index of the map that is laid on it
   /// The rigid transform that lays the moving map best on the fixed one, over the places that both drew.
   SE2 T_fixed_moving;
   /// Largest rms_displacement() of a correct estimate [m]: half a metre, or more where the maps' bending
@@ -92,9 +92,10 @@ struct SimulatedPair {
   char tier = 'C';
 };
 
+/// A building, the maps that robots made of it, and the truth about them.
 struct Simulation {
-  Building building;
-  std::vector<SimulatedMap> maps;
+  Building building;                                           ///< the same for all robots
+  std::vector<SimulatedMap> maps;                              ///< one a robot
   std::vector<SimulatedPair> pairs;                            ///< by fixed, then moving; fixed < moving
   std::vector<std::pair<std::size_t, std::size_t>> strangers;  ///< maps that have no place in common
   double overlap = 0.0;  ///< what SimulateOptions::overlap asks for, as it came out
