@@ -11,8 +11,6 @@
 
 namespace gridmerge::paper {
 
-using namespace internal;
-
 namespace {
 
 MatchResult walk(const Pair& pair, const Method& method, std::uint64_t seed, std::size_t& steps) {

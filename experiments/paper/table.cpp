@@ -15,8 +15,6 @@
 
 namespace gridmerge::paper {
 
-using namespace internal;
-
 namespace {
 
 const Method kWalk0{"walk, c_lock 0", {0.0}, 1};

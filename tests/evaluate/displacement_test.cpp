@@ -8,8 +8,6 @@
 #include <numbers>
 
 namespace gridmerge {
-
-using namespace internal;
 namespace {
 
 double brute_force(const OccupancyGrid& map, const SE2& T_estimate, const SE2& T_truth) {

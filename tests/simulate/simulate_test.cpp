@@ -16,8 +16,6 @@
 #include "support/effort.hpp"
 
 namespace gridmerge {
-
-using namespace internal;
 namespace {
 
 SimulateOptions small(BuildingKind kind = BuildingKind::office) {
