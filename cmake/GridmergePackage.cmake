@@ -1,8 +1,12 @@
 # CPack: Debian packages. `gridmerge` has the command line tool; `libgridmerge-dev` the libraries, their headers and the
 # files for find_package() and pkg-config. `./dev release` makes them.
+set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME gridmerge)
 set(CPACK_PACKAGE_VENDOR gridmerge)
-set(CPACK_PACKAGE_CONTACT "The gridmerge developers <gridmerge@localhost.localdomain>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "merges occupancy grid maps of several robots")
+set(GRIDMERGE_MAINTAINER "The gridmerge developers <gridmerge@example.org>" CACHE STRING
+    "Name and address in packages: who distributes them answers for them")
+set(CPACK_PACKAGE_CONTACT ${GRIDMERGE_MAINTAINER})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 
@@ -16,9 +20,8 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_TOOL_PACKAGE_NAME gridmerge)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_TOOL_DESCRIPTION "merges occupancy grid maps of several robots
- Takes the maps that robots built without knowing where the others were, and
- returns one map, the transform of every input, and a verdict on each join.")
+set(CPACK_DEBIAN_TOOL_DESCRIPTION "Takes the maps that robots built without knowing where the others were, and
+returns one map, the transform of every input, and a verdict on each join.")
 
 set(dev_depends "")
 foreach(component IN LISTS GRIDMERGE_COMPONENTS)
@@ -30,9 +33,8 @@ list(REMOVE_DUPLICATES dev_depends)
 list(JOIN dev_depends ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libgridmerge-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_DESCRIPTION "merges occupancy grid maps (development files)
- C++ libraries with their headers: grids, matching of two maps, merging of many,
- map files, simulated maps, evaluation, reports.")
+set(CPACK_DEBIAN_DEV_DESCRIPTION "C++ libraries with their headers: grids, matching of two maps, merging of
+many, map files, simulated maps, evaluation, reports.")
 
 # What Debian wants to find in usr/share/doc.
 set(documents ${PROJECT_BINARY_DIR}/debian)
