@@ -11,6 +11,9 @@ set(gridmerge_simulate_packages)
 set(gridmerge_evaluate_packages nlohmann_json fmt)
 set(gridmerge_report_packages nlohmann_json fmt ZLIB)
 
+# The oldest that will do, where that matters.
+set(gridmerge_version_Eigen3 3.3)
+
 # Folders of include/gridmerge.
 set(gridmerge_core_rooms grid similarity search match)
 set(gridmerge_merge_rooms merge)

@@ -3,7 +3,6 @@
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gridmerge)
-set(installed "")
 set(GRIDMERGE_PACKAGES_OF "")  # set() lines for the package's configuration file
 
 # What consumers have to find as well: for static libraries all that a library links, for shared ones nothing.
@@ -23,7 +22,6 @@ foreach(component IN LISTS GRIDMERGE_COMPONENTS)
   if(NOT TARGET ${target})
     continue()
   endif()
-  list(APPEND installed ${component})
   install(TARGETS ${target} EXPORT gridmerge-${component}-targets COMPONENT ${component})
   install(EXPORT gridmerge-${component}-targets NAMESPACE gridmerge:: DESTINATION ${package_dir} COMPONENT ${component})
   foreach(room IN LISTS gridmerge_${component}_rooms)

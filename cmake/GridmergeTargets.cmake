@@ -51,7 +51,7 @@ macro(gridmerge_find_packages)
       continue()
     endif()
     foreach(package IN LISTS gridmerge_${component}_packages)
-      find_package(${package} QUIET)
+      find_package(${package} ${gridmerge_version_${package}} QUIET)
       if(NOT ${package}_FOUND)
         set(instead "")
         if(NOT component STREQUAL core)
@@ -65,8 +65,12 @@ macro(gridmerge_find_packages)
 endmacro()
 
 # gridmerge_add_component(<name> SOURCES ... [PUBLIC libs...] [PRIVATE libs...]): builds libgridmerge_<name>, exported as
-# gridmerge::<name>.
+# gridmerge::<name>, unless it is left out.
 function(gridmerge_add_component name)
+  string(TOUPPER ${name} upper)
+  if(NOT GRIDMERGE_WITH_${upper})
+    return()
+  endif()
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target gridmerge_${name})
   add_library(${target} ${ARG_SOURCES})

@@ -2,6 +2,7 @@
 // What the ways to merge have in common.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "gridmerge/merge/merge_result.hpp"
@@ -30,6 +31,11 @@ Join make_join(std::size_t fixed, std::size_t moving, MatchResult match, const C
 
 /// The same with the other map as the fixed one.
 Join inverted(Join join);
+
+/// The open joins of an arrangement, between the first input map of each group. `index` is that of each map
+/// of the problem among the inputs. Runs in the calling TBB arena; time as find_open_joins().
+std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const ArrangementProblem& problem,
+                                    const Arrangement& arrangement);
 
 /// Why a map joined nothing: the reason of the refused join of it that was most probable.
 Reason why_left_out(const std::vector<Join>& joins, std::size_t map);

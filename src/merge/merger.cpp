@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "grid/parallel.hpp"
-#include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/prepared_map.hpp"
 #include "merge/arrangement.hpp"
@@ -119,7 +118,7 @@ class Merger::State {
       const auto [problem, arrangement, again] = solve(maps);
       result.expected_false_joins = expected_false_joins(arrangement);
       result.joins = make_joins(maps, problem, arrangement, again);
-      result.open_ways = open_ways(places_of(maps), problem, arrangement);
+      result.open_ways = make_open_ways(places_of(maps), problem, arrangement);
       add_components(maps, problem, arrangement, result);
       std::vector<const OccupancyGrid*> grids;
       for (const auto& [id, input] : inputs_) grids.push_back(input->grid.get());
@@ -343,26 +342,6 @@ class Merger::State {
     return joins;
   }
 
-  /// `index` is that of each map of the problem among the inputs.
-  static std::vector<OpenWay> open_ways(const std::vector<std::size_t>& index,
-                                        const ArrangementProblem& problem, const Arrangement& arrangement) {
-    const auto first_input = [&](const NodeGroup& group) {
-      return *std::min_element(group.begin(), group.end(), [&](const PlacedNode& x, const PlacedNode& y) {
-        return index[x.map] < index[y.map];
-      });
-    };
-    std::vector<OpenWay> ways;
-    for (const OpenJoin& open : find_open_joins(problem, arrangement, kLeastOpenProbability)) {
-      const PlacedNode a = first_input(arrangement.groups[open.a]);
-      const PlacedNode b = first_input(arrangement.groups[open.b]);
-      const SE2 T = inverse(a.T_group_map) * open.T_a_b * b.T_group_map;
-      const bool in_order = index[a.map] < index[b.map];
-      ways.push_back({std::min(index[a.map], index[b.map]), std::max(index[a.map], index[b.map]),
-                      in_order ? T : inverse(T), open.probability});
-    }
-    return ways;
-  }
-
   /// Where each of these maps stands among all in the order in which they were added.
   std::vector<std::size_t> places_of(const std::vector<MapId>& maps) const {
     const std::vector<MapId> order = ids();
@@ -445,22 +424,6 @@ std::vector<Merger::MapId> Merger::maps() const {
 
 MergeResult Merger::result() {
   return state_->result();
-}
-
-MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
-                  const std::vector<std::optional<KnownPose>>& known_poses) {
-  if (known_poses.size() > maps.size()) throw std::invalid_argument("there are more known poses than maps");
-  Merger merger(options);
-  for (std::size_t i = 0; i < maps.size(); ++i) {
-    throw_if_cancelled();
-    const std::optional<KnownPose> known = i < known_poses.size() ? known_poses[i] : std::nullopt;
-    try {
-      merger.add(maps[i], known);
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("map " + std::to_string(i) + ": " + error.what());
-    }
-  }
-  return merger.result();
 }
 
 }  // namespace gridmerge
