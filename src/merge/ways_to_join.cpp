@@ -2,6 +2,7 @@
 // The ways in which two groups of maps may lie, and how probable each is.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "merge/join_weights.hpp"
 
@@ -43,14 +44,15 @@ MapExtent extent_of(const NodeGroup& group, const std::vector<MapExtent>& maps) 
 }
 
 /// How probable each of several ways is against the others, and against being apart, which is worth 0.
-/// O(ways^2).
+/// O(ways).
 void weigh_against_each_other(std::vector<WeighedJoin>& ways) {
-  for (WeighedJoin& way : ways) {
-    double others = std::exp(-way.worth.against_apart);
-    for (const WeighedJoin& other : ways)
-      others += std::exp(other.worth.against_other_poses - way.worth.against_other_poses);
-    way.probability = 1.0 / others;  // the way itself is among them, with 1
-  }
+  const auto worth = [](const WeighedJoin& way) { return way.worth.against_other_poses; };
+  double most = -std::numeric_limits<double>::infinity();
+  for (const WeighedJoin& way : ways) most = std::max(most, worth(way));
+  double sum = 0.0;  // of all, in units of the best one
+  for (const WeighedJoin& way : ways) sum += std::exp(worth(way) - most);
+  for (WeighedJoin& way : ways)
+    way.probability = 1.0 / (sum * std::exp(most - worth(way)) + std::exp(-way.worth.against_apart));
 }
 
 }  // namespace
