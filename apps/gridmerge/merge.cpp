@@ -60,16 +60,16 @@ void tell_of_copies(const MergeCommandOptions& options, const std::vector<Occupa
            maps[i].cells == maps[j].cells;
   };
   for (std::size_t i = 1; i < maps.size(); ++i) {
-    if (count_cells(maps[i]).known() == 0) continue;
     bool is_twice = false;
     std::optional<std::size_t> original;
     for (std::size_t j = 0; j < i; ++j) {
       is_twice = is_twice || is_one_file(i, j);
       if (!original && has_equal_cells(i, j)) original = j;
     }
+    if (!(is_twice || original) || count_cells(maps[i]).known() == 0) continue;
     if (is_twice) {
       twice.push_back(options.maps[i]);
-    } else if (original) {
+    } else {
       copies.push_back(fmt::format("{} (of {})", options.maps[i], options.maps[*original]));
     }
   }
