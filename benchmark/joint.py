@@ -17,7 +17,7 @@ import random
 import subprocess
 import tempfile
 
-from poses import Pose, compose, inverse
+from poses import Pose, compose, inverse, read_pose
 
 
 def merge(gridmerge: str, folder: pathlib.Path, maps: list[str]) -> list[dict[str, Pose]]:
@@ -26,7 +26,7 @@ def merge(gridmerge: str, folder: pathlib.Path, maps: list[str]) -> list[dict[st
         subprocess.run([gridmerge, "merge", "-o", output, "--quiet", *(str(folder / name) for name in maps)],
                        stdout=subprocess.DEVNULL)
         merged = json.loads((pathlib.Path(output) / "transforms.json").read_text())
-    return [{pathlib.Path(member["source"]).name: tuple(member["transform"][key] for key in ("x", "y", "theta"))
+    return [{pathlib.Path(member["source"]).name: read_pose(member["transform"])
              for member in component["members"]} for component in merged["components"]]
 
 

@@ -27,7 +27,7 @@ from collections.abc import Callable
 
 from benchmark import table
 from peer_maps import Answer, KnownCells, coarsened, read_map, write_map
-from poses import inverse
+from poses import inverse, read_pose
 
 # The answer for (fixed, moving), and the CPU seconds, user and system, that it took.
 Match = Callable[[pathlib.Path, pathlib.Path], tuple[Answer, float]]
@@ -88,7 +88,7 @@ def run_measured(command: list, accepted_codes: tuple[int, ...] = (0,)) -> tuple
 def read_gridmerge(text: str) -> Answer:
     """Of `gridmerge match --json`."""
     result = json.loads(text)
-    pose = tuple(result["transform"][key] for key in ("x", "y", "theta")) if result["hypotheses"] else None
+    pose = read_pose(result["transform"]) if result["hypotheses"] else None
     return Answer(pose, result["verdict"] == "accepted", result["probability"])
 
 

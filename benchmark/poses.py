@@ -6,6 +6,11 @@ import math
 Pose = tuple[float, float, float]
 
 
+def read_pose(transform: dict) -> Pose:
+    """As gridmerge's JSON has it."""
+    return transform["x"], transform["y"], transform["theta"]
+
+
 def compose(a: Pose, b: Pose) -> Pose:
     c, s = math.cos(a[2]), math.sin(a[2])
     return (a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2])

@@ -19,8 +19,9 @@ import subprocess
 import tempfile
 
 import numpy as np
-from peer_maps import UNKNOWN, KnownCells, Map, read_map, transformed, write_map
-from poses import Pose, compose, inverse
+from peer_maps import UNKNOWN, Answer, KnownCells, Map, read_map, transformed, write_map
+from peers import match_by_gridmerge
+from poses import Pose, compose, inverse, read_pose
 
 ACCEPT = 0.95  # gridmerge's own
 NEAR = 0.05    # a verdict this near to the threshold may change with the grain of a redrawn map
@@ -28,13 +29,6 @@ NEAR = 0.05    # a verdict this near to the threshold may change with the grain 
 SIMULATED = [  # kind and drift of the teams of three that are simulated
     ("office", 0.0), ("office", 1.0), ("apartment", 0.0), ("apartment", 1.0), ("warehouse", 0.0), ("curved", 0.3),
 ]
-
-
-@dataclasses.dataclass(frozen=True)
-class Match:
-    accepted: bool
-    probability: float
-    pose: Pose
 
 
 @dataclasses.dataclass(frozen=True)
@@ -121,14 +115,9 @@ class Runner:
     def __init__(self, gridmerge: pathlib.Path, folder: pathlib.Path):
         self.gridmerge, self.folder = gridmerge, folder
 
-    def match(self, fixed: pathlib.Path, moving: pathlib.Path) -> Match:
-        done = subprocess.run([self.gridmerge, "match", fixed, moving, "--json", "--quiet", "--threads", "1"],
-                              capture_output=True)
-        if done.returncode not in (0, 3):
-            raise RuntimeError(done.stderr.decode())
-        found = json.loads(done.stdout)
-        return Match(found["verdict"] == "accepted", found["probability"],
-                     tuple(found["transform"][key] for key in ("x", "y", "theta")))
+    def match(self, fixed: pathlib.Path, moving: pathlib.Path) -> Answer:
+        """Its score is the probability."""
+        return match_by_gridmerge(self.gridmerge, fixed, moving)[0]
 
     def merge(self, maps: list[pathlib.Path], output: pathlib.Path) -> list[dict[int, Pose]]:
         """The poses of each component's members, by the number of the input."""
@@ -141,14 +130,15 @@ class Runner:
             names = [str(map_) for map_ in maps]
             poses = {}
             for member in component["members"]:
-                poses[names.index(member["source"])] = tuple(member["transform"][key] for key in ("x", "y", "theta"))
+                poses[names.index(member["source"])] = read_pose(member["transform"])
                 names[names.index(member["source"])] = ""  # one that is given twice has two members
             components.append(poses)
         return components
 
     def changes_of_pair(self, number: int, fixed: pathlib.Path, moving: pathlib.Path) -> list[Change]:
         before = self.match(fixed, moving)
-        maps, known = (read_map(fixed), read_map(moving)), KnownCells(read_map(moving))
+        maps = read_map(fixed), read_map(moving)
+        known = KnownCells(maps[1])
         changes = []
         folder = self.folder / str(number)
         folder.mkdir()
@@ -157,16 +147,16 @@ class Runner:
             write_map(folder / "moving.yaml", variant.moving)
             after = self.match(folder / "fixed.yaml", folder / "moving.yaml")
             flipped = before.accepted != after.accepted
-            near = min(abs(one.probability - ACCEPT) for one in (before, after)) <= NEAR
+            near = min(abs(one.score - ACCEPT) for one in (before, after)) <= NEAR
             moved = known.displacement(variant.back(after.pose), before.pose) if before.accepted and after.accepted else math.nan
             changes.append(Change(variant.name, flipped, flipped and not near,
-                                  abs(after.probability - before.probability), moved))
+                                  abs(after.score - before.score), moved))
         return changes
 
     def change_of_itself(self, path: pathlib.Path) -> Change:
         found = self.match(path, path)
-        moved = KnownCells(read_map(path)).displacement(found.pose, (0.0, 0.0, 0.0))
-        return Change("a map with itself", not found.accepted, not found.accepted, 1.0 - found.probability, moved)
+        moved = KnownCells(read_map(path)).displacement(found.pose, (0.0, 0.0, 0.0)) if found.pose else math.nan
+        return Change("a map with itself", not found.accepted, not found.accepted, 1.0 - found.score, moved)
 
     def changes_of_team(self, number: int, maps: list[pathlib.Path]) -> list[Change]:
         """Of three maps that are one component: a copy is added; the first two are merged first."""

@@ -18,7 +18,7 @@ import pathlib
 import random
 import subprocess
 
-from poses import Pose, compose, inverse
+from poses import Pose, compose, inverse, read_pose
 
 KINDS = ("office", "hall", "warehouse", "apartment", "loop", "curved", "outdoor", "symmetric")
 ALIKE = ("curved", "symmetric")  # rooms of one building are alike there
@@ -95,7 +95,7 @@ def main() -> None:
         count["maps"] += len(truth)
         for component in json.loads((folder / "merged" / "transforms.json").read_text())["components"]:
             members = {pathlib.Path(member["source"]).name: member for member in component["members"]}
-            own = {name: tuple(member["transform"][key] for key in ("x", "y", "theta"))
+            own = {name: read_pose(member["transform"])
                    for name, member in members.items() if name in truth}
             right = right_members(own, truth) if len(own) > 1 else set()
             count["right"] += len(right)
