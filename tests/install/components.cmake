@@ -1,15 +1,9 @@
 # Runs as a script: installs each component, with what it needs, into an empty prefix, and builds and runs a consumer of
 # it; then the core as a part of another project; then what must be refused, with the remedy.
 include(${SOURCE_DIR}/cmake/GridmergeComponents.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 set(consumer ${SOURCE_DIR}/tests/install/consumer)
 file(REMOVE_RECURSE ${WORK_DIR})
-
-function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT code EQUAL 0)
-    message(FATAL_ERROR "${ARGN} ended with ${code}:\n${output}")
-  endif()
-endfunction()
 
 set(configure ${CMAKE_COMMAND} -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=${CONFIG}
               -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})

@@ -4,10 +4,7 @@ set(consumer ${WORK_DIR}/consumer)
 set(maps ${SOURCE_DIR}/examples/three_robots)
 file(REMOVE_RECURSE ${WORK_DIR})
 
-function(run)
-  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY OUTPUT_VARIABLE output ECHO_OUTPUT_VARIABLE)
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix} --config ${CONFIG})
 run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples/cpp -B ${consumer} -G ${GENERATOR} -D CMAKE_PREFIX_PATH=${prefix}
@@ -44,8 +41,8 @@ run(${CMAKE_COMMAND} -S ${tutorial} -B ${tutorial}/build -G ${GENERATOR} -D CMAK
     -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=${CONFIG})
 run(${CMAKE_COMMAND} --build ${tutorial}/build --config ${CONFIG})
 find_program(merge_floor merge_floor PATHS ${tutorial}/build ${tutorial}/build/${CONFIG} NO_DEFAULT_PATH REQUIRED)
-execute_process(COMMAND ${merge_floor} ${maps}/robot_1.yaml ${maps}/robot_2.yaml ${maps}/robot_3.yaml ${maps}/elsewhere.yaml
-                WORKING_DIRECTORY ${tutorial} OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
+run(${CMAKE_COMMAND} -E chdir ${tutorial}
+    ${merge_floor} ${maps}/robot_1.yaml ${maps}/robot_2.yaml ${maps}/robot_3.yaml ${maps}/elsewhere.yaml)
 if(NOT output STREQUAL said)
   message(FATAL_ERROR "The tutorial's program says\n${output}and its page\n${said}")
 endif()
