@@ -186,7 +186,8 @@ std::optional<SE2> PoseJudge::best_cell_on_cell(const SE2& T_cells) const {
     improved = false;
     const double from_column = column, from_row = row;
     for (int i = 0; i < 9; ++i) {
-      const double next_column = from_column + i % 3 - 1, next_row = from_row + i / 3 - 1;
+      const int right = i % 3 - 1, up = i / 3 - 1;
+      const double next_column = from_column + right, next_row = from_row + up;
       const SE2 next = between_maps(next_column, next_row);
       const double agreeing = agreement(next);
       if (agreeing <= most) continue;
@@ -236,6 +237,7 @@ std::vector<PoseFigures> compared_figures(const std::vector<Hypothesis>& hypothe
   const double near = kNearDistinct * distinct_displacement(maps);
   std::vector<PoseFigures> figures = figures_of(hypotheses);
   std::vector<SE2> T_cells;
+  T_cells.reserve(hypotheses.size());
   for (const Hypothesis& hypothesis : hypotheses)
     T_cells.push_back(to_cells(hypothesis.T_fixed_moving, maps.fixed_walls, maps.moving_walls));
   compare_rivals(figures, [&](std::size_t a, std::size_t b) {

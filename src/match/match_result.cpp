@@ -9,7 +9,7 @@ std::span<const PoseFigure> pose_figures() {
   using F = PoseFigures;
   static constexpr std::array kFigures{
       PoseFigure{"score", "nats",
-                 "the evidence of walls and common area: \"same place\" against \"unrelated\"", &F::score},
+                 R"(the evidence of walls and common area: "same place" against "unrelated")", &F::score},
       PoseFigure{"lead", "sqrt(nats)",
                  "the score's lead over the best other one, by its square root: what chance moves it by",
                  &F::lead},
