@@ -11,6 +11,9 @@
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merger.hpp"
 #endif
+#if __has_include("gridmerge/online/team.hpp")
+#include "gridmerge/online/team.hpp"
+#endif
 #if __has_include("gridmerge/io/map_file.hpp")
 #include "gridmerge/io/initial_poses.hpp"
 #include "gridmerge/io/map_file.hpp"

@@ -82,12 +82,31 @@ class Merger:
         return map_id
 
     def update(self, map_id: int, map: MapLike) -> None:
-        """Another map in the place of one that was added: of the same robot, later. KeyError for an unknown id."""
+        """Another map in the place of one that was added: of the same robot, later, in the same frame. Its pairs are
+        matched again. KeyError for an unknown id."""
         grid = to_map("map", map)
         with self._alone():
             map_id, name = self._known(map_id)
             self._core.update(map_id, grid._core)
             self._maps[map_id] = (grid, name)
+
+    def grow(self, map_id: int, map: MapLike) -> None:
+        """As update(), for a map that is little different: what its pairs said stays until search_again().
+
+        Where the maps lie is adjusted to the new map all the same, so a map follows a robot that explores at the cost
+        of a joint solution instead of a match with each other map. KeyError for an unknown id.
+        """
+        grid = to_map("map", map)
+        with self._alone():
+            map_id, name = self._known(map_id)
+            self._core.grow(map_id, grid._core)
+            self._maps[map_id] = (grid, name)
+
+    def search_again(self, map_id: int) -> None:
+        """The map's pairs are matched again by the next solve(). KeyError for an unknown id."""
+        with self._alone():
+            map_id, _ = self._known(map_id)
+            self._core.search_again(map_id)
 
     def remove(self, map_id: int) -> None:
         """Takes a map out again. KeyError for an unknown id."""
@@ -105,10 +124,10 @@ class Merger:
         in this order."""
         return tuple(self._maps)
 
-    def result(self, *, progress: Progress | None = None) -> MergeResult:
-        """Matches the pairs that are new or have changed, and merges."""
+    def solve(self, *, progress: Progress | None = None) -> MergeResult:
+        """Matches the pairs that are new or have changed, and merges: seconds to minutes for many maps."""
         with self._alone():
-            merged = self._core.result(_arguments.progress(progress))
+            merged = self._core.solve(_arguments.progress(progress))
             grids = [grid for grid, _ in self._maps.values()]
             names = [name for _, name in self._maps.values()]
         return to_merge_result(merged, grids, names, ())

@@ -32,17 +32,15 @@ class MapMerger {
   }
 
   void update(std::size_t id, const Map& map) {
-    bool is_updated = false;
-    try {
-      run_in_worker(nb::none(), [&](const Report& /*report*/) {
-        merger_.update(id, *map.grid);
-        is_updated = true;
-      });
-    } catch (...) {
-      if (is_updated) merger_.update(id, *maps_.at(id).grid);
-      throw;
-    }
-    maps_.at(id) = map;
+    replace(id, map, &Merger::update);
+  }
+
+  void grow(std::size_t id, const Map& map) {
+    replace(id, map, &Merger::grow);
+  }
+
+  void search_again(std::size_t id) {
+    merger_.search_again(id);
   }
 
   void remove(std::size_t id) {
@@ -60,10 +58,10 @@ class MapMerger {
     }
   }
 
-  Merged result(const nb::object& progress) {
+  Merged solve(const nb::object& progress) {
     MergeResult result = compute_in_worker(progress, [&](const Report& report) {
       *share_ = report;
-      return merger_.result();
+      return merger_.solve();
     });
     std::vector<Map> maps;
     maps.reserve(maps_.size());
@@ -72,6 +70,20 @@ class MapMerger {
   }
 
  private:
+  void replace(std::size_t id, const Map& map, void (Merger::*put)(Merger::MapId, OccupancyGrid)) {
+    bool is_replaced = false;
+    try {
+      run_in_worker(nb::none(), [&](const Report& /*report*/) {
+        (merger_.*put)(id, *map.grid);
+        is_replaced = true;
+      });
+    } catch (...) {
+      if (is_replaced) merger_.update(id, *maps_.at(id).grid);
+      throw;
+    }
+    maps_.at(id) = map;
+  }
+
   static MergeOptions make_options(int threads, double accept, double max_false_joins,
                                    double output_resolution, std::shared_ptr<Report> share) {
     MergeOptions options;
@@ -85,7 +97,7 @@ class MapMerger {
     return options;
   }
 
-  std::shared_ptr<Report> share_ = std::make_shared<Report>();  // of the result() that is at work
+  std::shared_ptr<Report> share_ = std::make_shared<Report>();  // of the solve() that is at work
   Merger merger_;
   std::map<std::size_t, Map> maps_;
 };
@@ -98,9 +110,11 @@ void bind_merger(nb::module_& module) {
            nb::arg("max_false_joins"), nb::arg("output_resolution"))
       .def("add", &MapMerger::add, nb::arg("map"), nb::arg("known").none())
       .def("update", &MapMerger::update, nb::arg("id"), nb::arg("map"))
+      .def("grow", &MapMerger::grow, nb::arg("id"), nb::arg("map"))
+      .def("search_again", &MapMerger::search_again, nb::arg("id"))
       .def("remove", &MapMerger::remove, nb::arg("id"))
       .def("keep", &MapMerger::keep, nb::arg("wanted"))
-      .def("result", &MapMerger::result, nb::arg("progress").none());
+      .def("solve", &MapMerger::solve, nb::arg("progress").none());
 }
 
 }  // namespace gridmerge::python

@@ -21,7 +21,7 @@ LONG_WORK = {
     "merge": "gridmerge.merge(many)",
     "merge up the tree": "gridmerge.merge(many, strategy='tree')",
     "evaluate": "gridmerge.evaluate(pairs)",
-    "Merger": "merger.result()",
+    "Merger": "merger.solve()",
     "taking in large maps": "gridmerge.merge([large] * 300)",
     "taking in large maps one by one": "[merger.add(large) for _ in range(300)]",
     "matching large maps": "[gridmerge.match(large, large) for _ in range(100)]",
@@ -221,7 +221,7 @@ def test_a_merger_refuses_its_own_progress(robots: list[str]) -> None:
     with pytest.raises(RuntimeError, match="at work"):
         merger.result(progress=lambda share: merger.add(robots[1]))
     merger.add(robots[1])
-    assert merger.result().complete
+    assert merger.solve().complete
 
 
 def test_a_merger_is_as_it_was_after_an_interrupt() -> None:
@@ -256,7 +256,7 @@ def test_a_merger_is_as_it_was_after_an_interrupt() -> None:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
     assert interrupted
-    result = merger.result()
+    result = merger.solve()
     assert (merger.ids, result.names, result.maps) == ((first,), ("first",), (grids[0],))
     assert [one.name for one in result.left_out] == ["first"]
     assert result._core.maps[0].resolution == 0.05

@@ -284,12 +284,12 @@ def test_a_merger_gives_what_merge_gives(robots: list[str], elsewhere: str) -> N
     merger = gridmerge.Merger()
     first = merger.add(elsewhere)
     ids = [merger.add(path) for path in robots[:2]]
-    merger.result()
+    merger.solve()
     merger.update(ids[1], robots[2])
     merger.update(ids[1], robots[1])
     merger.remove(first)
     merger.add(robots[2])
-    assert to_bits(as_json(merger.result())) == to_bits(as_json(gridmerge.merge(robots)))
+    assert to_bits(as_json(merger.solve())) == to_bits(as_json(gridmerge.merge(robots)))
     with pytest.raises(KeyError):
         merger.remove(first)
     with pytest.raises(KeyError):
@@ -301,7 +301,7 @@ def test_a_merger_with_known_poses(robots: list[str]) -> None:
     merger.add(robots[0], pose=(10, 5, 0.5), fixed=True)
     merger.add(robots[1])
     fixed = gridmerge.merge(robots[:2], init={0: (10, 5, 0.5)}, fix=0)
-    assert to_bits(as_json(merger.result())) == to_bits(as_json(fixed))
+    assert to_bits(as_json(merger.solve())) == to_bits(as_json(fixed))
 
 
 def test_a_merger_takes_one_fixed_map_without_a_pose(robots: list[str]) -> None:
@@ -313,7 +313,7 @@ def test_a_merger_takes_one_fixed_map_without_a_pose(robots: list[str]) -> None:
     assert merger.ids == (first,)
     merger.add(robots[1])
     fixed = gridmerge.merge(robots[:2], fix=0)
-    assert to_bits(as_json(merger.result())) == to_bits(as_json(fixed))
+    assert to_bits(as_json(merger.solve())) == to_bits(as_json(fixed))
     merger.remove(first)
     posed = merger.add(robots[0], pose=(10, 5, 0.5))
     with pytest.raises(ValueError, match=r"^pose: "):

@@ -265,7 +265,7 @@ def test_maps_are_called_by_their_frames() -> None:
     for frame in ("a", "a", "b"):
         merger.add(named(frame, 0.1))
     merger.add(named("c", 0.1), name="d")
-    assert merger.result().names == ("a", "map 1", "b", "d")
+    assert merger.solve().names == ("a", "map 1", "b", "d")
 
 
 def test_a_frame_goes_with_its_map() -> None:

@@ -22,7 +22,7 @@ MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& op
       throw std::invalid_argument("map " + std::to_string(i) + ": " + error.what());
     }
   }
-  return merger.result();
+  return merger.solve();
 }
 
 }  // namespace gridmerge

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -20,6 +19,7 @@
 #include "merge/coverage.hpp"
 #include "merge/group_match.hpp"
 #include "merge/joins.hpp"
+#include "merge/pair_matches.hpp"
 #include "merge/prior.hpp"
 #include "similarity/agreement.hpp"
 
@@ -82,11 +82,16 @@ class Merger::State {
     return id;
   }
 
-  void update(MapId id, std::shared_ptr<const OccupancyGrid> map) {
+  void grow(MapId id, std::shared_ptr<const OccupancyGrid> map) {
     require(id);
-    auto input = std::make_unique<const Input>(std::move(map));
-    forget(id);
-    inputs_.at(id) = std::move(input);
+    inputs_.at(id) = std::make_unique<const Input>(std::move(map));
+  }
+
+  void search_again(MapId id) {
+    require(id);
+    groups_.forget();
+    quick_.forget(id);
+    thorough_.forget(id);
   }
 
   void set_known_pose(MapId id, std::optional<KnownPose> known_pose) {
@@ -97,8 +102,7 @@ class Merger::State {
   }
 
   void remove(MapId id) {
-    require(id);
-    forget(id);
+    search_again(id);
     inputs_.erase(id);
     known_poses_.erase(id);
   }
@@ -109,13 +113,13 @@ class Merger::State {
     return ids;
   }
 
-  MergeResult result() {
+  MergeResult solve() {
     MergeResult result;
     with_threads(options_.match.threads, [&] {
       const std::vector<MapId> all = in_canonical_order();
       const std::vector<Copy> copies = find_copies(all);
       const std::vector<MapId> maps = those_that_count(all, copies);
-      const auto [problem, arrangement, again] = solve(maps);
+      const auto [problem, arrangement, again] = arrange_all(maps);
       result.expected_false_joins = expected_false_joins(arrangement);
       result.joins = make_joins(maps, problem, arrangement, again);
       result.open_ways = make_open_ways(places_of(maps), problem, arrangement);
@@ -129,32 +133,25 @@ class Merger::State {
   }
 
  private:
-  using Pair = std::pair<MapId, MapId>;  // the lower id first
-
-  /// A match as it was made.
-  struct Made {
-    MapId fixed;
-    MatchResult match;
-  };
-  using Matches = std::map<Pair, Made>;
+  using Pair = PairMatches::Pair;
 
   struct Solution {
     ArrangementProblem problem;
     Arrangement arrangement;
-    std::set<Pair> again;  // pairs that were looked at a second time
+    std::set<Pair> again;  // pairs that were looked at a second time: the lower id and the higher one
   };
 
   /// Looks at every pair quickly, and again at those whose maps that leaves apart: maps that lie in one
   /// component gain little by one more join. What a pair's match is depends on the maps alone, not on when
   /// they came.
-  Solution solve(const std::vector<MapId>& maps) {
+  Solution arrange_all(const std::vector<MapId>& maps) {
     const bool looks_twice = options_.match.search == SearchMethod::exhaustive;
-    match_new_pairs(all_pairs(maps), looks_twice ? SearchMethod::quick : options_.match.search, matches_);
+    look(quick_, all_pairs(maps), looks_twice ? SearchMethod::quick : options_.match.search);
     Solution solution = arrange(maps, {});
     if (!looks_twice) return solution;
     const std::vector<Pair> apart = pairs_apart(maps, solution.arrangement);
     if (apart.empty()) return solution;
-    match_new_pairs(apart, SearchMethod::exhaustive, thorough_matches_);
+    look(thorough_, apart, SearchMethod::exhaustive);
     std::set<Pair> again;
     for (const Pair& pair : apart) again.insert(std::minmax(pair.first, pair.second));
     return hear_groups(maps, arrange(maps, std::move(again)));
@@ -188,14 +185,6 @@ class Merger::State {
 
   void require(MapId id) const {
     if (!inputs_.contains(id)) throw std::out_of_range("there is no map " + std::to_string(id));
-  }
-
-  void forget(MapId id) {
-    groups_.forget();
-    for (Matches* matches : {&matches_, &thorough_matches_}) {
-      std::erase_if(*matches,
-                    [&](const auto& match) { return match.first.first == id || match.first.second == id; });
-    }
   }
 
   /// An order that depends on the maps alone, so that sums are made in the same order whatever order they
@@ -257,37 +246,16 @@ class Merger::State {
     return pairs;
   }
 
-  /// Matches those of the pairs that `matches` does not hold.
-  void match_new_pairs(std::vector<Pair> pairs, SearchMethod search, Matches& matches) {
-    std::erase_if(pairs,
-                  [&](const Pair& pair) { return matches.contains(std::minmax(pair.first, pair.second)); });
+  void look(PairMatches& matches, std::vector<Pair> pairs, SearchMethod search) {
     MatchOptions options = options_.match;
     options.search = search;
-    std::vector<MatchResult> results(pairs.size());
-    std::mutex reporting;
-    std::size_t done = 0;
-    const auto match_pair = [&](std::size_t i) {
-      const auto [fixed, moving] = pairs[i];
-      results[i] = match(inputs_.at(fixed)->prepared, inputs_.at(moving)->prepared, options);
-      const std::lock_guard lock(reporting);
-      ++done;
-      if (options_.progress) options_.progress(done, pairs.size());
-    };
-    if (pairs.size() == 1) {
-      match_pair(0);
-    } else {
-      // Each pair by one thread: one that waited within a pair would begin with another one meanwhile.
-      parallel_for(pairs.size(), [&](std::size_t i) { with_threads(1, [&] { match_pair(i); }); });
-    }
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      matches[std::minmax(pairs[i].first, pairs[i].second)] = {pairs[i].first, std::move(results[i])};
+    const auto find = [&](MapId id) -> const PreparedMap& { return inputs_.at(id)->prepared; };
+    matches.add(std::move(pairs), find, options, options_.progress);
   }
 
   /// By the last look at the pair.
   MatchResult match_between(MapId fixed, MapId moving, const std::set<Pair>& again) const {
-    const Pair pair = std::minmax(fixed, moving);
-    const Made& made = again.contains(pair) ? thorough_matches_.at(pair) : matches_.at(pair);
-    return made.fixed == fixed ? made.match : inverse(made.match);
+    return (again.contains(std::minmax(fixed, moving)) ? thorough_ : quick_).between(fixed, moving);
   }
 
   std::optional<KnownPose> known_pose(MapId id) const {
@@ -392,8 +360,8 @@ class Merger::State {
   MapId next_ = 0;
   std::map<MapId, std::unique_ptr<const Input>> inputs_;
   std::map<MapId, KnownPose> known_poses_;
-  Matches matches_;           // of the first look
-  Matches thorough_matches_;  // of the second look
+  PairMatches quick_;     // of the first look
+  PairMatches thorough_;  // of the second look
   GroupMatches groups_;
 };
 
@@ -407,7 +375,16 @@ Merger::MapId Merger::add(OccupancyGrid map, std::optional<KnownPose> known_pose
 }
 
 void Merger::update(MapId id, OccupancyGrid map) {
-  state_->update(id, std::make_shared<const OccupancyGrid>(std::move(map)));
+  grow(id, std::move(map));
+  search_again(id);
+}
+
+void Merger::grow(MapId id, OccupancyGrid map) {
+  state_->grow(id, std::make_shared<const OccupancyGrid>(std::move(map)));
+}
+
+void Merger::search_again(MapId id) {
+  state_->search_again(id);
 }
 
 void Merger::set_known_pose(MapId id, std::optional<KnownPose> known_pose) {
@@ -422,8 +399,8 @@ std::vector<Merger::MapId> Merger::maps() const {
   return state_->ids();
 }
 
-MergeResult Merger::result() {
-  return state_->result();
+MergeResult Merger::solve() {
+  return state_->solve();
 }
 
 }  // namespace gridmerge

@@ -26,13 +26,21 @@ class Merger {
   /// Likewise.
   Merger& operator=(Merger&&) noexcept;
 
-  /// Takes in one more map, with what is known of its pose; nothing is matched before result(). Throws
+  /// Takes in one more map, with what is known of its pose; nothing is matched before solve(). Throws
   /// std::invalid_argument for an invalid map or pose, and is then as before.
   MapId add(OccupancyGrid map, std::optional<KnownPose> known_pose = {});
 
-  /// Another map in the place of one that was added: of the same robot, later. Throws std::out_of_range for
-  /// an unknown id, and as add().
+  /// Another map in the place of one that was added, of the same robot, in the same frame. Its pairs are
+  /// matched again. Throws std::out_of_range for an unknown id, and as add().
   void update(MapId id, OccupancyGrid map);
+
+  /// As update(), for a map that is little different: what its pairs said stays until search_again(). Where
+  /// the maps lie is adjusted to the new map all the same, so this is how a map follows a robot that explores,
+  /// at the cost of a joint solution instead of k - 1 matches. Throws as update().
+  void grow(MapId id, OccupancyGrid map);
+
+  /// The map's pairs are matched again by the next solve(). Throws std::out_of_range for an unknown id.
+  void search_again(MapId id);
 
   /// What is known of a map's pose. Throws as update().
   void set_known_pose(MapId id, std::optional<KnownPose> known_pose);
@@ -44,9 +52,10 @@ class Merger {
   /// place in this list.
   std::vector<MapId> maps() const;
 
-  /// Matches the pairs that are new or have changed, and merges. Throws std::invalid_argument when a merged
-  /// map would exceed 2^28 cells.
-  MergeResult result();
+  /// Matches the pairs that are new or have changed, and merges: seconds to minutes for many maps. When it is
+  /// cancelled (with_cancellation()) the matches made by then are kept, and the next call goes on with them.
+  /// Throws std::invalid_argument when a merged map would exceed 2^28 cells.
+  MergeResult solve();
 
  private:
   class State;

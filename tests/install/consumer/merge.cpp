@@ -4,5 +4,5 @@
 int main() {
   gridmerge::Merger merger;
   merger.add(gridmerge::make_grid(8, 8, 0.1));
-  return merger.result().left_out.size() == 1 ? 0 : 1;
+  return merger.solve().left_out.size() == 1 ? 0 : 1;
 }

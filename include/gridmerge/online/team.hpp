@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/online/team_answer.hpp"
+
+namespace gridmerge {
+
+/// How a team works.
+struct TeamOptions {
+  MergeOptions merge;  ///< as of merge(); its progress callback is not used
+  /// A map is searched anew when this share of its known cells differs from when it was searched last. A
+  /// quarter of it is enough for a robot that lies nowhere yet. In between, the pose follows the map.
+  double search_again = 0.1;
+  /// A robot that was placed is moved elsewhere, or taken out, when so many answers in a row, each with newer
+  /// maps, say so in the same way.
+  int confirmations = 3;
+  /// With no newer map for so long, all that is left is searched, and what that says is taken at once.
+  std::chrono::milliseconds quiet{3000};
+  std::size_t max_robots = 256;  ///< Team::hear() refuses more
+};
+
+/// Throws std::invalid_argument for options that make no sense.
+void validate(const TeamOptions& options);
+
+/// Robots that map while they are heard, come and go, and know nothing of each other's frames.
+///
+/// A thread of its own merges the newest map of each, never a queue of old ones. All methods may be called
+/// from any thread, and none waits for that work, except where it says so. Memory is bounded by the maps:
+/// four of each robot at most.
+///
+/// Answers are steady. A robot's pose follows the evidence, but a robot that was placed moves elsewhere only
+/// when that is confirmed (TeamOptions::confirmations, TeamOptions::quiet), and each jump is told. A
+/// component's frame is that of the robot that was heard first, for as long as it lives.
+class Team {
+ public:
+  /// Is given each answer, by the team's thread, one after the other; must not throw, nor call the team's
+  /// destructor.
+  using OnAnswer = std::function<void(const std::shared_ptr<const TeamAnswer>&)>;
+
+  /// Throws std::invalid_argument for options that make no sense.
+  explicit Team(TeamOptions options = {}, OnAnswer on_answer = {});
+  /// Ends what is at work, within a fraction of a second.
+  ~Team();
+  Team(const Team&) = delete;             ///< a team has a thread of its own
+  Team& operator=(const Team&) = delete;  ///< likewise
+
+  /// The robot's newest map. A map that differs too much from the one before is that of a robot which
+  /// started anew in another frame: what was known of its pose is forgotten. Throws std::invalid_argument for
+  /// an invalid map or a robot too many. O(cells).
+  void hear(const std::string& robot, OccupancyGrid map);
+
+  /// New cells of a rectangle of the robot's newest map, with cell (`column`, `row`) at its lower left
+  /// corner; `part.resolution` and `part.origin` play no role. Returns false, and does nothing, where there
+  /// is no map that holds them. O(cells of the map).
+  bool hear_part(const std::string& robot, int column, int row, const OccupancyGrid& part);
+
+  /// Another node of the same team has heard the robot since then (RobotStatus::heard_first of its answer).
+  /// Nodes that tell each other agree on who was heard first, so on frames, though they heard robots in
+  /// another order or started anew.
+  void hear_age(const std::string& robot, TeamTime heard_first);
+
+  /// The robot is gone, and its map with it.
+  void forget(const std::string& robot);
+
+  /// What is known of where a robot's map lies, heard or not yet. Throws std::invalid_argument as merge().
+  void set_known_pose(const std::string& robot, std::optional<KnownPose> known_pose);
+
+  /// The newest, never null.
+  std::shared_ptr<const TeamAnswer> answer() const;
+
+  /// Waits until all that was heard is settled, or for so long; says whether it is.
+  bool wait_until_settled(std::chrono::milliseconds longest) const;
+
+ private:
+  class Worker;
+  std::unique_ptr<Worker> worker_;
+};
+
+}  // namespace gridmerge

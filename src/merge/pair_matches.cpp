@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "merge/pair_matches.hpp"
+
+#include <algorithm>
+#include <mutex>
+
+#include "grid/parallel.hpp"
+
+namespace gridmerge::internal {
+
+namespace {
+
+PairMatches::Pair key_of(const PairMatches::Pair& pair) {
+  return std::minmax(pair.first, pair.second);
+}
+
+}  // namespace
+
+void PairMatches::add(std::vector<Pair> pairs, const FindMap& find_map, const MatchOptions& options,
+                      const Progress& progress) {
+  std::erase_if(pairs, [&](const Pair& pair) { return made_.contains(key_of(pair)); });
+  std::mutex keeping;
+  std::size_t done = 0;
+  const auto match_pair = [&](std::size_t i) {
+    const auto [fixed, moving] = pairs[i];
+    MatchResult result = match(find_map(fixed), find_map(moving), options);
+    const std::lock_guard lock(keeping);
+    made_[key_of(pairs[i])] = {fixed, std::move(result)};
+    ++done;
+    if (progress) progress(done, pairs.size());
+  };
+  if (pairs.size() == 1) {
+    match_pair(0);
+  } else {
+    // Each pair by one thread: one that waited within a pair would begin with another one meanwhile.
+    parallel_for(pairs.size(), [&](std::size_t i) { with_threads(1, [&] { match_pair(i); }); });
+  }
+}
+
+MatchResult PairMatches::between(MapId fixed, MapId moving) const {
+  const Made& made = made_.at(key_of({fixed, moving}));
+  return made.fixed == fixed ? made.match : inverse(made.match);
+}
+
+void PairMatches::forget(MapId id) {
+  std::erase_if(made_, [&](const auto& made) { return made.first.first == id || made.first.second == id; });
+}
+
+}  // namespace gridmerge::internal

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "gridmerge/match/match.hpp"
+#include "gridmerge/match/prepared_map.hpp"
+
+namespace gridmerge::internal {
+
+/// What pairs of maps say of each other, kept for as long as the maps stay what they are. Maps go by a number
+/// of the caller's.
+class PairMatches {
+ public:
+  using MapId = std::size_t;
+  using Pair = std::pair<MapId, MapId>;  ///< fixed, moving
+  using FindMap = std::function<const PreparedMap&(MapId)>;
+  using Progress = std::function<void(std::size_t, std::size_t)>;  ///< done, of all
+
+  /// Matches those of the pairs that it does not hold, as the maps are now. When the work is cancelled, or a
+  /// match throws, what is done by then is kept. Runs in the calling TBB arena.
+  void add(std::vector<Pair> pairs, const FindMap& find_map, const MatchOptions& options,
+           const Progress& progress);
+
+  /// Throws std::out_of_range for a pair that it does not hold.
+  MatchResult between(MapId fixed, MapId moving) const;
+
+  /// What it holds of a map.
+  void forget(MapId id);
+
+ private:
+  /// A match as it was made.
+  struct Made {
+    MapId fixed;
+    MatchResult match;
+  };
+
+  std::map<Pair, Made> made_;  // by the lower number and the higher one
+};
+
+}  // namespace gridmerge::internal

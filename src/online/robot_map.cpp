@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "online/robot_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "similarity/agreement.hpp"
+
+namespace gridmerge::internal {
+
+namespace {
+
+/// A map goes on from another one when it has kept most of what that knew, in the same place. Free space
+/// agrees with free space in most poses, so that most has to be nearly all of it. A map that a closed loop
+/// bent may fail too: then its pose is searched anew, which does no harm.
+constexpr double kLeastKept = 0.5;
+constexpr double kLeastAgreement = 0.9;
+
+}  // namespace
+
+MapChange change_between(const OccupancyGrid& before, const OccupancyGrid& after) {
+  const auto area_of = [](const OccupancyGrid& grid) {
+    return static_cast<double>(count_cells(grid).known()) * grid.resolution * grid.resolution;
+  };
+  const double known_before = area_of(before), known_after = area_of(after);
+  if (known_before == 0.0 || known_after == 0.0) {
+    const bool both_blank = known_before == known_after;
+    return {both_blank ? 0.0 : 1.0, known_after < known_before};
+  }
+  // Cells of `before` are looked up, each of which stands for its area.
+  const AgreementCounts counts = count_agreement(after, before, {});
+  const double cell = before.resolution * before.resolution;
+  const double both = static_cast<double>(counts.both_known()) * cell;
+  const double equal = static_cast<double>(counts.agreement) * cell;
+  const double share = 1.0 - equal / std::max(known_before, known_after);
+  return {std::clamp(share, 0.0, 1.0), both < kLeastKept * known_before || equal < kLeastAgreement * both};
+}
+
+bool are_equal(const OccupancyGrid& a, const OccupancyGrid& b) {
+  // A probability that is not known is not a number, which equals nothing.
+  const auto same = [](float p, float q) { return p == q || (std::isnan(p) && std::isnan(q)); };
+  return a.width == b.width && a.height == b.height && a.resolution == b.resolution && a.origin == b.origin &&
+         a.cells == b.cells &&
+         std::equal(a.probability.begin(), a.probability.end(), b.probability.begin(), b.probability.end(),
+                    same);
+}
+
+}  // namespace gridmerge::internal

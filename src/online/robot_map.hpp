@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "gridmerge/grid/occupancy_grid.hpp"
+
+namespace gridmerge::internal {
+
+/// How a robot's map differs from another one of the same robot.
+struct MapChange {
+  double share = 0.0;        ///< of the known cells of either that are not the same in both, in [0, 1]
+  bool other_frame = false;  ///< it does not go on from the other one: the robot started anew
+};
+
+/// From `before` to `after`, both in the robot's map frame. O(cells).
+MapChange change_between(const OccupancyGrid& before, const OccupancyGrid& after);
+
+/// Whether the two are the same, cells and frame. O(cells).
+bool are_equal(const OccupancyGrid& a, const OccupancyGrid& b);
+
+}  // namespace gridmerge::internal

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "online/solver.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <utility>
+
+#include "gridmerge/grid/resample.hpp"
+#include "gridmerge/merge/fuse.hpp"
+#include "merge/joins.hpp"
+#include "online/robot_map.hpp"
+#include "online/status.hpp"
+
+namespace gridmerge::internal {
+
+namespace {
+
+/// A robot that lies nowhere yet is searched for sooner: it is waited for.
+constexpr double kSooner = 0.25;
+
+MergeOptions without_progress(MergeOptions options) {
+  options.progress = nullptr;
+  options.match.progress = nullptr;
+  return options;
+}
+
+MapExtent extent_of(const OccupancyGrid& map) {
+  return count_cells(map).known() == 0 ? MapExtent{} : Coverage(crop_to_known(map)).extent();
+}
+
+}  // namespace
+
+void add_news(RobotNews& earlier, RobotNews later) {
+  if (later.is_gone) {
+    earlier.map.reset();
+    earlier.is_gone = true;
+  }
+  if (later.map) earlier.map = std::move(later.map);
+  if (later.known_pose) earlier.known_pose = later.known_pose;
+  if (later.since) earlier.since = std::min(earlier.since.value_or(TeamTime::max()), *later.since);
+  earlier.maps_heard += later.maps_heard;
+}
+
+TeamSolver::TeamSolver(const TeamOptions& options)
+    : options_(options), merger_(without_progress(options.merge)), placements_(options.confirmations) {
+  validate(options);
+}
+
+void TeamSolver::take(News news) {
+  for (auto& [name, one] : news) add_news(pending_[name], std::move(one));
+}
+
+TeamAnswer TeamSolver::solve(bool in_full) {
+  const auto start = std::chrono::steady_clock::now();
+  while (!pending_.empty()) {
+    // In the order of their names; each is done with before it is forgotten.
+    const auto next = pending_.begin();
+    apply(next->first, next->second);
+    pending_.erase(next);
+  }
+  if (in_full) search_what_changed();
+  TeamAnswer answer;
+  MergeResult result;
+  try {
+    result = merger_.solve();
+    propose(result, in_full);
+    tell_components(std::move(result), answer);
+  } catch (const std::invalid_argument& error) {  // a merged map would be too large
+    answer.problem = error.what();
+    answer.components = told_components_;
+  }
+  tell_robots(answer);
+  tell_events(answer);
+  told_ = placements_.groups();
+  told_components_ = answer.components;
+  restarted_.clear();
+  answer.number = ++answers_;
+  answer.settled = is_settled();
+  answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return answer;
+}
+
+bool TeamSolver::is_settled() const {
+  if (!pending_.empty() || placements_.is_held_back()) return false;
+  return std::all_of(robots_.begin(), robots_.end(),
+                     [](const auto& robot) { return robot.second.map == robot.second.searched; });
+}
+
+void TeamSolver::apply(const std::string& name, RobotNews& news) {
+  if (news.is_gone) {
+    remove(name);
+    news.is_gone = false;
+  }
+  if (news.known_pose) {
+    Robot& robot = robots_.try_emplace(name, Robot{}).first->second;
+    robot.known_pose = *news.known_pose;
+    if (robot.id) merger_.set_known_pose(*robot.id, robot.known_pose);
+    placements_.forget(name);
+    news.known_pose.reset();
+  }
+  if (news.since) {
+    Robot& robot = robots_.try_emplace(name, Robot{}).first->second;
+    robot.since = std::min(robot.since, *news.since);
+  }
+  if (news.map) set_map(name, news.map);
+  if (const auto robot = robots_.find(name); robot != robots_.end())
+    robot->second.maps_heard += news.maps_heard;
+}
+
+void TeamSolver::set_map(const std::string& name, std::shared_ptr<const OccupancyGrid> map) {
+  Robot& robot = robots_[name];
+  if (!robot.id) {
+    const MapExtent extent = extent_of(*map);
+    robot.id = merger_.add(*map, robot.known_pose);
+    names_[*robot.id] = name;
+    robot.searched = map;
+    robot.map = std::move(map);
+    robot.extent = extent;
+    fresh_.insert(name);
+    return;
+  }
+  if (are_equal(*robot.map, *map)) return;
+  const bool other_frame = change_between(*robot.map, *map).other_frame;
+  const double searched_from = options_.search_again * (is_placed(name) ? 1.0 : kSooner);
+  const bool searches = other_frame || change_between(*robot.searched, *map).share >= searched_from;
+  const MapExtent extent = extent_of(*map);
+  if (searches) {
+    merger_.update(*robot.id, *map);
+    robot.searched = map;
+  } else {
+    merger_.grow(*robot.id, *map);
+  }
+  robot.map = std::move(map);
+  robot.extent = extent;
+  fresh_.insert(name);
+  if (!other_frame) return;
+  placements_.forget(name);
+  restarted_.insert(name);
+}
+
+void TeamSolver::remove(const std::string& name) {
+  const auto robot = robots_.find(name);
+  if (robot == robots_.end()) return;
+  if (robot->second.id) {
+    merger_.remove(*robot->second.id);
+    names_.erase(*robot->second.id);
+  }
+  placements_.forget(name);
+  left_out_.erase(name);
+  fresh_.erase(name);
+  restarted_.erase(name);
+  robots_.erase(robot);
+}
+
+bool TeamSolver::is_placed(const std::string& name) const {
+  const auto& groups = placements_.groups();
+  return std::any_of(groups.begin(), groups.end(),
+                     [&](const RobotGroup& group) { return group.robots.contains(name); });
+}
+
+void TeamSolver::search_what_changed() {
+  for (auto& [name, robot] : robots_) {
+    if (!robot.id || robot.searched == robot.map) continue;
+    merger_.search_again(*robot.id);
+    robot.searched = robot.map;
+  }
+}
+
+void TeamSolver::propose(const MergeResult& result, bool conclusive) {
+  std::vector<std::string> names;  // by place in the result
+  for (const MapId id : merger_.maps()) names.push_back(names_.at(id));
+  std::vector<RobotGroup> proposed;
+  for (const Component& component : result.components) {
+    RobotGroup group{{}, component.in_world_frame};
+    for (const Member& member : component.members)
+      group.robots[names[member.map]] = {member.T_component_map, member.probability.value_or(0.0)};
+    const std::string& anchor = first_heard(group.robots);
+    if (!group.in_world_frame && anchor != names[component.members.front().map]) {
+      const SE2 T_anchor_component = inverse(group.robots.at(anchor).T_group_map);
+      for (auto& [name, placement] : group.robots)
+        placement.T_group_map = name == anchor ? SE2{} : T_anchor_component * placement.T_group_map;
+    }
+    proposed.push_back(std::move(group));
+  }
+  left_out_.clear();
+  for (std::size_t i = 0; i < result.left_out.size(); ++i)
+    left_out_[names[result.left_out[i]]] = result.left_out_reasons[i];
+  std::map<std::string, MapExtent> extents;
+  for (const auto& [name, robot] : robots_) {
+    if (robot.id) extents[name] = robot.extent;
+  }
+  placements_.propose(std::move(proposed), fresh_, extents, conclusive);
+  fresh_.clear();
+}
+
+void TeamSolver::tell_components(MergeResult result, TeamAnswer& answer) const {
+  const std::vector<MapId> ids = merger_.maps();
+  for (const RobotGroup& group : placements_.groups()) {
+    TeamComponent told;
+    if (!group.in_world_frame) told.anchor = first_heard(group.robots);
+    std::vector<PlacedMap> placed;
+    for (const auto& [name, placement] : group.robots) {
+      told.robots.push_back(name);
+      placed.push_back({robots_.at(name).map.get(), placement.T_group_map});
+    }
+    // What the merger fused serves where the maps lie as it says.
+    const auto same =
+        std::find_if(result.components.begin(), result.components.end(), [&](const Component& one) {
+          return one.members.size() == group.robots.size() &&
+                 std::all_of(one.members.begin(), one.members.end(), [&](const Member& member) {
+                   const auto robot = group.robots.find(names_.at(ids[member.map]));
+                   return robot != group.robots.end() && robot->second.T_group_map == member.T_component_map;
+                 });
+        });
+    const double resolution = options_.merge.resolution;
+    OccupancyGrid map = same != result.components.end()
+                            ? std::move(same->fused.grid)
+                            : fuse(placed, resolution > 0.0 ? resolution : finest_resolution(placed)).grid;
+    told.map = std::make_shared<const OccupancyGrid>(std::move(map));
+    answer.components.push_back(std::move(told));
+  }
+  std::sort(answer.components.begin(), answer.components.end(),
+            [](const TeamComponent& a, const TeamComponent& b) {
+              return std::pair(b.robots.size(), a.robots) < std::pair(a.robots.size(), b.robots);
+            });
+}
+
+void TeamSolver::tell_robots(TeamAnswer& answer) const {
+  const std::vector<RobotGroup>& groups = placements_.groups();
+  const auto maps =
+      std::count_if(robots_.begin(), robots_.end(), [](const auto& one) { return one.second.map; });
+  for (const auto& [name, robot] : robots_) {
+    RobotStatus status;
+    status.name = name;
+    status.maps_heard = robot.maps_heard;
+    status.heard_first = robot.since;
+    const auto group = std::find_if(groups.begin(), groups.end(),
+                                    [&](const RobotGroup& one) { return one.robots.contains(name); });
+    if (group != groups.end()) {
+      status.state = RobotState::placed;
+      status.T_world_map = group->robots.at(name).T_group_map;
+      status.probability = group->robots.at(name).probability;
+      const auto component =
+          std::find_if(answer.components.begin(), answer.components.end(), [&](const TeamComponent& one) {
+            return std::binary_search(one.robots.begin(), one.robots.end(), name);
+          });
+      if (component != answer.components.end())
+        status.component = static_cast<std::size_t>(component - answer.components.begin());
+    } else if (const auto reason = left_out_.find(name); robot.map && maps > 1 && reason != left_out_.end()) {
+      status.state = RobotState::left_out;
+      status.reason = reason->second;
+    }
+    status.why = group != groups.end()                  ? say_placed(name, *group)
+                 : status.state == RobotState::left_out ? say_left_out(status.reason)
+                                                        : say_waiting(robot.map != nullptr, maps > 1);
+    answer.robots.push_back(std::move(status));
+  }
+}
+
+void TeamSolver::tell_events(TeamAnswer& answer) const {
+  std::map<std::string, MapExtent> extents;
+  for (const auto& [name, robot] : robots_) extents[name] = robot.extent;
+  for (const std::string& name : restarted_)
+    answer.events.push_back({TeamEvent::Kind::restarted, name, say_restarted(name)});
+  std::vector<RobotGroup> before = told_;
+  for (RobotGroup& group : before)
+    std::erase_if(group.robots, [&](const auto& one) { return restarted_.contains(one.first); });
+  for (TeamEvent& event : changes_between(before, placements_.groups(), extents))
+    answer.events.push_back(std::move(event));
+}
+
+const std::string& TeamSolver::first_heard(const std::map<std::string, Placement>& robots) const {
+  return std::min_element(robots.begin(), robots.end(),
+                          [&](const auto& a, const auto& b) {
+                            return std::pair(robots_.at(a.first).since, a.first) <
+                                   std::pair(robots_.at(b.first).since, b.first);
+                          })
+      ->first;
+}
+
+}  // namespace gridmerge::internal

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "gridmerge/merge/merger.hpp"
+#include "gridmerge/online/team.hpp"
+#include "merge/coverage.hpp"
+#include "online/placements.hpp"
+
+namespace gridmerge::internal {
+
+/// What was heard of a robot since it was asked last.
+struct RobotNews {
+  std::shared_ptr<const OccupancyGrid> map;  ///< the newest; null where there is none
+  std::uint64_t maps_heard = 0;
+  std::optional<TeamTime> since;                       ///< when it was heard first, by the oldest account
+  bool is_gone = false;                                ///< before the map, if there is one, came
+  std::optional<std::optional<KnownPose>> known_pose;  ///< what is known now, where that has changed
+};
+
+/// All that was heard, by robot.
+using News = std::map<std::string, RobotNews>;
+
+/// Adds later news to earlier ones.
+void add_news(RobotNews& earlier, RobotNews later);
+
+/// The team without its thread: takes news, and says what follows from them. The same news in the same steps
+/// give the same answers.
+class TeamSolver {
+ public:
+  /// Throws std::invalid_argument for options that make no sense.
+  explicit TeamSolver(const TeamOptions& options);
+
+  /// What is to be heeded by the next solve(). O(1) each.
+  void take(News news);
+
+  /// The answer with all news. With `in_full` every map is searched that has changed since it was, and what
+  /// follows is taken at once. May be cancelled: nothing of the news is lost then, nor what was searched.
+  TeamAnswer solve(bool in_full);
+
+  /// Whether nothing is left to find out: an answer in full would be the same.
+  bool is_settled() const;
+
+ private:
+  using MapId = Merger::MapId;
+
+  struct Robot {
+    TeamTime since = TeamTime::max();  ///< when it was heard first
+    std::optional<MapId> id;           ///< in the merger; none before a map came
+    std::shared_ptr<const OccupancyGrid> map;
+    std::shared_ptr<const OccupancyGrid> searched;  ///< the map when it was searched last
+    MapExtent extent;
+    std::uint64_t maps_heard = 0;
+    std::optional<KnownPose> known_pose;
+  };
+
+  void apply(const std::string& name, RobotNews& news);
+  void set_map(const std::string& name, std::shared_ptr<const OccupancyGrid> map);
+  void remove(const std::string& name);
+  bool is_placed(const std::string& name) const;
+  void search_what_changed();
+  void propose(const MergeResult& result, bool conclusive);
+  void tell_components(MergeResult result, TeamAnswer& answer) const;
+  void tell_robots(TeamAnswer& answer) const;
+  void tell_events(TeamAnswer& answer) const;
+  const std::string& first_heard(const std::map<std::string, Placement>& robots) const;
+
+  TeamOptions options_;
+  Merger merger_;
+  News pending_;
+  std::map<std::string, Robot> robots_;
+  std::map<MapId, std::string> names_;
+  Placements placements_;
+  std::set<std::string> fresh_;      // with newer maps since the last proposal
+  std::set<std::string> restarted_;  // since the last answer
+  std::map<std::string, Reason> left_out_;
+  std::vector<RobotGroup> told_;  // by the last answer
+  std::vector<TeamComponent> told_components_;
+  std::uint64_t answers_ = 0;
+};
+
+}  // namespace gridmerge::internal

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "online/status.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "merge/arrangement.hpp"
+#include "merge/left_out.hpp"
+
+namespace gridmerge::internal {
+
+namespace {
+
+const RobotGroup* group_of(const std::vector<RobotGroup>& groups, const std::string& robot) {
+  const auto group = std::find_if(groups.begin(), groups.end(),
+                                  [&](const RobotGroup& one) { return one.robots.contains(robot); });
+  return group == groups.end() ? nullptr : &*group;
+}
+
+SE2 between(const RobotGroup& group, const std::string& first, const std::string& second) {
+  return inverse(group.robots.at(first).T_group_map) * group.robots.at(second).T_group_map;
+}
+
+std::string others_of(const std::string& robot, const RobotGroup& group) {
+  constexpr std::size_t kNamed = 4;
+  std::string text;
+  std::size_t count = 0;
+  for (const auto& [name, placement] : group.robots) {
+    if (name == robot) continue;
+    if (count++ < kNamed) text += (text.empty() ? "" : ", ") + name;
+  }
+  return count > kNamed ? text + " and " + std::to_string(count - kNamed) + " more" : text;
+}
+
+std::string metres(double distance) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f m", distance);
+  return text;
+}
+
+/// How far a robot lies from where it was to those that it lay together with, if it lies elsewhere to most.
+double jump_of(const std::string& robot, const RobotGroup& before, const RobotGroup& now,
+               const std::map<std::string, MapExtent>& extents) {
+  std::size_t common = 0, elsewhere = 0;
+  double farthest = 0.0;
+  for (const auto& [other, placement] : before.robots) {
+    if (other == robot || !now.robots.contains(other)) continue;
+    ++common;
+    const MapExtent &a = extents.at(other), &b = extents.at(robot);
+    const SE2 T_before = between(before, other, robot), T_now = between(now, other, robot);
+    if (difference(a, b, T_before, T_now) <= agreement_tolerance(a, b)) continue;
+    ++elsewhere;
+    farthest = std::max(farthest, displacement(b, T_before, T_now));
+  }
+  return 2 * elsewhere > common ? farthest : 0.0;
+}
+
+}  // namespace
+
+std::string say_placed(const std::string& robot, const RobotGroup& group) {
+  return "it lies together with " + others_of(robot, group);
+}
+
+std::string say_left_out(Reason reason) {
+  return explain_left_out(reason);
+}
+
+std::string say_waiting(bool has_map, bool has_others) {
+  if (!has_map) return "no map came yet";
+  return has_others ? "what is new is not confirmed yet" : "there is no other map yet";
+}
+
+std::string say_restarted(const std::string& robot) {
+  return robot + " started anew: its map does not go on from the one before, and is searched anew";
+}
+
+std::vector<TeamEvent> changes_between(const std::vector<RobotGroup>& before,
+                                       const std::vector<RobotGroup>& now,
+                                       const std::map<std::string, MapExtent>& extents) {
+  std::vector<TeamEvent> events;
+  for (const auto& [robot, extent] : extents) {
+    const RobotGroup *lay = group_of(before, robot), *lies = group_of(now, robot);
+    if (lies && !lay) {
+      events.push_back({TeamEvent::Kind::joined, robot, robot + " joined " + others_of(robot, *lies)});
+    } else if (lay && !lies) {
+      events.push_back(
+          {TeamEvent::Kind::left, robot, robot + " is no longer sure to lie with " + others_of(robot, *lay)});
+    } else if (lay && lies) {
+      const double jump = jump_of(robot, *lay, *lies, extents);
+      if (jump > 0.0)
+        events.push_back({TeamEvent::Kind::jumped, robot,
+                          robot + " moved by " + metres(jump) + ": its newer place is confirmed"});
+    }
+  }
+  for (const RobotGroup& group : before) {
+    for (const auto& [robot, placement] : group.robots) {
+      if (!extents.contains(robot))
+        events.push_back({TeamEvent::Kind::left, robot, robot + " is gone, and its map with it"});
+    }
+  }
+  return events;
+}
+
+}  // namespace gridmerge::internal

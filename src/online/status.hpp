@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What people are told of robots.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gridmerge/online/team_answer.hpp"
+#include "online/placements.hpp"
+
+namespace gridmerge::internal {
+
+std::string say_placed(const std::string& robot, const RobotGroup& group);
+std::string say_left_out(Reason reason);
+std::string say_waiting(bool has_map, bool has_others);
+std::string say_restarted(const std::string& robot);
+
+/// What became of robots from one answer's groups to the next one's: who joined, left and jumped, by name.
+/// Of two robots that lie otherwise than before the one jumped that lies otherwise to most of those that it
+/// lay together with. `extents` are those of all robots that there are now. O(robots^2).
+std::vector<TeamEvent> changes_between(const std::vector<RobotGroup>& before,
+                                       const std::vector<RobotGroup>& now,
+                                       const std::map<std::string, MapExtent>& extents);
+
+}  // namespace gridmerge::internal

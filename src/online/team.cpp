@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/online/team.hpp"
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "gridmerge/grid/cancellation.hpp"
+#include "online/solver.hpp"
+
+namespace gridmerge {
+
+using namespace internal;
+
+void validate(const TeamOptions& options) {
+  if (!(options.search_again >= 0.0 && options.search_again <= 1.0))
+    throw std::invalid_argument("search_again must lie in [0, 1]");
+  if (options.confirmations < 1) throw std::invalid_argument("confirmations must be at least 1");
+  if (options.quiet.count() < 0) throw std::invalid_argument("quiet must not be negative");
+  if (options.max_robots < 1) throw std::invalid_argument("max_robots must be at least 1");
+}
+
+const char* name_of(RobotState state) {
+  switch (state) {
+    case RobotState::waiting:
+      return "waiting";
+    case RobotState::placed:
+      return "placed";
+    case RobotState::left_out:
+      return "left_out";
+  }
+  return "";
+}
+
+class Team::Worker {
+ public:
+  Worker(TeamOptions options, OnAnswer on_answer)
+      : options_(std::move(options)),
+        on_answer_(std::move(on_answer)),
+        solver_(options_),
+        thread_([this] { work(); }) {}
+
+  ~Worker() {
+    {
+      const std::lock_guard lock(mutex_);
+      ends_ = true;
+      is_cancelled_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+  }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  void hear(const std::string& robot, OccupancyGrid map) {
+    validate(map);
+    auto shared = std::make_shared<OccupancyGrid>(std::move(map));
+    const std::lock_guard lock(mutex_);
+    require_room_for(robot);
+    newest_[robot] = shared;
+    put_map(robot, std::move(shared));
+  }
+
+  bool hear_part(const std::string& robot, int column, int row, const OccupancyGrid& part) {
+    validate(part);
+    const std::lock_guard lock(mutex_);
+    const auto newest = newest_.find(robot);
+    if (newest == newest_.end()) return false;
+    const OccupancyGrid& whole = *newest->second;
+    if (column < 0 || row < 0 || part.width > whole.width - column || part.height > whole.height - row)
+      return false;
+    // The solver may be at work on what it was given; what still lies in the inbox is ours.
+    const auto waiting = news_.find(robot);
+    const bool is_ours = waiting != news_.end() && waiting->second.map == newest->second;
+    auto map = is_ours ? newest->second : std::make_shared<OccupancyGrid>(whole);
+    draw(part, column, row, *map);
+    newest->second = map;
+    put_map(robot, std::move(map));
+    return true;
+  }
+
+  void forget(const std::string& robot) {
+    const std::lock_guard lock(mutex_);
+    newest_.erase(robot);
+    known_.erase(robot);
+    RobotNews news;
+    news.is_gone = true;
+    put(robot, std::move(news));
+  }
+
+  void set_known_pose(const std::string& robot, std::optional<KnownPose> known_pose) {
+    if (known_pose) validate(*known_pose);
+    const std::lock_guard lock(mutex_);
+    require_room_for(robot);
+    RobotNews news;
+    news.known_pose = known_pose;
+    put(robot, std::move(news));
+  }
+
+  void hear_age(const std::string& robot, TeamTime heard_first) {
+    const std::lock_guard lock(mutex_);
+    if (!newest_.contains(robot)) return;  // until it is heard here its age plays no role
+    RobotNews news;
+    news.since = heard_first;
+    put(robot, std::move(news));
+  }
+
+  std::shared_ptr<const TeamAnswer> answer() const {
+    const std::lock_guard lock(mutex_);
+    return answer_;
+  }
+
+  bool wait_until_settled(std::chrono::milliseconds longest) const {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, longest,
+                             [&] { return news_.empty() && !is_at_work_ && answer_->settled; });
+  }
+
+ private:
+  static void draw(const OccupancyGrid& part, int column, int row, OccupancyGrid& map) {
+    if (part.probability.empty()) map.probability.clear();
+    for (int y = 0; y < part.height; ++y) {
+      for (int x = 0; x < part.width; ++x) {
+        const std::size_t to = map.index(column + x, row + y), from = part.index(x, y);
+        map.cells[to] = part.cells[from];
+        if (!map.probability.empty()) map.probability[to] = part.probability[from];
+      }
+    }
+  }
+
+  // The following ones with mutex_ held.
+
+  void require_room_for(const std::string& robot) {
+    if (known_.contains(robot)) return;
+    if (known_.size() >= options_.max_robots)
+      throw std::invalid_argument("there are already " + std::to_string(options_.max_robots) +
+                                  " robots: " + robot + " is one too many");
+    known_.insert(robot);
+  }
+
+  void put_map(const std::string& robot, std::shared_ptr<const OccupancyGrid> map) {
+    RobotNews news;
+    news.map = std::move(map);
+    news.maps_heard = 1;
+    news.since = std::chrono::system_clock::now();
+    put(robot, std::move(news));
+  }
+
+  void put(const std::string& robot, RobotNews news) {
+    add_news(news_[robot], std::move(news));
+    heard_ = std::chrono::steady_clock::now();
+    // Work on older maps ends; but not twice in a row, so that answers come however often maps do.
+    if (is_at_work_ && may_be_cancelled_) is_cancelled_ = true;
+    changed_.notify_all();
+  }
+
+  void work() {
+    std::unique_lock lock(mutex_);
+    while (!ends_) {
+      bool is_quiet = false;
+      if (news_.empty() && !has_unfinished_) {
+        const auto wakes = [&] { return ends_ || !news_.empty(); };
+        if (is_all_done_) {
+          changed_.wait(lock, wakes);
+        } else {
+          is_quiet = !changed_.wait_until(lock, heard_ + options_.quiet, wakes);
+        }
+        if (ends_) return;
+      }
+      News news = std::exchange(news_, {});
+      is_at_work_ = true;
+      is_cancelled_ = false;
+      lock.unlock();
+      std::shared_ptr<const TeamAnswer> answer = solve(std::move(news), is_quiet);
+      if (answer && on_answer_) on_answer_(answer);
+      lock.lock();
+      is_at_work_ = false;
+      may_be_cancelled_ = answer != nullptr;
+      has_unfinished_ = !answer;
+      if (answer) {
+        is_all_done_ = answer->settled || is_quiet;
+        answer_ = std::move(answer);
+      }
+      changed_.notify_all();
+    }
+  }
+
+  /// Null when it was cancelled.
+  std::shared_ptr<const TeamAnswer> solve(News news, bool in_full) {
+    auto answer = std::make_shared<TeamAnswer>();
+    try {
+      solver_.take(std::move(news));
+      with_cancellation(is_cancelled_, [&] { *answer = solver_.solve(in_full); });
+    } catch (const Cancelled&) {
+      return nullptr;
+    } catch (const std::exception& error) {  // no memory for it
+      *answer = *this->answer();
+      answer->events.clear();
+      answer->settled = false;
+      answer->problem = error.what();
+    }
+    return answer;
+  }
+
+  const TeamOptions options_;
+  const OnAnswer on_answer_;
+  TeamSolver solver_;  // the thread's own
+
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  News news_;
+  std::map<std::string, std::shared_ptr<OccupancyGrid>> newest_;
+  std::set<std::string> known_;  // robots that were named
+  std::chrono::steady_clock::time_point heard_ = std::chrono::steady_clock::now();
+  std::shared_ptr<const TeamAnswer> answer_ = std::make_shared<const TeamAnswer>();
+  bool ends_ = false, is_at_work_ = false, may_be_cancelled_ = true, has_unfinished_ = false;
+  bool is_all_done_ = true;  // until something is heard
+  std::atomic<bool> is_cancelled_ = false;
+
+  std::thread thread_;  // last: it uses all of the above
+};
+
+Team::Team(TeamOptions options, OnAnswer on_answer) {
+  validate(options);
+  worker_ = std::make_unique<Worker>(std::move(options), std::move(on_answer));
+}
+
+Team::~Team() = default;
+
+void Team::hear(const std::string& robot, OccupancyGrid map) {
+  worker_->hear(robot, std::move(map));
+}
+
+bool Team::hear_part(const std::string& robot, int column, int row, const OccupancyGrid& part) {
+  return worker_->hear_part(robot, column, row, part);
+}
+
+void Team::hear_age(const std::string& robot, TeamTime heard_first) {
+  worker_->hear_age(robot, heard_first);
+}
+
+void Team::forget(const std::string& robot) {
+  worker_->forget(robot);
+}
+
+void Team::set_known_pose(const std::string& robot, std::optional<KnownPose> known_pose) {
+  worker_->set_known_pose(robot, known_pose);
+}
+
+std::shared_ptr<const TeamAnswer> Team::answer() const {
+  return worker_->answer();
+}
+
+bool Team::wait_until_settled(std::chrono::milliseconds longest) const {
+  return worker_->wait_until_settled(longest);
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "online/placements.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+namespace gridmerge::internal {
+namespace {
+
+const std::map<std::string, MapExtent> kExtents{
+    {"a", {{0, 0}, 5, 15}}, {"b", {{0, 0}, 5, 15}}, {"c", {{0, 0}, 5, 15}}, {"d", {{0, 0}, 5, 15}}};
+const std::set<std::string> kAll{"a", "b", "c", "d"};
+
+/// a at the identity and b so far from it [m].
+RobotGroup pair_at(double distance, const std::string& first = "a", const std::string& second = "b") {
+  return {{{first, {{}, 0.99}}, {second, {{distance, 0, 0}, 0.99}}}, false};
+}
+
+double distance_of(const Placements& placements, const std::string& robot) {
+  for (const RobotGroup& group : placements.groups()) {
+    if (const auto found = group.robots.find(robot); found != group.robots.end())
+      return found->second.T_group_map.x;
+  }
+  return -1.0;
+}
+
+TEST(Placements, FollowWhatContradictsNothing) {
+  Placements placements(3);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
+  EXPECT_EQ(distance_of(placements, "b"), 10.0);
+  placements.propose({pair_at(10.1)}, kAll, kExtents, false);
+  EXPECT_EQ(distance_of(placements, "b"), 10.1);
+  EXPECT_FALSE(placements.is_held_back());
+}
+
+TEST(Placements, MoveWhenConfirmedOftenEnough) {
+  Placements placements(3);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
+  for (int i = 0; i < 2; ++i) {
+    placements.propose({pair_at(15.0 + 0.1 * i)}, kAll, kExtents, false);
+    EXPECT_EQ(distance_of(placements, "b"), 10.0);
+    EXPECT_TRUE(placements.is_held_back());
+  }
+  placements.propose({pair_at(15.2)}, kAll, kExtents, false);
+  EXPECT_EQ(distance_of(placements, "b"), 15.2);
+  EXPECT_FALSE(placements.is_held_back());
+}
+
+TEST(Placements, OtherPlacesEachTimeConfirmNothing) {
+  Placements placements(3);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
+  for (int i = 0; i < 6; ++i) placements.propose({pair_at(i % 2 == 0 ? 15.0 : 20.0)}, kAll, kExtents, false);
+  EXPECT_EQ(distance_of(placements, "b"), 10.0);
+}
+
+TEST(Placements, AReturnStartsTheCountAnew) {
+  Placements placements(3);
+  for (const double distance : {10.0, 15.0, 15.0, 10.0, 15.0, 15.0})
+    placements.propose({pair_at(distance)}, kAll, kExtents, false);
+  EXPECT_EQ(distance_of(placements, "b"), 10.0);
+  placements.propose({pair_at(15.0)}, kAll, kExtents, false);
+  EXPECT_EQ(distance_of(placements, "b"), 15.0);
+}
+
+TEST(Placements, WithoutNewerMapsNothingIsConfirmed) {
+  Placements placements(3);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
+  for (int i = 0; i < 5; ++i) placements.propose({pair_at(15.0)}, {"c"}, kExtents, false);
+  EXPECT_EQ(distance_of(placements, "b"), 10.0);
+  placements.propose({pair_at(15.0)}, {}, kExtents, true);  // conclusive
+  EXPECT_EQ(distance_of(placements, "b"), 15.0);
+}
+
+TEST(Placements, APairThatIsNoLongerSureLeavesWhenConfirmed) {
+  Placements placements(2);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
+  placements.propose({}, kAll, kExtents, false);
+  EXPECT_EQ(placements.groups().size(), 1u);
+  placements.propose({}, kAll, kExtents, false);
+  EXPECT_TRUE(placements.groups().empty());
+}
+
+TEST(Placements, OthersGoOnMeanwhile) {
+  Placements placements(3);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
+  placements.propose({pair_at(15.0), pair_at(7.0, "c", "d")}, kAll, kExtents, false);
+  EXPECT_EQ(distance_of(placements, "b"), 10.0);
+  EXPECT_EQ(distance_of(placements, "d"), 7.0);
+  // A newcomer to a group that is held back waits with it.
+  RobotGroup three = pair_at(15.0);
+  three.robots["c"] = {{3.0, 0, 0}, 0.99};
+  placements = Placements(3);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
+  placements.propose({three}, kAll, kExtents, false);
+  EXPECT_EQ(distance_of(placements, "c"), -1.0);
+}
+
+TEST(Placements, WhoIsForgottenLiesNowhere) {
+  Placements placements(3);
+  RobotGroup three = pair_at(10.0);
+  three.robots["c"] = {{3.0, 0, 0}, 0.99};
+  placements.propose({three}, kAll, kExtents, false);
+  placements.forget("b");
+  EXPECT_EQ(distance_of(placements, "b"), -1.0);
+  EXPECT_EQ(distance_of(placements, "c"), 3.0);
+  placements.forget("c");
+  EXPECT_TRUE(placements.groups().empty());
+  placements.propose({pair_at(20.0)}, kAll, kExtents, false);  // contradicts nothing
+  EXPECT_EQ(distance_of(placements, "b"), 20.0);
+}
+
+/// Whatever is proposed, each robot lies in one group at most, of two robots or more, and what is conclusive
+/// is what there is.
+TEST(Placements, AnyProposalsLeaveGroupsApart) {
+  rc::check([] {
+    Placements placements(*rc::gen::inRange(1, 4));
+    const int rounds = *rc::gen::inRange(1, 12);
+    for (int i = 0; i < rounds; ++i) {
+      std::map<int, RobotGroup> drawn;
+      std::set<std::string> fresh;
+      for (const std::string& robot : kAll) {
+        const int group = *rc::gen::inRange(0, 3);
+        drawn[group].robots[robot] = {{4.0 * *rc::gen::inRange(0, 4), 0, 0}, 0.99};
+        if (*rc::gen::arbitrary<bool>()) fresh.insert(robot);
+      }
+      std::vector<RobotGroup> proposed;
+      for (const auto& [number, group] : drawn) {
+        if (group.robots.size() > 1) proposed.push_back(group);
+      }
+      const bool conclusive = *rc::gen::inRange(0, 4) == 0;
+      placements.propose(proposed, fresh, kExtents, conclusive);
+      std::set<std::string> seen;
+      for (const RobotGroup& group : placements.groups()) {
+        RC_ASSERT(group.robots.size() > 1);
+        for (const auto& [robot, placement] : group.robots) RC_ASSERT(seen.insert(robot).second);
+      }
+      if (conclusive) {
+        RC_ASSERT(!placements.is_held_back());
+        RC_ASSERT(placements.groups().size() == proposed.size());
+      }
+    }
+  });
+}
+
+}  // namespace
+}  // namespace gridmerge::internal

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "online/solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "explorers.hpp"
+#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/resample.hpp"
+
+namespace gridmerge::internal {
+namespace {
+
+using test::Explorers;
+
+const std::vector<std::string> kNames{"anna", "bert", "carl", "dora"};
+
+RobotNews map_news(OccupancyGrid map, int second = 0) {
+  RobotNews news;
+  news.map = std::make_shared<const OccupancyGrid>(std::move(map));
+  news.maps_heard = 1;
+  news.since = TeamTime(std::chrono::seconds(second));
+  return news;
+}
+
+/// The maps of the first robots at a moment, heard in the order of their names. The fourth is a stranger.
+News news_at(const Explorers& explorers, int step, int robots = 3) {
+  News news;
+  for (int robot = 0; robot < robots; ++robot)
+    news[kNames[static_cast<std::size_t>(robot)]] = map_news(explorers.map(robot, step), robot);
+  return news;
+}
+
+const RobotStatus& status_of(const TeamAnswer& answer, const std::string& name) {
+  for (const RobotStatus& robot : answer.robots) {
+    if (robot.name == name) return robot;
+  }
+  throw std::out_of_range(name);
+}
+
+/// With less in common maps are placed less exactly.
+void expect_at(const TeamAnswer& answer, const std::string& name, const SE2& expected,
+               double tolerance = 0.15) {
+  const RobotStatus& robot = status_of(answer, name);
+  EXPECT_EQ(robot.state, RobotState::placed) << name << ": " << robot.why;
+  EXPECT_NEAR(robot.T_world_map.x, expected.x, tolerance) << name;
+  EXPECT_NEAR(robot.T_world_map.y, expected.y, tolerance) << name;
+  EXPECT_NEAR(normalize_angle(robot.T_world_map.theta - expected.theta), 0.0, tolerance / 8.0) << name;
+}
+
+bool has_event(const TeamAnswer& answer, TeamEvent::Kind kind, const std::string& robot) {
+  return std::any_of(answer.events.begin(), answer.events.end(),
+                     [&](const TeamEvent& event) { return event.kind == kind && event.robot == robot; });
+}
+
+TEST(TeamSolver, ExplorersComeTogetherAndTheStrangerDoesNot) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  for (int step = 1; step <= Explorers::kSteps; ++step) {
+    solver.take(news_at(explorers, step, 4));
+    const TeamAnswer answer = solver.solve(false);
+    EXPECT_EQ(answer.number, static_cast<std::uint64_t>(step));
+    for (const RobotStatus& robot : answer.robots) {
+      EXPECT_FALSE(has_event(answer, TeamEvent::Kind::jumped, robot.name));
+      EXPECT_EQ(robot.maps_heard, static_cast<std::uint64_t>(step));
+    }
+    EXPECT_EQ(status_of(answer, "dora").state, RobotState::left_out);
+    // Whoever is placed is placed rightly.
+    for (int robot = 1; robot < 3; ++robot) {
+      const std::string& name = kNames[static_cast<std::size_t>(robot)];
+      if (status_of(answer, name).component && answer.components[0].anchor == "anna")
+        expect_at(answer, name, explorers.between(0, robot), 0.8);
+    }
+  }
+  const TeamAnswer answer = solver.solve(true);
+  ASSERT_EQ(answer.components.size(), 1u);
+  EXPECT_EQ(answer.components[0].robots, (std::vector<std::string>{"anna", "bert", "carl"}));
+  EXPECT_EQ(answer.components[0].anchor, "anna");
+  EXPECT_TRUE(answer.settled);
+}
+
+/// At the end of all news the answer is merge()'s, to the cell.
+TEST(TeamSolver, ASettledAnswerIsThatOfMerge) {
+  const Explorers explorers;
+  TeamOptions options;
+  options.search_again = 0.6;  // so that much is left to be searched
+  TeamSolver solver(options);
+  for (int step = 2; step <= Explorers::kSteps; ++step) {
+    solver.take(news_at(explorers, step, 4));
+    solver.solve(false);
+  }
+  EXPECT_FALSE(solver.is_settled());
+  const TeamAnswer answer = solver.solve(true);
+  EXPECT_TRUE(answer.settled);
+  std::vector<OccupancyGrid> maps;
+  for (int robot = 0; robot < 4; ++robot) maps.push_back(explorers.map(robot, Explorers::kSteps));
+  const MergeResult merged = merge(maps);
+  ASSERT_EQ(answer.components.size(), merged.components.size());
+  EXPECT_EQ(answer.components[0].map->cells, merged.components[0].fused.grid.cells);
+  EXPECT_EQ(answer.components[0].map->origin, merged.components[0].fused.grid.origin);
+  for (const Member& member : merged.components[0].members) {
+    const RobotStatus& robot = status_of(answer, kNames[member.map]);
+    EXPECT_EQ(robot.T_world_map, member.T_component_map);
+    EXPECT_EQ(robot.probability, member.probability);
+  }
+  EXPECT_EQ(status_of(answer, "dora").reason, merged.left_out_reasons.at(0));
+}
+
+TEST(TeamSolver, ALittleChangeIsFollowedWithoutASearch) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  solver.take(news_at(explorers, 5));
+  solver.solve(false);
+  // One map loses a strip: what it knows is nearly the same.
+  OccupancyGrid map = explorers.map(1, 5);
+  for (int row = 0; row < map.height / 50; ++row) {
+    for (int column = 0; column < map.width; ++column) map.at(column, row) = Cell::unknown;
+  }
+  News news;
+  news["bert"] = map_news(map, 1);
+  solver.take(news);
+  EXPECT_FALSE(solver.is_settled());
+  const TeamAnswer followed = solver.solve(false);
+  EXPECT_FALSE(followed.settled);
+  expect_at(followed, "bert", explorers.between(0, 1));
+  EXPECT_TRUE(solver.solve(true).settled);
+}
+
+TEST(TeamSolver, ARobotThatStartsAnewIsPlacedInItsNewFrame) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  solver.take(news_at(explorers, 5));
+  expect_at(solver.solve(false), "bert", explorers.between(0, 1));
+  const SE2 T_new_old{5.0, 7.0, 2.0};
+  OccupancyGrid map = explorers.map(1, 4);
+  News news;
+  map.origin = T_new_old * map.origin;
+  news["bert"] = map_news(map, 1);
+  solver.take(news);
+  const TeamAnswer answer = solver.solve(false);
+  EXPECT_TRUE(has_event(answer, TeamEvent::Kind::restarted, "bert"));
+  EXPECT_FALSE(has_event(answer, TeamEvent::Kind::jumped, "bert"));
+  expect_at(answer, "bert", explorers.between(0, 1) * inverse(T_new_old));
+}
+
+/// A robot whose map keeps saying that it is elsewhere is believed, but not at once.
+TEST(TeamSolver, WhoLeavesIsTakenOutWhenThatIsConfirmed) {
+  const Explorers explorers;
+  TeamOptions options;
+  options.confirmations = 2;
+  TeamSolver solver(options);
+  News news;
+  news["anna"] = map_news(explorers.map(0, 5), 0);
+  news["bert"] = map_news(explorers.map(1, 5), 1);
+  solver.take(news);
+  EXPECT_EQ(solver.solve(false).components.size(), 1u);
+  // The other floor, in a frame that looks the same to change_between(): it forgets bit by bit.
+  OccupancyGrid map = explorers.map(1, 5);
+  int answers = 0;
+  for (int part = 1; part <= 9 && status_of(solver.solve(false), "bert").state == RobotState::placed;
+       ++part) {
+    for (int row = 0; row < map.height; ++row) {
+      for (int column = map.width * (part - 1) / 10; column < map.width * part / 10; ++column)
+        map.at(column, row) = Cell::unknown;
+    }
+    News less;
+    less["bert"] = map_news(map, 1);
+    solver.take(less);
+    ++answers;
+  }
+  EXPECT_GT(answers, 2);
+  EXPECT_FALSE(solver.is_settled() && status_of(solver.solve(false), "bert").component);
+}
+
+TEST(TeamSolver, TheFrameIsThatOfTheRobotHeardFirstForAsLongAsItLives) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  News news;
+  news["carl"] = map_news(explorers.map(2, 5), 10);
+  news["bert"] = map_news(explorers.map(1, 5), 20);
+  solver.take(news);
+  EXPECT_EQ(solver.solve(false).components.at(0).anchor, "carl");
+  news = {};
+  news["anna"] = map_news(explorers.map(0, 5), 30);
+  solver.take(news);
+  TeamAnswer answer = solver.solve(false);
+  EXPECT_EQ(answer.components.at(0).anchor, "carl");
+  EXPECT_EQ(status_of(answer, "carl").T_world_map, SE2{});
+  expect_at(answer, "anna", explorers.between(2, 0));
+  // Another node has heard bert before.
+  news = {};
+  news["bert"].since = TeamTime(std::chrono::seconds(5));
+  solver.take(news);
+  answer = solver.solve(false);
+  EXPECT_EQ(answer.components.at(0).anchor, "bert");
+  expect_at(answer, "anna", explorers.between(1, 0));
+  EXPECT_TRUE(answer.events.empty());  // a frame is not a jump
+  news = {};
+  news["bert"].is_gone = true;
+  solver.take(news);
+  answer = solver.solve(false);
+  EXPECT_TRUE(has_event(answer, TeamEvent::Kind::left, "bert"));
+  EXPECT_EQ(answer.components.at(0).anchor, "carl");
+}
+
+TEST(TeamSolver, NewsAndOrderGiveTheSameAnswer) {
+  const Explorers explorers;
+  TeamSolver together({}), apart({});
+  together.take(news_at(explorers, 4));
+  const TeamAnswer expected = together.solve(true);
+  for (const int robot : {2, 0, 1}) {
+    News news;
+    news[kNames[static_cast<std::size_t>(robot)]] = map_news(explorers.map(robot, 4), robot);
+    apart.take(news);
+    apart.solve(false);
+  }
+  const TeamAnswer answer = apart.solve(true);
+  ASSERT_EQ(answer.components.size(), expected.components.size());
+  EXPECT_EQ(answer.components[0].robots, expected.components[0].robots);
+  EXPECT_EQ(answer.components[0].anchor, expected.components[0].anchor);
+  for (const RobotStatus& robot : expected.robots) {
+    if (robot.component) expect_at(answer, robot.name, robot.T_world_map);
+  }
+}
+
+TEST(TeamSolver, ACancelledAnswerLosesNothing) {
+  const Explorers explorers;
+  TeamSolver solver({}), undisturbed({});
+  solver.take(news_at(explorers, 5));
+  undisturbed.take(news_at(explorers, 5));
+  const TeamAnswer expected = undisturbed.solve(false);
+  std::size_t cancelled = 0;
+  // Ever later, so that it is cancelled everywhere.
+  for (auto wait = std::chrono::microseconds(0);; wait = wait * 2 + std::chrono::microseconds(200)) {
+    std::atomic<bool> flag = false;
+    std::thread stops([&] {
+      std::this_thread::sleep_for(wait);
+      flag = true;
+    });
+    try {
+      with_cancellation(flag, [&] {
+        const TeamAnswer answer = solver.solve(false);
+        stops.join();
+        EXPECT_EQ(answer.components.at(0).map->cells, expected.components.at(0).map->cells);
+        EXPECT_EQ(answer.number, 1u);
+        EXPECT_EQ(answer.robots.size(), 3u);
+        for (const RobotStatus& robot : answer.robots) EXPECT_EQ(robot.maps_heard, 1u);
+      });
+      break;
+    } catch (const Cancelled&) {
+      stops.join();
+      ++cancelled;
+    }
+  }
+  EXPECT_GT(cancelled, 0u);
+}
+
+TEST(TeamSolver, KnownPosesHoldTheFrame) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  News news = news_at(explorers, 5);
+  news["bert"].known_pose = KnownPose{{100.0, 50.0, 1.0}, 0.0, 0.0, true};
+  solver.take(news);
+  const TeamAnswer answer = solver.solve(false);
+  EXPECT_EQ(answer.components.at(0).anchor, "");
+  EXPECT_EQ(status_of(answer, "bert").T_world_map, (SE2{100.0, 50.0, 1.0}));
+  expect_at(answer, "anna", SE2{100.0, 50.0, 1.0} * explorers.between(1, 0));
+}
+
+TEST(TeamSolver, SaysWhatItWaitsFor) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  News news;
+  news["anna"] = map_news(explorers.map(0, 3));
+  news["bert"].known_pose = std::optional<KnownPose>();
+  solver.take(news);
+  const TeamAnswer answer = solver.solve(false);
+  EXPECT_EQ(status_of(answer, "anna").state, RobotState::waiting);
+  EXPECT_EQ(status_of(answer, "anna").why, "there is no other map yet");
+  EXPECT_EQ(status_of(answer, "bert").why, "no map came yet");
+  EXPECT_TRUE(answer.components.empty());
+}
+
+TEST(TeamSolver, AMapTooLargeToMergeIsAProblemNotTheEnd) {
+  const Explorers explorers;
+  TeamOptions options;
+  TeamSolver solver(options);
+  solver.take(news_at(explorers, 5));
+  const TeamAnswer before = solver.solve(false);
+  EXPECT_EQ(before.problem, "");
+  News news;
+  // Two fixed robots lie together however far apart they are.
+  news["anna"].known_pose = KnownPose{{0.0, 0.0, 0.0}, 0.0, 0.0, true};
+  news["bert"].known_pose = KnownPose{{9e6, 9e6, 0.0}, 0.0, 0.0, true};
+  solver.take(news);
+  const TeamAnswer answer = solver.solve(false);
+  EXPECT_NE(answer.problem, "");
+  EXPECT_EQ(answer.components.size(), before.components.size());
+  news["bert"].known_pose = std::optional<KnownPose>();
+  news["anna"].known_pose = std::optional<KnownPose>();
+  solver.take(news);
+  EXPECT_EQ(solver.solve(false).problem, "");
+}
+
+}  // namespace
+}  // namespace gridmerge::internal

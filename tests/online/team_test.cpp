@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/online/team.hpp"
+
+#include <gtest/gtest.h>
+
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include "explorers.hpp"
+#include "support/effort.hpp"
+
+namespace gridmerge {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Explorers;
+
+constexpr auto kLong = 600s;  // no test fails because a machine is slow
+
+const std::vector<std::string> kNames{"anna", "bert", "carl", "dora"};
+
+TEST(Team, SettlesOnWhatMergeSaysHoweverFastMapsCome) {
+  const Explorers explorers;
+  TeamOptions options;
+  options.quiet = 50ms;
+  std::mutex mutex;
+  std::vector<std::shared_ptr<const TeamAnswer>> answers;
+  Team team(options, [&](const std::shared_ptr<const TeamAnswer>& answer) {
+    const std::lock_guard lock(mutex);
+    answers.push_back(answer);
+  });
+  std::vector<std::thread> robots;
+  for (int robot = 0; robot < 4; ++robot) {
+    robots.emplace_back([&, robot] {
+      for (int step = 1; step <= Explorers::kSteps; ++step) {
+        team.hear(kNames[static_cast<std::size_t>(robot)], explorers.map(robot, step));
+        std::this_thread::sleep_for(5ms);
+      }
+    });
+  }
+  for (std::thread& robot : robots) robot.join();
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  const auto answer = team.answer();
+  std::vector<OccupancyGrid> maps;
+  for (int robot = 0; robot < 4; ++robot) maps.push_back(explorers.map(robot, Explorers::kSteps));
+  const MergeResult merged = merge(maps);
+  ASSERT_EQ(answer->components.size(), 1u);
+  EXPECT_EQ(answer->components[0].robots, (std::vector<std::string>{"anna", "bert", "carl"}));
+  EXPECT_EQ(merged.components[0].members.size(), 3u);
+  const std::lock_guard lock(mutex);
+  for (std::size_t i = 0; i < answers.size(); ++i) EXPECT_EQ(answers[i]->number, i + 1);
+  EXPECT_EQ(answers.back(), answer);
+}
+
+TEST(Team, PartsMakeTheSameMapAsAWhole) {
+  const Explorers explorers;
+  const OccupancyGrid whole = explorers.map(1, 5);
+  TeamOptions options;
+  options.quiet = 20ms;
+  Team team(options);
+  team.hear("anna", explorers.map(0, 5));
+  team.hear("bert", make_grid(whole.width, whole.height, whole.resolution, whole.origin));
+  const int half = whole.height / 2;
+  for (const auto& [first, last] : {std::pair(0, half), std::pair(half, whole.height)}) {
+    OccupancyGrid part = make_grid(whole.width, last - first, whole.resolution);
+    std::copy_n(whole.cells.begin() + first * whole.width, part.cells.size(), part.cells.begin());
+    EXPECT_TRUE(team.hear_part("bert", 0, first, part));
+  }
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  Team other(options);
+  other.hear("anna", explorers.map(0, 5));
+  other.hear("bert", whole);
+  ASSERT_TRUE(other.wait_until_settled(kLong));
+  ASSERT_EQ(team.answer()->components.size(), 1u);
+  EXPECT_EQ(team.answer()->components[0].map->cells, other.answer()->components[0].map->cells);
+}
+
+TEST(Team, PartsThatDoNotFitAreRefused) {
+  Team team;
+  const OccupancyGrid part = make_grid(4, 4, 0.05);
+  EXPECT_FALSE(team.hear_part("anna", 0, 0, part));
+  team.hear("anna", make_grid(8, 6, 0.05));
+  EXPECT_TRUE(team.hear_part("anna", 4, 2, part));
+  EXPECT_FALSE(team.hear_part("anna", 5, 2, part));
+  EXPECT_FALSE(team.hear_part("anna", 4, 3, part));
+  EXPECT_FALSE(team.hear_part("anna", -1, 0, part));
+  EXPECT_FALSE(team.hear_part("anna", 2147483647, 0, part));
+  OccupancyGrid broken = part;
+  broken.cells.pop_back();
+  EXPECT_THROW(team.hear_part("anna", 0, 0, broken), std::invalid_argument);
+}
+
+TEST(Team, EndsWhileItIsAtWork) {
+  const Explorers explorers;
+  for (int i = 0; i < test::repeats(20, 3); ++i) {
+    Team team;
+    for (int robot = 0; robot < 4; ++robot)
+      team.hear(kNames[static_cast<std::size_t>(robot)], explorers.map(robot, 5));
+    std::this_thread::sleep_for(std::chrono::milliseconds(7 * i));
+  }
+}
+
+TEST(Team, ForgetsRobots) {
+  const Explorers explorers;
+  TeamOptions options;
+  options.quiet = 10ms;
+  Team team(options);
+  team.hear("anna", explorers.map(0, 5));
+  team.hear("bert", explorers.map(1, 5));
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  EXPECT_EQ(team.answer()->components.size(), 1u);
+  team.forget("bert");
+  team.forget("nobody");
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  EXPECT_TRUE(team.answer()->components.empty());
+  EXPECT_EQ(team.answer()->robots.size(), 1u);
+}
+
+TEST(Team, RefusesWhatMakesNoSense) {
+  TeamOptions options;
+  options.max_robots = 2;
+  Team team(options);
+  team.hear("anna", make_grid(3, 3, 0.05));
+  team.hear("bert", make_grid(3, 3, 0.05));
+  EXPECT_THROW(team.hear("carl", make_grid(3, 3, 0.05)), std::invalid_argument);
+  team.forget("bert");
+  team.hear("carl", make_grid(3, 3, 0.05));
+  OccupancyGrid broken = make_grid(3, 3, 0.05);
+  broken.resolution = -1.0;
+  EXPECT_THROW(team.hear("anna", broken), std::invalid_argument);
+  EXPECT_THROW(team.set_known_pose("anna", KnownPose{{}, -1.0, 0.1}), std::invalid_argument);
+
+  const auto refuses = [](auto change) {
+    TeamOptions bad;
+    change(bad);
+    EXPECT_THROW(Team{bad}, std::invalid_argument);
+  };
+  refuses([](TeamOptions& o) { o.search_again = -0.1; });
+  refuses([](TeamOptions& o) { o.confirmations = 0; });
+  refuses([](TeamOptions& o) { o.quiet = -1ms; });
+  refuses([](TeamOptions& o) { o.max_robots = 0; });
+  refuses([](TeamOptions& o) { o.merge.max_false_joins = -1.0; });
+  refuses([](TeamOptions& o) { o.merge.match.search = SearchMethod::random_walk; });
+}
+
+}  // namespace
+}  // namespace gridmerge
