@@ -161,6 +161,13 @@ void add_world_options(CLI::App& command, SimulateCommandOptions& options) {
       ->check(kNotNegative)
       ->capture_default_str();
   command
+      .add_option("--steps", simulation.steps,
+                  "Write each map at so many moments of the robot's way: robot_1_step_1.yaml and so on, "
+                  "robot_1.yaml is the last")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000).description(""))
+      ->capture_default_str();
+  command
       .add_option("--clutter", simulation.clutter,
                   "How much stands and walks about that differs from robot to robot")
       ->type_name("AMOUNT")

@@ -49,6 +49,7 @@ from ._merger import Merger
 from ._message import OccupancyGridMessage
 from ._random_walk import RandomWalkMatch, Trace, Walk, match_by_random_walk, plot_walk
 from ._simulate import BUILDING_KINDS, SimulatedMap, SimulatedPair, Simulation, simulate
+from ._team import RobotStatus, Team, TeamAnswer, TeamComponent, TeamEvent
 from ._transform import PoseLike, Transform
 
 __version__ = version("gridmerge")
@@ -84,11 +85,16 @@ __all__ = [
     "PsiTerms",
     "RandomWalkMatch",
     "Reason",
+    "RobotStatus",
     "SetCase",
     "SetCounts",
     "SimulatedMap",
     "SimulatedPair",
     "Simulation",
+    "Team",
+    "TeamAnswer",
+    "TeamComponent",
+    "TeamEvent",
     "TimeSummary",
     "Trace",
     "Transform",

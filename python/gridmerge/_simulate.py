@@ -31,6 +31,8 @@ class SimulatedMap:
     """Root mean square error that is left then [m]."""
     path: NDArray[np.float64] = field(repr=False, compare=False)
     """Where it scanned: true poses (x, y, theta) in the building's frame [m, rad], of shape (scans, 3)."""
+    earlier: tuple[OccupancyGrid, ...] = field(default=(), repr=False, compare=False)
+    """As it was at the moments that `steps` of simulate() asks for, except for the last one, which is `grid`."""
 
     def __repr__(self) -> str:
         return (
@@ -105,6 +107,7 @@ def simulate(
     starts: Sequence[tuple[float, float]] | None = None,
     headings: Sequence[float] | None = None,
     longest_way: float = 0.0,
+    steps: int = 1,
     clutter: float = 1.0,
     others: int = 1,
     drift: float = 0.3,
@@ -132,6 +135,7 @@ def simulate(
         headings: which way the robots set off [rad], one for each; a robot goes only to places ahead of its start. None
             lets them go anywhere.
         longest_way: after which a robot stops [m]; 0 = when it has seen all.
+        steps: keep each robot's map at so many moments, after equal parts of its way.
         clutter: how much stands and walks about that differs from robot to robot.
         others: how many maps of other buildings to add.
         drift: how much maps bend: 0 not at all, 1 as hand-held mapping does.
@@ -156,6 +160,7 @@ def simulate(
     for heading in _checked_headings(headings):
         options.add_heading(heading)
     options.longest_way = _arguments.not_negative("longest_way", longest_way)
+    options.steps = _arguments.whole("steps", steps, 1, 1000)
     options.clutter = _arguments.not_negative("clutter", clutter)
     options.drift = _arguments.not_negative("drift", drift)
     options.resolution = _arguments.number("resolution", resolution)
@@ -216,4 +221,4 @@ def _to_simulation(dataset: _core.Dataset) -> Simulation:
 
 
 def _to_map(robot: _core.RobotMap) -> SimulatedMap:
-    return SimulatedMap(OccupancyGrid._of(robot.grid), Transform(*robot.transform), robot.bend, robot.path())
+    return SimulatedMap(OccupancyGrid._of(robot.grid), Transform(*robot.transform), robot.bend, robot.path(), tuple(OccupancyGrid._of(grid) for grid in robot.earlier))

@@ -65,5 +65,6 @@ void bind_merger(nb::module_& module);
 void bind_random_walk(nb::module_& module);
 void bind_simulate(nb::module_& module);
 void bind_evaluate(nb::module_& module);
+void bind_team(nb::module_& module);
 
 }  // namespace gridmerge::python

@@ -17,4 +17,5 @@ NB_MODULE(_core, module) {
   bind_random_walk(module);
   bind_simulate(module);
   bind_evaluate(module);
+  bind_team(module);
 }

@@ -105,6 +105,7 @@ void bind_options(nb::module_& module) {
       .def_rw("longest_way", &SimulateOptions::longest_way)
       .def_rw("sensor", &SimulateOptions::sensor)
       .def_rw("drift", &SimulateOptions::drift)
+      .def_rw("steps", &SimulateOptions::steps)
       .def_rw("clutter", &SimulateOptions::clutter)
       .def_rw("resolution", &SimulateOptions::resolution)
       .def_rw("tidy", &SimulateOptions::tidy, nb::arg().none())
@@ -120,6 +121,13 @@ void bind_results(nb::module_& module) {
                    })
       .def_prop_ro("transform", [](const RobotMap& robot) { return to_pose(robot.map().T_building_map); })
       .def_prop_ro("bend", [](const RobotMap& robot) { return robot.map().bend; })
+      .def_prop_ro("earlier",
+                   [](const RobotMap& robot) {
+                     std::vector<Map> maps;
+                     for (const OccupancyGrid& grid : robot.map().earlier)
+                       maps.push_back({{robot.simulation, &grid}, {}, {}});
+                     return maps;
+                   })
       .def("path", &path_of);
   nb::class_<SimulatedPair>(module, "SimulatedPair")
       .def_ro("fixed", &SimulatedPair::fixed)

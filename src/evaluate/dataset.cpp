@@ -63,8 +63,12 @@ void write_dataset(const fs::path& directory, const Simulation& simulation,
   const auto add = [&](const OccupancyGrid& grid, const std::string& name, bool probabilities) {
     probabilities ? add_probability_map(files, grid, name) : add_map(files, grid, name);
   };
-  for (std::size_t i = 0; i < simulation.maps.size(); ++i)
-    add(simulation.maps[i].grid, robot_map(i).name, options.probabilities);
+  for (std::size_t i = 0; i < simulation.maps.size(); ++i) {
+    const SimulatedMap& map = simulation.maps[i];
+    add(map.grid, robot_map(i).name, options.probabilities);
+    for (std::size_t step = 0; step < map.earlier.size(); ++step)
+      add(map.earlier[step], fmt::format("robot_{}_step_{}.yaml", i + 1, step + 1), options.probabilities);
+  }
   std::size_t others = 0;
   for (const Simulation& other : elsewhere) {
     for (const SimulatedMap& map : other.maps)

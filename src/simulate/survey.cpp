@@ -121,8 +121,10 @@ Survey survey(const SimulateOptions& options, const Building& building, const Vi
   Scanner scanner(options.sensor, visit.caster, walkers, noise);
   Mapper mapper(options.resolution, farthest(path) + options.sensor.range + 5.0);
   const int beams = static_cast<int>(options.sensor.field_of_view / options.sensor.angular_step) + 1;
-  for (const SE2& pose : path) {
+  const auto drawn = [&] { return options.tidy ? tidied(mapper.grid(), *options.tidy) : mapper.grid(); };
+  for (std::size_t scan = 0; scan < path.size(); ++scan) {
     throw_if_cancelled();
+    const SE2& pose = path[scan];
     const SE2 T_map_robot = T_map_building * belief.follow(pose);
     for (int i = 0; i < beams; ++i) {
       const double angle = -0.5 * options.sensor.field_of_view + i * options.sensor.angular_step;
@@ -135,8 +137,13 @@ Survey survey(const SimulateOptions& options, const Building& building, const Vi
         result.places.add(pose * Point2{at * u.x, at * u.y}, T_map_robot * Point2{at * u.x, at * u.y});
     }
     walkers.walk();
+    // A short way has several moments at one scan.
+    const auto steps = static_cast<std::size_t>(options.steps);
+    while (result.map.earlier.size() + 1 < steps &&
+           (scan + 1) * steps >= (result.map.earlier.size() + 1) * path.size())
+      result.map.earlier.push_back(drawn());
   }
-  result.map.grid = options.tidy ? tidied(mapper.grid(), *options.tidy) : mapper.grid();
+  result.map.grid = drawn();
   const RigidFit fit = fit_rigid(result.places.building_and_map());
   result.map.T_building_map = fit.T_a_b;
   result.map.bend = fit.rms;

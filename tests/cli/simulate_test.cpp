@@ -96,8 +96,8 @@ INSTANTIATE_TEST_SUITE_P(Cli, WrongSimulation,
                                          Words{"--size", "40"}, Words{"--size", "40xx2"},
                                          Words{"--overlap", "1.5"}, Words{"--overlap", "nan"},
                                          Words{"--noise", "-0.1"}, Words{"--drift", "-1"},
-                                         Words{"--start", "3"}, Words{"--seed", "x"},
-                                         Words{"--others", "-1"}));
+                                         Words{"--start", "3"}, Words{"--seed", "x"}, Words{"--others", "-1"},
+                                         Words{"--steps", "0"}));
 
 }  // namespace
 }  // namespace gridmerge::test

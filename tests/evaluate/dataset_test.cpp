@@ -100,6 +100,22 @@ TEST(Dataset, HoldsMapsAndTruthThatBelongTogether) {
   EXPECT_EQ(strangers.back().moving.name, "elsewhere_1.yaml");
 }
 
+TEST(Dataset, HoldsEachMapAtEarlierMoments) {
+  const test::TemporaryDirectory directory;
+  SimulateOptions options = quick(2);
+  options.steps = 3;
+  const Simulation simulation = simulate(options);
+  write_dataset(directory.path(), simulation, {});
+  for (std::size_t robot = 0; robot < 2; ++robot) {
+    for (std::size_t step = 0; step < 2; ++step) {
+      const std::string name =
+          "robot_" + std::to_string(robot + 1) + "_step_" + std::to_string(step + 1) + ".yaml";
+      EXPECT_EQ(load_map(directory.path() / name).grid.cells, simulation.maps[robot].earlier[step].cells);
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(directory.path() / "robot_1_step_3.yaml"));
+}
+
 TEST(Dataset, KeepsProbabilitiesToAPercent) {
   const test::TemporaryDirectory directory;
   const Simulation simulation = simulate(quick(1));

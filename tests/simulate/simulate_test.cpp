@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gridmerge/evaluate/displacement.hpp"
+#include "similarity/agreement.hpp"
 #include "support/effort.hpp"
 
 namespace gridmerge {
@@ -200,6 +201,33 @@ TEST(Simulate, RobotsStartWhereTheyAreToldTo) {
     const Point2 origin = simulation.maps[i].T_building_map * Point2{0.0, 0.0};
     EXPECT_LT(std::hypot(start.x - origin.x, start.y - origin.y), 0.3);
   }
+}
+
+TEST(Simulate, StepsAreTheMapAsItGrew) {
+  SimulateOptions options;
+  options.width = 20.0;
+  options.height = 12.0;
+  options.robots = 1;
+  options.drift = 0.0;
+  const Simulation once = simulate(options);
+  EXPECT_TRUE(once.maps[0].earlier.empty());
+  options.steps = 4;
+  const SimulatedMap map = simulate(options).maps[0];
+  EXPECT_EQ(map.grid.cells, once.maps[0].grid.cells);
+  ASSERT_EQ(map.earlier.size(), 3u);
+  std::size_t known = 0;
+  for (const OccupancyGrid& step : map.earlier) {
+    const std::size_t more = count_cells(step).known();
+    EXPECT_GT(more, known);
+    known = more;
+    // In the same frame: what was drawn stays, but for what was drawn over.
+    const internal::AgreementCounts counts = internal::count_agreement(map.grid, step, {});
+    EXPECT_GT(counts.acceptance_index(), 0.98);
+    EXPECT_GT(static_cast<double>(counts.both_known()), 0.95 * static_cast<double>(more));
+  }
+  EXPECT_GT(count_cells(map.grid).known(), known);
+  options.steps = 0;
+  EXPECT_THROW(simulate(options), std::invalid_argument);
 }
 
 TEST(Simulate, RobotsThatSetOffBackToBackPart) {

@@ -54,6 +54,8 @@ struct SimulateOptions {
   /// or chair on every 25 square metres and a walker on every 150.
   double clutter = 1.0;
   double resolution = 0.05;  ///< of the maps [m/cell]
+  /// Keep each robot's map at so many moments, after equal parts of its way (SimulatedMap::steps).
+  int steps = 1;
   /// Draw as mappers do that clean up after themselves: without specks, and with walls so much thicker on
   /// each side [m]; as the range finder left them, if not given.
   std::optional<double> tidy;
@@ -73,6 +75,9 @@ struct SimulatedMap {
   SE2 T_building_map;
   double bend = 0.0;      ///< root mean square error that is left then [m]
   std::vector<SE2> path;  ///< where it scanned: true poses T_building_robot
+  /// The map as it was at the moments that SimulateOptions::steps asks for, but for the last one, which is
+  /// `grid`. In the same frame.
+  std::vector<OccupancyGrid> earlier;
 };
 
 /// An estimate is never asked to be nearer to the truth than this [m].

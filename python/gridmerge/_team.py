@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias, cast
+
+from . import _arguments, _core
+from ._grid import MapLike, OccupancyGrid
+from ._inputs import to_map
+from ._known_poses import InitialPose, to_core
+from ._match import Reason
+from ._merge import to_output_resolution
+from ._repr import count, short_pose
+from ._transform import PoseLike, Transform
+
+RobotState: TypeAlias = Literal["waiting", "placed", "left_out"]
+"""What is known of a robot: nothing to compare it with yet, its place, or that it lies nowhere surely enough."""
+
+TeamEventKind: TypeAlias = Literal["joined", "left", "jumped", "restarted"]
+"""What happened to a robot."""
+
+_WAKE = 0.1  # how often a waiting call lets Python handle signals [s]
+
+
+@dataclass(frozen=True, slots=True)
+class RobotStatus:
+    """A robot of a team."""
+
+    name: str
+    """What Team.hear() calls it."""
+    state: RobotState
+    """What is known of it."""
+    reason: Reason | None
+    """Why it was left out."""
+    why: str
+    """The state in a few words, for people."""
+    component: int | None
+    """Index into TeamAnswer.components; None for a robot that lies in none."""
+    transform: Transform
+    """T_world_map: takes the map's frame to its component's."""
+    probability: float
+    """That it lies there."""
+    maps_heard: int
+    """Maps and parts of maps, those that changed nothing too."""
+    heard_first: float
+    """Since when it is heard, by the oldest account: seconds since 1970."""
+
+    def __repr__(self) -> str:
+        place = f", transform={short_pose(self.transform)}" if self.component is not None else ""
+        return f"RobotStatus({self.name!r}, {self.state}: {self.why}{place})"
+
+
+@dataclass(frozen=True, slots=True)
+class TeamComponent:
+    """Robots that were placed together."""
+
+    anchor: str | None
+    """The robot whose map frame is the component's. None where poses are fixed: the frame is then theirs."""
+    robots: tuple[str, ...]
+    """By name; two or more."""
+    grid: OccupancyGrid
+    """All their maps, fused."""
+
+    def __repr__(self) -> str:
+        return f"TeamComponent({', '.join(self.robots)}: {self.grid.width} x {self.grid.height} cells)"
+
+
+@dataclass(frozen=True, slots=True)
+class TeamEvent:
+    """What has changed from one answer to the next."""
+
+    kind: TeamEventKind
+    """What happened."""
+    robot: str
+    """To whom."""
+    text: str
+    """One line that names the robot."""
+
+
+@dataclass(frozen=True, slots=True)
+class TeamAnswer:
+    """What a team knows at one moment."""
+
+    number: int
+    """Counts up; 0 is the answer before anything was heard."""
+    components: tuple[TeamComponent, ...]
+    """Most robots first, then by name."""
+    robots: tuple[RobotStatus, ...]
+    """By name."""
+    events: tuple[TeamEvent, ...]
+    """Since the answer before."""
+    seconds: float
+    """That it took to find out."""
+    settled: bool
+    """The newest maps were searched as merge() does, nothing is held against them: components and poses are those of
+    merge() with these maps, in the order of first hearing."""
+    problem: str | None = field(default=None)
+    """Why this is the answer before, made again; None where there is none."""
+
+    def __repr__(self) -> str:
+        state = "settled" if self.settled else "not settled"
+        return f"TeamAnswer({self.number}: {count(len(self.robots), 'robot')}, {count(len(self.components), 'component')}, {state})"
+
+
+class Team:
+    """Robots that map while they are heard, come and go, and know nothing of each other's frames.
+
+    A thread of its own merges the newest map of each, never a queue of old ones. Methods may be called from any
+    thread, and none waits for that work, except wait_until_settled().
+
+    Answers are steady. A robot's pose follows the evidence, but a robot that was placed moves elsewhere only when that
+    is confirmed, and each jump is told. A component's frame is that of the robot that was heard first, for as long as
+    it lives.
+
+    Args:
+        threads, accept, max_false_joins, output_resolution: as of merge().
+        search_again: a map is searched anew when this share of its known cells differs from when it was searched last;
+            a quarter of it is enough for a robot that lies nowhere yet.
+        confirmations: a robot that was placed moves when so many answers in a row, each with newer maps, say so in the
+            same way.
+        quiet: with no newer map for so long [s], all that is left is searched, and what that says is taken at once.
+        max_robots: hear() refuses more.
+    """
+
+    def __init__(
+        self,
+        *,
+        threads: int = 0,
+        accept: float = _core.DEFAULT_ACCEPT,
+        max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
+        output_resolution: float | None = None,
+        search_again: float = 0.1,
+        confirmations: int = 3,
+        quiet: float = 3.0,
+        max_robots: int = 256,
+    ) -> None:
+        options = _core.TeamOptions()
+        options.threads = _arguments.threads(threads)
+        options.accept = _arguments.share("accept", accept)
+        options.max_false_joins = _arguments.at_least_0("max_false_joins", max_false_joins)
+        options.output_resolution = to_output_resolution(output_resolution)
+        options.search_again = _arguments.share("search_again", search_again)
+        options.confirmations = _arguments.whole("confirmations", confirmations, 1, 1000)
+        options.quiet = _arguments.not_negative("quiet", quiet)
+        options.max_robots = _arguments.whole("max_robots", max_robots, 1, 1_000_000)
+        self._core = _core.Team(options)
+
+    def __repr__(self) -> str:
+        return f"Team({self.answer()!r})"
+
+    def hear(self, robot: str, map: MapLike) -> None:
+        """The robot's newest map. ValueError for a robot too many.
+
+        A map that differs too much from the one before is that of a robot which started anew in another frame: what was
+        known of its pose is forgotten.
+        """
+        self._core.hear(_arguments.text("robot", robot), to_map("map", map)._core)
+
+    def hear_part(self, robot: str, column: int, row: int, part: MapLike) -> bool:
+        """New cells of a rectangle of the robot's newest map, with cell (column, row) at its lower left corner.
+
+        The part's resolution and origin play no role. False, and nothing changes, where there is no map that holds the
+        rectangle.
+        """
+        return bool(
+            self._core.hear_part(
+                _arguments.text("robot", robot),
+                _arguments.whole("column", column, 0, 2**31 - 1),
+                _arguments.whole("row", row, 0, 2**31 - 1),
+                to_map("part", part)._core,
+            )
+        )
+
+    def hear_age(self, robot: str, heard_first: float) -> None:
+        """Another node of the same team has heard the robot since then: RobotStatus.heard_first of its answer.
+
+        Nodes that tell each other agree on frames, though they heard robots in another order.
+        """
+        self._core.hear_age(
+            _arguments.text("robot", robot), _arguments.not_negative("heard_first", heard_first)
+        )
+
+    def forget(self, robot: str) -> None:
+        """The robot is gone, and its map with it."""
+        self._core.forget(_arguments.text("robot", robot))
+
+    def set_known_pose(
+        self, robot: str, pose: InitialPose | PoseLike | None, *, fixed: bool = False
+    ) -> None:
+        """What is known of where a robot's map lies, heard or not yet; None for nothing any more."""
+        known = None if pose is None else to_core(pose, "pose", bool(fixed))
+        self._core.set_known_pose(_arguments.text("robot", robot), known)
+
+    def answer(self) -> TeamAnswer:
+        """The newest."""
+        return _to_answer(self._core.answer())
+
+    def wait_until_settled(self, seconds: float = 60.0) -> bool:
+        """Waits until all that was heard is settled, or for so long [s]; says whether it is. Ctrl-C ends it."""
+        until = time.monotonic() + _arguments.not_negative("seconds", seconds)
+        while True:
+            left = until - time.monotonic()
+            if self._core.wait_until_settled(max(0.0, min(_WAKE, left))):
+                return True
+            if left <= 0.0:
+                return False
+
+
+def _to_answer(answer: _core.TeamAnswer) -> TeamAnswer:
+    return TeamAnswer(
+        number=answer.number,
+        components=tuple(
+            TeamComponent(one.anchor or None, tuple(one.robots), OccupancyGrid._of(one.map))
+            for one in answer.components
+        ),
+        robots=tuple(
+            RobotStatus(
+                robot.name,
+                cast(RobotState, robot.state),
+                None if robot.reason == "none" else cast(Reason, robot.reason),
+                robot.why,
+                robot.component,
+                Transform(*robot.transform),
+                robot.probability,
+                robot.maps_heard,
+                robot.heard_first,
+            )
+            for robot in answer.robots
+        ),
+        events=tuple(
+            TeamEvent(cast(TeamEventKind, event.kind), event.robot, event.text) for event in answer.events
+        ),
+        seconds=answer.seconds,
+        settled=answer.settled,
+        problem=answer.problem or None,
+    )

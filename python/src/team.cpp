@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/online/team.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "merge.hpp"
+#include "worker.hpp"
+
+namespace gridmerge::python {
+
+namespace {
+
+using Answer = std::shared_ptr<const TeamAnswer>;
+
+/// A component, with the answer that it is part of.
+struct ComponentOf {
+  Answer answer;
+  std::size_t index = 0;
+
+  const TeamComponent& component() const { return answer->components[index]; }
+};
+
+/// An answer that Python holds: its maps are not copied.
+struct HeldAnswer {
+  Answer answer;
+};
+
+std::vector<ComponentOf> components_of(const HeldAnswer& held) {
+  std::vector<ComponentOf> components;
+  for (std::size_t i = 0; i < held.answer->components.size(); ++i) components.push_back({held.answer, i});
+  return components;
+}
+
+class PythonTeam {
+ public:
+  explicit PythonTeam(const TeamOptions& options) : team_(options) {}
+
+  // Without the interpreter's lock: a map takes a while to copy.
+  void hear(const std::string& robot, const Map& map) {
+    const OthersRun meanwhile;
+    team_.hear(robot, *map.grid);
+  }
+
+  bool hear_part(const std::string& robot, int column, int row, const Map& part) {
+    const OthersRun meanwhile;
+    return team_.hear_part(robot, column, row, *part.grid);
+  }
+
+  void hear_age(const std::string& robot, double seconds) {
+    team_.hear_age(
+        robot,
+        TeamTime(std::chrono::duration_cast<TeamTime::duration>(std::chrono::duration<double>(seconds))));
+  }
+
+  void forget(const std::string& robot) { team_.forget(robot); }
+
+  void set_known_pose(const std::string& robot, const std::optional<Known>& known) {
+    team_.set_known_pose(robot, to_known_pose(known));
+  }
+
+  Answer answer() const { return team_.answer(); }
+
+  bool wait_until_settled(double seconds) const {
+    const OthersRun meanwhile;
+    return team_.wait_until_settled(std::chrono::milliseconds(static_cast<int>(1000.0 * seconds)));
+  }
+
+ private:
+  Team team_;
+};
+
+double seconds_of(TeamTime time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
+
+const char* name_of(TeamEvent::Kind kind) {
+  switch (kind) {
+    case TeamEvent::Kind::joined:
+      return "joined";
+    case TeamEvent::Kind::left:
+      return "left";
+    case TeamEvent::Kind::jumped:
+      return "jumped";
+    case TeamEvent::Kind::restarted:
+      return "restarted";
+  }
+  return "";
+}
+
+}  // namespace
+
+void bind_team(nb::module_& module) {
+  nb::class_<TeamOptions>(module, "TeamOptions")
+      .def(nb::init<>())
+      .def_prop_rw(
+          "threads", [](const TeamOptions& options) { return options.merge.match.threads; },
+          [](TeamOptions& options, int threads) { options.merge.match.threads = threads; })
+      .def_prop_rw(
+          "accept", [](const TeamOptions& options) { return options.merge.match.accept_probability; },
+          [](TeamOptions& options, double accept) { options.merge.match.accept_probability = accept; })
+      .def_prop_rw(
+          "max_false_joins", [](const TeamOptions& options) { return options.merge.max_false_joins; },
+          [](TeamOptions& options, double joins) { options.merge.max_false_joins = joins; })
+      .def_prop_rw(
+          "output_resolution", [](const TeamOptions& options) { return options.merge.resolution; },
+          [](TeamOptions& options, double resolution) { options.merge.resolution = resolution; })
+      .def_prop_rw(
+          "quiet",
+          [](const TeamOptions& options) { return std::chrono::duration<double>(options.quiet).count(); },
+          [](TeamOptions& options, double seconds) {
+            options.quiet = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * seconds));
+          })
+      .def_rw("search_again", &TeamOptions::search_again)
+      .def_rw("confirmations", &TeamOptions::confirmations)
+      .def_rw("max_robots", &TeamOptions::max_robots);
+  nb::class_<RobotStatus>(module, "RobotStatus")
+      .def_ro("name", &RobotStatus::name)
+      .def_prop_ro("state", [](const RobotStatus& robot) { return gridmerge::name_of(robot.state); })
+      .def_prop_ro("reason", [](const RobotStatus& robot) { return gridmerge::name_of(robot.reason); })
+      .def_ro("why", &RobotStatus::why)
+      .def_ro("component", &RobotStatus::component)
+      .def_prop_ro("transform", [](const RobotStatus& robot) { return to_pose(robot.T_world_map); })
+      .def_ro("probability", &RobotStatus::probability)
+      .def_ro("maps_heard", &RobotStatus::maps_heard)
+      .def_prop_ro("heard_first", [](const RobotStatus& robot) { return seconds_of(robot.heard_first); });
+  nb::class_<TeamEvent>(module, "TeamEvent")
+      .def_prop_ro("kind", [](const TeamEvent& event) { return name_of(event.kind); })
+      .def_ro("robot", &TeamEvent::robot)
+      .def_ro("text", &TeamEvent::text);
+  nb::class_<ComponentOf>(module, "TeamComponent")
+      .def_prop_ro("anchor", [](const ComponentOf& one) { return one.component().anchor; })
+      .def_prop_ro("robots", [](const ComponentOf& one) { return one.component().robots; })
+      .def_prop_ro("map", [](const ComponentOf& one) {
+        return Map{one.component().map, {}, {}};
+      });
+  nb::class_<HeldAnswer>(module, "TeamAnswer")
+      .def_prop_ro("number", [](const HeldAnswer& held) { return held.answer->number; })
+      .def_prop_ro("robots", [](const HeldAnswer& held) { return held.answer->robots; })
+      .def_prop_ro("events", [](const HeldAnswer& held) { return held.answer->events; })
+      .def_prop_ro("components", &components_of)
+      .def_prop_ro("seconds", [](const HeldAnswer& held) { return held.answer->seconds; })
+      .def_prop_ro("settled", [](const HeldAnswer& held) { return held.answer->settled; })
+      .def_prop_ro("problem", [](const HeldAnswer& held) { return held.answer->problem; });
+  nb::class_<PythonTeam>(module, "Team")
+      .def(nb::init<const TeamOptions&>(), nb::arg("options"))
+      .def("hear", &PythonTeam::hear, nb::arg("robot"), nb::arg("map"))
+      .def("hear_part", &PythonTeam::hear_part, nb::arg("robot"), nb::arg("column"), nb::arg("row"),
+           nb::arg("part"))
+      .def("hear_age", &PythonTeam::hear_age, nb::arg("robot"), nb::arg("seconds"))
+      .def("forget", &PythonTeam::forget, nb::arg("robot"))
+      .def("set_known_pose", &PythonTeam::set_known_pose, nb::arg("robot"), nb::arg("known").none())
+      .def("answer", [](const PythonTeam& team) { return HeldAnswer{team.answer()}; })
+      .def("wait_until_settled", &PythonTeam::wait_until_settled, nb::arg("seconds"));
+}
+
+}  // namespace gridmerge::python

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Robots that are heard while they map."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+
+import gridmerge
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="module")
+def explored() -> gridmerge.Simulation:
+    """Three robots of one building, at four moments each."""
+    return gridmerge.simulate(
+        size=(24.0, 16.0), robots=3, overlap=0.7, drift=0.0, steps=4, others=0, seed=5
+    )
+
+
+@pytest.fixture
+def team() -> Iterator[gridmerge.Team]:
+    yield gridmerge.Team(quiet=0.1)
+
+
+def grids_at(simulation: gridmerge.Simulation, step: int) -> list[gridmerge.OccupancyGrid]:
+    return [(*one.earlier, one.grid)[step] for one in simulation.maps]
+
+
+def test_steps_grow(explored: gridmerge.Simulation) -> None:
+    for one in explored.maps:
+        known = [np.count_nonzero(grid.cells) for grid in (*one.earlier, one.grid)]
+        assert len(known) == 4
+        assert known == sorted(known)
+
+
+def test_the_end_is_that_of_merge(explored: gridmerge.Simulation, team: gridmerge.Team) -> None:
+    for step in range(4):
+        for number, grid in enumerate(grids_at(explored, step)):
+            team.hear(f"tb{number}", grid)
+        time.sleep(0.05)
+    assert team.wait_until_settled(600.0)
+    answer = team.answer()
+    merged = gridmerge.merge(grids_at(explored, 3), names=["tb0", "tb1", "tb2"])
+    assert [sorted(member.name for member in one.members) for one in merged.components] == [
+        list(one.robots) for one in answer.components
+    ]
+    assert answer.components
+    assert np.array_equal(answer.components[0].grid.cells, merged.components[0].grid.cells)
+    placed = {robot.name: robot for robot in answer.robots if robot.state == "placed"}
+    for member in merged.components[0].members:
+        assert placed[member.name].transform == member.transform
+        assert placed[member.name].probability == member.probability
+    assert answer.components[0].anchor == "tb0"
+    assert "TeamAnswer" in repr(answer) and "placed" in repr(answer.robots[0])
+
+
+def test_parts(explored: gridmerge.Simulation, team: gridmerge.Team) -> None:
+    grid = explored.maps[0].grid
+    assert not team.hear_part("tb0", 0, 0, grid)
+    team.hear("tb0", grid)
+    assert team.hear_part("tb0", 0, 0, grid)
+    assert not team.hear_part("tb0", 1, 0, grid)
+    assert team.wait_until_settled(60.0)
+    assert team.answer().robots[0].maps_heard == 2
+    assert team.answer().robots[0].why == "there is no other map yet"
+
+
+def test_robots_go(explored: gridmerge.Simulation, team: gridmerge.Team) -> None:
+    for number, grid in enumerate(grids_at(explored, 3)):
+        team.hear(f"tb{number}", grid)
+    assert team.wait_until_settled(600.0)
+    team.forget("tb1")
+    team.set_known_pose("tb0", (5.0, 6.0, 0.5), fixed=True)
+    assert team.wait_until_settled(600.0)
+    answer = team.answer()
+    assert [robot.name for robot in answer.robots] == ["tb0", "tb2"]
+    for one in answer.components:
+        assert one.anchor is None
+
+
+def test_frames_are_agreed_on(explored: gridmerge.Simulation, team: gridmerge.Team) -> None:
+    for number, grid in enumerate(grids_at(explored, 3)):
+        team.hear(f"tb{number}", grid)
+    team.hear_age("tb2", 1000.0)
+    assert team.wait_until_settled(600.0)
+    assert team.answer().components[0].anchor == "tb2"
+    assert team.answer().robots[2].heard_first == 1000.0
+
+
+def test_bad_input(team: gridmerge.Team, explored: gridmerge.Simulation) -> None:
+    with pytest.raises(TypeError, match="robot"):
+        team.hear(3, explored.maps[0].grid)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="confirmations"):
+        gridmerge.Team(confirmations=0)
+    with pytest.raises(ValueError, match="quiet"):
+        gridmerge.Team(quiet=-1.0)
+    with pytest.raises(ValueError, match="column"):
+        team.hear_part("tb0", -1, 0, explored.maps[0].grid)
+    small = gridmerge.Team(max_robots=1)
+    small.hear("tb0", explored.maps[0].grid)
+    with pytest.raises(ValueError, match="one too many"):
+        small.hear("tb1", explored.maps[1].grid)
+
+
+def test_many_threads_and_an_early_end(explored: gridmerge.Simulation) -> None:
+    team = gridmerge.Team()
+    grids = grids_at(explored, 3)
+
+    def publish(number: int) -> None:
+        for _ in range(20):
+            team.hear(f"tb{number}", grids[number])
+
+    robots = [threading.Thread(target=publish, args=(number,)) for number in range(3)]
+    for robot in robots:
+        robot.start()
+    for robot in robots:
+        robot.join()
+    assert isinstance(team.answer().number, int)
+    del team  # at work, most likely
