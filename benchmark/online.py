@@ -60,8 +60,10 @@ def displacement(grid: gridmerge.OccupancyGrid, a: gridmerge.Transform, b: gridm
     return float(np.sqrt(np.mean(np.sum((a.apply(points) - b.apply(points)) ** 2, axis=1))))
 
 
-def wrong_ones(simulation: gridmerge.Simulation, grids: list[gridmerge.OccupancyGrid], answer: gridmerge.TeamAnswer) -> set[str]:
-    """Of each component the robots that do not lie where they belong, relative to the one that makes most of them do."""
+def wrong_ones(
+    simulation: gridmerge.Simulation, grids: list[gridmerge.OccupancyGrid], answer: gridmerge.TeamAnswer
+) -> set[str]:
+    """Of each component who does not lie where it belongs, relative to the one that makes most of them do."""
     wrong: set[str] = set()
     status = {robot.name: robot for robot in answer.robots}
     for component in answer.components:

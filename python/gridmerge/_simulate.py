@@ -221,4 +221,10 @@ def _to_simulation(dataset: _core.Dataset) -> Simulation:
 
 
 def _to_map(robot: _core.RobotMap) -> SimulatedMap:
-    return SimulatedMap(OccupancyGrid._of(robot.grid), Transform(*robot.transform), robot.bend, robot.path(), tuple(OccupancyGrid._of(grid) for grid in robot.earlier))
+    return SimulatedMap(
+        OccupancyGrid._of(robot.grid),
+        Transform(*robot.transform),
+        robot.bend,
+        robot.path(),
+        tuple(OccupancyGrid._of(grid) for grid in robot.earlier),
+    )

@@ -185,9 +185,7 @@ class Team:
         """The robot is gone, and its map with it."""
         self._core.forget(_arguments.text("robot", robot))
 
-    def set_known_pose(
-        self, robot: str, pose: InitialPose | PoseLike | None, *, fixed: bool = False
-    ) -> None:
+    def set_known_pose(self, robot: str, pose: InitialPose | PoseLike | None, *, fixed: bool = False) -> None:
         """What is known of where a robot's map lies, heard or not yet; None for nothing any more."""
         known = None if pose is None else to_core(pose, "pose", bool(fixed))
         self._core.set_known_pose(_arguments.text("robot", robot), known)

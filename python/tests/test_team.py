@@ -15,9 +15,7 @@ import pytest
 @pytest.fixture(scope="module")
 def explored() -> gridmerge.Simulation:
     """Three robots of one building, at four moments each."""
-    return gridmerge.simulate(
-        size=(24.0, 16.0), robots=3, overlap=0.7, drift=0.0, steps=4, others=0, seed=5
-    )
+    return gridmerge.simulate(size=(24.0, 16.0), robots=3, overlap=0.7, drift=0.0, steps=4, others=0, seed=5)
 
 
 @pytest.fixture
