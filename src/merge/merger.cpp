@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -90,6 +91,12 @@ class Merger::State {
   void search_again(MapId id) {
     require(id);
     groups_.forget();
+    quick_.outdate(id);
+    thorough_.outdate(id);
+  }
+
+  void forget(MapId id) {
+    search_again(id);
     quick_.forget(id);
     thorough_.forget(id);
   }
@@ -102,10 +109,12 @@ class Merger::State {
   }
 
   void remove(MapId id) {
-    search_again(id);
+    forget(id);
     inputs_.erase(id);
     known_poses_.erase(id);
   }
+
+  bool is_complete() const { return is_complete_; }
 
   std::vector<MapId> ids() const {
     std::vector<MapId> ids;
@@ -113,13 +122,13 @@ class Merger::State {
     return ids;
   }
 
-  MergeResult solve() {
+  MergeResult solve(std::size_t most_thorough) {
     MergeResult result;
     with_threads(options_.match.threads, [&] {
       const std::vector<MapId> all = in_canonical_order();
       const std::vector<Copy> copies = find_copies(all);
       const std::vector<MapId> maps = those_that_count(all, copies);
-      const auto [problem, arrangement, again] = arrange_all(maps);
+      const auto [problem, arrangement, again] = arrange_all(maps, most_thorough);
       result.expected_false_joins = expected_false_joins(arrangement);
       result.joins = make_joins(maps, problem, arrangement, again);
       result.open_ways = make_open_ways(places_of(maps), problem, arrangement);
@@ -144,17 +153,38 @@ class Merger::State {
   /// Looks at every pair quickly, and again at those whose maps that leaves apart: maps that lie in one
   /// component gain little by one more join. What a pair's match is depends on the maps alone, not on when
   /// they came.
-  Solution arrange_all(const std::vector<MapId>& maps) {
+  /// At most so many pairs are looked at again now: is_complete_ says whether that was all.
+  Solution arrange_all(const std::vector<MapId>& maps, std::size_t most_thorough) {
+    is_complete_ = true;
     const bool looks_twice = options_.match.search == SearchMethod::exhaustive;
     look(quick_, all_pairs(maps), looks_twice ? SearchMethod::quick : options_.match.search);
     Solution solution = arrange(maps, {});
     if (!looks_twice) return solution;
     const std::vector<Pair> apart = pairs_apart(maps, solution.arrangement);
-    if (apart.empty()) return solution;
-    look(thorough_, apart, SearchMethod::exhaustive);
+    std::vector<Pair> due = due_for_a_second_look(apart);
+    is_complete_ = due.size() <= most_thorough;
+    due.resize(std::min(due.size(), most_thorough));
+    look(thorough_, std::move(due), SearchMethod::exhaustive);
     std::set<Pair> again;
-    for (const Pair& pair : apart) again.insert(std::minmax(pair.first, pair.second));
-    return hear_groups(maps, arrange(maps, std::move(again)));
+    for (const Pair& pair : apart) {
+      if (thorough_.holds(pair.first, pair.second)) again.insert(std::minmax(pair.first, pair.second));
+    }
+    if (!again.empty()) solution = arrange(maps, std::move(again));
+    return is_complete_ && !apart.empty() ? hear_groups(maps, std::move(solution)) : solution;
+  }
+
+  /// Those of the pairs whose second look is missing or outdated: first those that had none, then those of
+  /// which the first look thinks most.
+  std::vector<Pair> due_for_a_second_look(std::vector<Pair> pairs) const {
+    std::erase_if(pairs, [&](const Pair& pair) { return thorough_.is_up_to_date(pair.first, pair.second); });
+    std::stable_sort(pairs.begin(), pairs.end(), [&](const Pair& a, const Pair& b) {
+      const auto key = [&](const Pair& pair) {
+        return std::pair(thorough_.holds(pair.first, pair.second),
+                         -quick_.between(pair.first, pair.second).probability);
+      };
+      return key(a) < key(b);
+    });
+    return pairs;
   }
 
   /// Maps that still lie alone are matched with each group, as long as that places more of them.
@@ -363,6 +393,7 @@ class Merger::State {
   PairMatches quick_;     // of the first look
   PairMatches thorough_;  // of the second look
   GroupMatches groups_;
+  bool is_complete_ = true;
 };
 
 Merger::Merger(MergeOptions options) : state_(std::make_unique<State>(std::move(options))) {}
@@ -376,7 +407,7 @@ Merger::MapId Merger::add(OccupancyGrid map, std::optional<KnownPose> known_pose
 
 void Merger::update(MapId id, OccupancyGrid map) {
   grow(id, std::move(map));
-  search_again(id);
+  state_->forget(id);
 }
 
 void Merger::grow(MapId id, OccupancyGrid map) {
@@ -400,7 +431,15 @@ std::vector<Merger::MapId> Merger::maps() const {
 }
 
 MergeResult Merger::solve() {
-  return state_->solve();
+  return state_->solve(std::numeric_limits<std::size_t>::max());
+}
+
+MergeResult Merger::solve_soon(std::size_t most_thorough) {
+  return state_->solve(most_thorough);
+}
+
+bool Merger::is_complete() const {
+  return state_->is_complete();
 }
 
 }  // namespace gridmerge

@@ -18,7 +18,7 @@ PairMatches::Pair key_of(const PairMatches::Pair& pair) {
 
 void PairMatches::add(std::vector<Pair> pairs, const FindMap& find_map, const MatchOptions& options,
                       const Progress& progress) {
-  std::erase_if(pairs, [&](const Pair& pair) { return made_.contains(key_of(pair)); });
+  std::erase_if(pairs, [&](const Pair& pair) { return is_up_to_date(pair.first, pair.second); });
   std::mutex keeping;
   std::size_t done = 0;
   const auto match_pair = [&](std::size_t i) {
@@ -37,9 +37,24 @@ void PairMatches::add(std::vector<Pair> pairs, const FindMap& find_map, const Ma
   }
 }
 
+bool PairMatches::holds(MapId a, MapId b) const {
+  return made_.contains(key_of({a, b}));
+}
+
+bool PairMatches::is_up_to_date(MapId a, MapId b) const {
+  const auto made = made_.find(key_of({a, b}));
+  return made != made_.end() && !made->second.is_outdated;
+}
+
 MatchResult PairMatches::between(MapId fixed, MapId moving) const {
   const Made& made = made_.at(key_of({fixed, moving}));
   return made.fixed == fixed ? made.match : inverse(made.match);
+}
+
+void PairMatches::outdate(MapId id) {
+  for (auto& [pair, made] : made_) {
+    if (pair.first == id || pair.second == id) made.is_outdated = true;
+  }
 }
 
 void PairMatches::forget(MapId id) {

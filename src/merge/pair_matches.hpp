@@ -12,8 +12,8 @@
 
 namespace gridmerge::internal {
 
-/// What pairs of maps say of each other, kept for as long as the maps stay what they are. Maps go by a number
-/// of the caller's.
+/// What pairs of maps say of each other, kept from one merge to the next. Maps go by a number of the
+/// caller's.
 class PairMatches {
  public:
   using MapId = std::size_t;
@@ -21,15 +21,22 @@ class PairMatches {
   using FindMap = std::function<const PreparedMap&(MapId)>;
   using Progress = std::function<void(std::size_t, std::size_t)>;  ///< done, of all
 
-  /// Matches those of the pairs that it does not hold, as the maps are now. When the work is cancelled, or a
-  /// match throws, what is done by then is kept. Runs in the calling TBB arena.
+  /// Matches those of the pairs that it does not hold, or holds as outdated, as the maps are now. When the
+  /// work is cancelled, or a match throws, what is done by then is kept. Runs in the calling TBB arena.
   void add(std::vector<Pair> pairs, const FindMap& find_map, const MatchOptions& options,
            const Progress& progress);
 
-  /// Throws std::out_of_range for a pair that it does not hold.
+  bool holds(MapId a, MapId b) const;
+  /// Whether it holds the pair as its maps are now.
+  bool is_up_to_date(MapId a, MapId b) const;
+
+  /// The last match, outdated or not. Throws std::out_of_range for a pair that it does not hold.
   MatchResult between(MapId fixed, MapId moving) const;
 
-  /// What it holds of a map.
+  /// The map has changed: what is held of it serves until add() replaces it.
+  void outdate(MapId id);
+
+  /// What is held of a map is of no use any more.
   void forget(MapId id);
 
  private:
@@ -37,6 +44,7 @@ class PairMatches {
   struct Made {
     MapId fixed;
     MatchResult match;
+    bool is_outdated = false;
   };
 
   std::map<Pair, Made> made_;  // by the lower number and the higher one

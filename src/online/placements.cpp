@@ -56,8 +56,40 @@ void Placements::forget(const std::string& robot) {
                 [&](const auto& one) { return one.first.first == robot || one.first.second == robot; });
 }
 
+/// Robots that lie in no group of a partial proposal, but lay with some that do, lie there as they did.
+void Placements::add_missing(std::vector<RobotGroup>& proposed) const {
+  auto places = places_of(proposed);
+  for (const RobotGroup& held : groups_) {
+    std::map<std::size_t, std::size_t> companions;  // by proposed group
+    for (const auto& [robot, placement] : held.robots) {
+      if (const auto place = places.find(robot); place != places.end()) ++companions[place->second];
+    }
+    if (companions.empty()) {
+      proposed.push_back(held);
+      continue;
+    }
+    const std::size_t most =
+        std::max_element(companions.begin(), companions.end(), [](const auto& a, const auto& b) {
+          return a.second < b.second;
+        })->first;
+    const auto companion = std::find_if(held.robots.begin(), held.robots.end(), [&](const auto& one) {
+      const auto place = places.find(one.first);
+      return place != places.end() && place->second == most;
+    });
+    RobotGroup& group = proposed[most];
+    const SE2 T_group_held =
+        group.robots.at(companion->first).T_group_map * inverse(companion->second.T_group_map);
+    for (const auto& [robot, placement] : held.robots) {
+      if (places.contains(robot)) continue;
+      group.robots[robot] = {T_group_held * placement.T_group_map, placement.probability};
+      places[robot] = most;
+    }
+  }
+}
+
 void Placements::propose(std::vector<RobotGroup> proposed, const std::set<std::string>& fresh,
-                         const std::map<std::string, MapExtent>& extents, bool conclusive) {
+                         const std::map<std::string, MapExtent>& extents, Weight weight) {
+  if (weight == Weight::partial) add_missing(proposed);
   const auto held = places_of(groups_), wanted = places_of(proposed);
 
   // Groups before and groups proposed that have a robot in common are taken or left together.
@@ -91,9 +123,9 @@ void Placements::propose(std::vector<RobotGroup> proposed, const std::set<std::s
         if (known != contradictions_.end() && known->second.apart == now.apart &&
             (now.apart || difference(a, b, known->second.T_first_second, now.T_first_second) <= tolerance))
           now.times = known->second.times;
-        if (has_fresh.contains(cluster)) ++now.times;
+        if (has_fresh.contains(cluster) && (T_now || weight != Weight::partial)) ++now.times;
         contradicted.insert(cluster);
-        if (conclusive || now.times >= confirmations_) confirmed.insert(cluster);
+        if (weight == Weight::conclusive || now.times >= confirmations_) confirmed.insert(cluster);
         contradictions[{first->first, second->first}] = now;
       }
     }

@@ -42,13 +42,17 @@ class Placements {
   /// Takes in what the newest maps say. Two robots contradict it that lay together and now lie apart, or
   /// otherwise than bent maps explain. Groups that share robots with such a pair, in either answer, stay as
   /// they were until the same contradiction was proposed `confirmations` times in a row while one of `fresh`,
-  /// the robots with newer maps, was among them; or until a proposal is `conclusive`. `extents` are those of
-  /// all robots' maps. O(robots^2).
+  /// the robots with newer maps, was among them; or until a proposal is `conclusive`. A `partial` one did not
+  /// look at all pairs: that robots lie apart in it is no contradiction, and they stay together. `extents`
+  /// are those of all robots' maps. O(robots^2).
+  enum class Weight { partial, full, conclusive };
   void propose(std::vector<RobotGroup> proposed, const std::set<std::string>& fresh,
-               const std::map<std::string, MapExtent>& extents, bool conclusive);
+               const std::map<std::string, MapExtent>& extents, Weight weight);
 
  private:
   using Pair = std::pair<std::string, std::string>;
+
+  void add_missing(std::vector<RobotGroup>& proposed) const;
 
   /// That two robots do not lie as they did.
   struct Contradiction {

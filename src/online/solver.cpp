@@ -18,6 +18,8 @@ namespace {
 
 /// A robot that lies nowhere yet is searched for sooner: it is waited for.
 constexpr double kSooner = 0.25;
+/// Thorough looks until the next answer, which newer maps may wait for: a second or two on two cores.
+constexpr std::size_t kPairsAtATime = 4;
 
 MergeOptions without_progress(MergeOptions options) {
   options.progress = nullptr;
@@ -51,7 +53,7 @@ void TeamSolver::take(News news) {
   for (auto& [name, one] : news) add_news(pending_[name], std::move(one));
 }
 
-TeamAnswer TeamSolver::solve(bool in_full) {
+TeamAnswer TeamSolver::solve(Effort effort) {
   const auto start = std::chrono::steady_clock::now();
   while (!pending_.empty()) {
     // In the order of their names; each is done with before it is forgotten.
@@ -59,12 +61,14 @@ TeamAnswer TeamSolver::solve(bool in_full) {
     apply(next->first, next->second);
     pending_.erase(next);
   }
+  const bool in_full = effort == Effort::full;
   if (in_full) search_what_changed();
   TeamAnswer answer;
   MergeResult result;
   try {
-    result = merger_.solve();
-    propose(result, in_full);
+    result = in_full ? merger_.solve() : merger_.solve_soon(effort == Effort::soon ? 0 : kPairsAtATime);
+    using Weight = Placements::Weight;
+    propose(result, in_full ? Weight::conclusive : is_complete() ? Weight::full : Weight::partial);
     tell_components(std::move(result), answer);
   } catch (const std::invalid_argument& error) {  // a merged map would be too large
     answer.problem = error.what();
@@ -82,7 +86,7 @@ TeamAnswer TeamSolver::solve(bool in_full) {
 }
 
 bool TeamSolver::is_settled() const {
-  if (!pending_.empty() || placements_.is_held_back()) return false;
+  if (!pending_.empty() || placements_.is_held_back() || !is_complete()) return false;
   return std::all_of(robots_.begin(), robots_.end(),
                      [](const auto& robot) { return robot.second.map == robot.second.searched; });
 }
@@ -125,12 +129,13 @@ void TeamSolver::set_map(const std::string& name, std::shared_ptr<const Occupanc
   const double searched_from = options_.search_again * (is_placed(name) ? 1.0 : kSooner);
   const bool searches = other_frame || change_between(*robot.searched, *map).share >= searched_from;
   const MapExtent extent = extent_of(*map);
-  if (searches) {
+  if (other_frame) {
     merger_.update(*robot.id, *map);
-    robot.searched = map;
   } else {
     merger_.grow(*robot.id, *map);
+    if (searches) merger_.search_again(*robot.id);
   }
+  if (searches) robot.searched = map;
   robot.map = std::move(map);
   robot.extent = extent;
   fresh_.insert(name);
@@ -167,7 +172,7 @@ void TeamSolver::search_what_changed() {
   }
 }
 
-void TeamSolver::propose(const MergeResult& result, bool conclusive) {
+void TeamSolver::propose(const MergeResult& result, Placements::Weight weight) {
   std::vector<std::string> names;  // by place in the result
   for (const MapId id : merger_.maps()) names.push_back(names_.at(id));
   std::vector<RobotGroup> proposed;
@@ -190,7 +195,7 @@ void TeamSolver::propose(const MergeResult& result, bool conclusive) {
   for (const auto& [name, robot] : robots_) {
     if (robot.id) extents[name] = robot.extent;
   }
-  placements_.propose(std::move(proposed), fresh_, extents, conclusive);
+  placements_.propose(std::move(proposed), fresh_, extents, weight);
   fresh_.clear();
 }
 

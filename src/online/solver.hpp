@@ -41,9 +41,18 @@ class TeamSolver {
   /// What is to be heeded by the next solve(). O(1) each.
   void take(News news);
 
-  /// The answer with all news. With `in_full` every map is searched that has changed since it was, and what
-  /// follows is taken at once. May be cancelled: nothing of the news is lost then, nor what was searched.
-  TeamAnswer solve(bool in_full);
+  /// How far solve() goes.
+  enum class Effort {
+    soon,     ///< all news, and quick looks at what they changed
+    further,  ///< some thorough looks that are still due
+    full,     ///< every map is searched that has changed since it was, and what follows is taken at once
+  };
+
+  /// The answer with all news. May be cancelled: nothing of the news is lost then, nor what was searched.
+  TeamAnswer solve(Effort effort);
+
+  /// Whether Effort::further has nothing to do.
+  bool is_complete() const { return merger_.is_complete(); }
 
   /// Whether nothing is left to find out: an answer in full would be the same.
   bool is_settled() const;
@@ -66,7 +75,7 @@ class TeamSolver {
   void remove(const std::string& name);
   bool is_placed(const std::string& name) const;
   void search_what_changed();
-  void propose(const MergeResult& result, bool conclusive);
+  void propose(const MergeResult& result, Placements::Weight weight);
   void tell_components(MergeResult result, TeamAnswer& answer) const;
   void tell_robots(TeamAnswer& answer) const;
   void tell_events(TeamAnswer& answer) const;

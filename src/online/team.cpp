@@ -162,7 +162,8 @@ class Team::Worker {
     std::unique_lock lock(mutex_);
     while (!ends_) {
       bool is_quiet = false;
-      if (news_.empty() && !has_unfinished_) {
+      const bool goes_further = news_.empty() && !has_unfinished_ && !solver_.is_complete();
+      if (news_.empty() && !has_unfinished_ && !goes_further) {
         const auto wakes = [&] { return ends_ || !news_.empty(); };
         if (is_all_done_) {
           changed_.wait(lock, wakes);
@@ -175,7 +176,9 @@ class Team::Worker {
       is_at_work_ = true;
       is_cancelled_ = false;
       lock.unlock();
-      std::shared_ptr<const TeamAnswer> answer = solve(std::move(news), is_quiet);
+      using Effort = TeamSolver::Effort;
+      const Effort effort = is_quiet ? Effort::full : goes_further ? Effort::further : Effort::soon;
+      std::shared_ptr<const TeamAnswer> answer = solve(std::move(news), effort);
       if (answer && on_answer_) on_answer_(answer);
       lock.lock();
       is_at_work_ = false;
@@ -190,11 +193,11 @@ class Team::Worker {
   }
 
   /// Null when it was cancelled.
-  std::shared_ptr<const TeamAnswer> solve(News news, bool in_full) {
+  std::shared_ptr<const TeamAnswer> solve(News news, TeamSolver::Effort effort) {
     auto answer = std::make_shared<TeamAnswer>();
     try {
       solver_.take(std::move(news));
-      with_cancellation(is_cancelled_, [&] { *answer = solver_.solve(in_full); });
+      with_cancellation(is_cancelled_, [&] { *answer = solver_.solve(effort); });
     } catch (const Cancelled&) {
       return nullptr;
     } catch (const std::exception& error) {  // no memory for it

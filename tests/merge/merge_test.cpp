@@ -361,6 +361,26 @@ TEST(Merger, AMapThatGrowsKeepsItsMatchesUntilItIsSearchedAgain) {
   EXPECT_THROW(merger.search_again(grows + 7), std::out_of_range);
 }
 
+TEST(Merger, SoonAndBitByBitItIsTheSameInTheEnd) {
+  const Team team;
+  std::vector<std::size_t> totals;
+  MergeOptions options;
+  options.progress = [&](std::size_t done, std::size_t total) {
+    if (done == total) totals.push_back(total);
+  };
+  Merger merger(options);
+  for (const std::size_t map : {0u, 1u, 4u}) merger.add(team.maps[map]);
+  merger.solve_soon(0);
+  EXPECT_FALSE(merger.is_complete());
+  EXPECT_EQ(totals, (std::vector<std::size_t>{3}));
+  merger.solve_soon(1);
+  EXPECT_FALSE(merger.is_complete());
+  const MergeResult result = merger.solve_soon(1);
+  EXPECT_TRUE(merger.is_complete());
+  EXPECT_EQ(totals, (std::vector<std::size_t>{3, 1, 1}));
+  expect_same(result, merge({team.maps[0], team.maps[1], team.maps[4]}));
+}
+
 TEST(Merger, WhatWasMatchedBeforeItWasCancelledIsKept) {
   const Team team;
   std::atomic<bool> cancelled = false;

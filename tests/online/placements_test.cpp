@@ -10,6 +10,8 @@ namespace {
 const std::map<std::string, MapExtent> kExtents{
     {"a", {{0, 0}, 5, 15}}, {"b", {{0, 0}, 5, 15}}, {"c", {{0, 0}, 5, 15}}, {"d", {{0, 0}, 5, 15}}};
 const std::set<std::string> kAll{"a", "b", "c", "d"};
+constexpr auto kPartial = Placements::Weight::partial, kFull = Placements::Weight::full,
+               kConclusive = Placements::Weight::conclusive;
 
 /// a at the identity and b so far from it [m].
 RobotGroup pair_at(double distance, const std::string& first = "a", const std::string& second = "b") {
@@ -26,86 +28,117 @@ double distance_of(const Placements& placements, const std::string& robot) {
 
 TEST(Placements, FollowWhatContradictsNothing) {
   Placements placements(3);
-  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, kFull);
   EXPECT_EQ(distance_of(placements, "b"), 10.0);
-  placements.propose({pair_at(10.1)}, kAll, kExtents, false);
+  placements.propose({pair_at(10.1)}, kAll, kExtents, kFull);
   EXPECT_EQ(distance_of(placements, "b"), 10.1);
   EXPECT_FALSE(placements.is_held_back());
 }
 
 TEST(Placements, MoveWhenConfirmedOftenEnough) {
   Placements placements(3);
-  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, kFull);
   for (int i = 0; i < 2; ++i) {
-    placements.propose({pair_at(15.0 + 0.1 * i)}, kAll, kExtents, false);
+    placements.propose({pair_at(15.0 + 0.1 * i)}, kAll, kExtents, kFull);
     EXPECT_EQ(distance_of(placements, "b"), 10.0);
     EXPECT_TRUE(placements.is_held_back());
   }
-  placements.propose({pair_at(15.2)}, kAll, kExtents, false);
+  placements.propose({pair_at(15.2)}, kAll, kExtents, kFull);
   EXPECT_EQ(distance_of(placements, "b"), 15.2);
   EXPECT_FALSE(placements.is_held_back());
 }
 
 TEST(Placements, OtherPlacesEachTimeConfirmNothing) {
   Placements placements(3);
-  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
-  for (int i = 0; i < 6; ++i) placements.propose({pair_at(i % 2 == 0 ? 15.0 : 20.0)}, kAll, kExtents, false);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, kFull);
+  for (int i = 0; i < 6; ++i) placements.propose({pair_at(i % 2 == 0 ? 15.0 : 20.0)}, kAll, kExtents, kFull);
   EXPECT_EQ(distance_of(placements, "b"), 10.0);
 }
 
 TEST(Placements, AReturnStartsTheCountAnew) {
   Placements placements(3);
   for (const double distance : {10.0, 15.0, 15.0, 10.0, 15.0, 15.0})
-    placements.propose({pair_at(distance)}, kAll, kExtents, false);
+    placements.propose({pair_at(distance)}, kAll, kExtents, kFull);
   EXPECT_EQ(distance_of(placements, "b"), 10.0);
-  placements.propose({pair_at(15.0)}, kAll, kExtents, false);
+  placements.propose({pair_at(15.0)}, kAll, kExtents, kFull);
   EXPECT_EQ(distance_of(placements, "b"), 15.0);
 }
 
 TEST(Placements, WithoutNewerMapsNothingIsConfirmed) {
   Placements placements(3);
-  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
-  for (int i = 0; i < 5; ++i) placements.propose({pair_at(15.0)}, {"c"}, kExtents, false);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, kFull);
+  for (int i = 0; i < 5; ++i) placements.propose({pair_at(15.0)}, {"c"}, kExtents, kFull);
   EXPECT_EQ(distance_of(placements, "b"), 10.0);
-  placements.propose({pair_at(15.0)}, {}, kExtents, true);  // conclusive
+  placements.propose({pair_at(15.0)}, {}, kExtents, kConclusive);  // conclusive
   EXPECT_EQ(distance_of(placements, "b"), 15.0);
 }
 
 TEST(Placements, APairThatIsNoLongerSureLeavesWhenConfirmed) {
   Placements placements(2);
-  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
-  placements.propose({}, kAll, kExtents, false);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, kFull);
+  placements.propose({}, kAll, kExtents, kFull);
   EXPECT_EQ(placements.groups().size(), 1u);
-  placements.propose({}, kAll, kExtents, false);
+  placements.propose({}, kAll, kExtents, kFull);
   EXPECT_TRUE(placements.groups().empty());
 }
 
 TEST(Placements, OthersGoOnMeanwhile) {
   Placements placements(3);
-  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
-  placements.propose({pair_at(15.0), pair_at(7.0, "c", "d")}, kAll, kExtents, false);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, kFull);
+  placements.propose({pair_at(15.0), pair_at(7.0, "c", "d")}, kAll, kExtents, kFull);
   EXPECT_EQ(distance_of(placements, "b"), 10.0);
   EXPECT_EQ(distance_of(placements, "d"), 7.0);
   // A newcomer to a group that is held back waits with it.
   RobotGroup three = pair_at(15.0);
   three.robots["c"] = {{3.0, 0, 0}, 0.99};
   placements = Placements(3);
-  placements.propose({pair_at(10.0)}, kAll, kExtents, false);
-  placements.propose({three}, kAll, kExtents, false);
+  placements.propose({pair_at(10.0)}, kAll, kExtents, kFull);
+  placements.propose({three}, kAll, kExtents, kFull);
   EXPECT_EQ(distance_of(placements, "c"), -1.0);
+}
+
+TEST(Placements, WhatAPartialProposalDoesNotSayStays) {
+  Placements placements(2);
+  RobotGroup three = pair_at(10.0);
+  three.robots["c"] = {{3.0, 0, 0}, 0.9};
+  placements.propose(
+      {
+          three,
+      },
+      kAll, kExtents, kFull);
+  for (int i = 0; i < 4; ++i) {
+    // c is not looked at, and d is new; the frame is another one.
+    RobotGroup others{{{"a", {{1.0, 0, 0}, 0.99}}, {"b", {{11.0, 0, 0}, 0.99}}, {"d", {{5.0, 0, 0}, 0.99}}},
+                      false};
+    placements.propose({others}, kAll, kExtents, kPartial);
+    EXPECT_EQ(distance_of(placements, "c"), 4.0);
+    EXPECT_EQ(distance_of(placements, "d"), 5.0);
+    EXPECT_FALSE(placements.is_held_back());
+  }
+  placements.propose({}, kAll, kExtents, kPartial);
+  EXPECT_EQ(placements.groups().size(), 1u);
+  EXPECT_EQ(distance_of(placements, "b"), 11.0);
+  // Elsewhere is a contradiction all the same, apart is one when all was looked at.
+  placements.propose({pair_at(20.0)}, kAll, kExtents, kPartial);
+  EXPECT_TRUE(placements.is_held_back());
+  placements.propose({pair_at(20.0)}, kAll, kExtents, kPartial);
+  EXPECT_EQ(distance_of(placements, "b"), 20.0);
+  placements.propose({}, kAll, kExtents, kFull);
+  placements.propose({}, kAll, kExtents, kFull);
+  EXPECT_TRUE(placements.groups().empty());
 }
 
 TEST(Placements, WhoIsForgottenLiesNowhere) {
   Placements placements(3);
   RobotGroup three = pair_at(10.0);
   three.robots["c"] = {{3.0, 0, 0}, 0.99};
-  placements.propose({three}, kAll, kExtents, false);
+  placements.propose({three}, kAll, kExtents, kFull);
   placements.forget("b");
   EXPECT_EQ(distance_of(placements, "b"), -1.0);
   EXPECT_EQ(distance_of(placements, "c"), 3.0);
   placements.forget("c");
   EXPECT_TRUE(placements.groups().empty());
-  placements.propose({pair_at(20.0)}, kAll, kExtents, false);  // contradicts nothing
+  placements.propose({pair_at(20.0)}, kAll, kExtents, kFull);  // contradicts nothing
   EXPECT_EQ(distance_of(placements, "b"), 20.0);
 }
 
@@ -127,14 +160,14 @@ TEST(Placements, AnyProposalsLeaveGroupsApart) {
       for (const auto& [number, group] : drawn) {
         if (group.robots.size() > 1) proposed.push_back(group);
       }
-      const bool conclusive = *rc::gen::inRange(0, 4) == 0;
-      placements.propose(proposed, fresh, kExtents, conclusive);
+      const auto weight = *rc::gen::element(Placements::Weight::partial, kFull, kConclusive);
+      placements.propose(proposed, fresh, kExtents, weight);
       std::set<std::string> seen;
       for (const RobotGroup& group : placements.groups()) {
         RC_ASSERT(group.robots.size() > 1);
         for (const auto& [robot, placement] : group.robots) RC_ASSERT(seen.insert(robot).second);
       }
-      if (conclusive) {
+      if (weight == kConclusive) {
         RC_ASSERT(!placements.is_held_back());
         RC_ASSERT(placements.groups().size() == proposed.size());
       }

@@ -17,6 +17,8 @@ namespace {
 
 using test::Explorers;
 
+using Effort = TeamSolver::Effort;
+
 const std::vector<std::string> kNames{"anna", "bert", "carl", "dora"};
 
 RobotNews map_news(OccupancyGrid map, int second = 0) {
@@ -62,7 +64,7 @@ TEST(TeamSolver, ExplorersComeTogetherAndTheStrangerDoesNot) {
   TeamSolver solver({});
   for (int step = 1; step <= Explorers::kSteps; ++step) {
     solver.take(news_at(explorers, step, 4));
-    const TeamAnswer answer = solver.solve(false);
+    const TeamAnswer answer = solver.solve(Effort::further);
     EXPECT_EQ(answer.number, static_cast<std::uint64_t>(step));
     for (const RobotStatus& robot : answer.robots) {
       EXPECT_FALSE(has_event(answer, TeamEvent::Kind::jumped, robot.name));
@@ -76,7 +78,7 @@ TEST(TeamSolver, ExplorersComeTogetherAndTheStrangerDoesNot) {
         expect_at(answer, name, explorers.between(0, robot), 0.8);
     }
   }
-  const TeamAnswer answer = solver.solve(true);
+  const TeamAnswer answer = solver.solve(Effort::full);
   ASSERT_EQ(answer.components.size(), 1u);
   EXPECT_EQ(answer.components[0].robots, (std::vector<std::string>{"anna", "bert", "carl"}));
   EXPECT_EQ(answer.components[0].anchor, "anna");
@@ -91,10 +93,10 @@ TEST(TeamSolver, ASettledAnswerIsThatOfMerge) {
   TeamSolver solver(options);
   for (int step = 2; step <= Explorers::kSteps; ++step) {
     solver.take(news_at(explorers, step, 4));
-    solver.solve(false);
+    solver.solve(Effort::further);
   }
   EXPECT_FALSE(solver.is_settled());
-  const TeamAnswer answer = solver.solve(true);
+  const TeamAnswer answer = solver.solve(Effort::full);
   EXPECT_TRUE(answer.settled);
   std::vector<OccupancyGrid> maps;
   for (int robot = 0; robot < 4; ++robot) maps.push_back(explorers.map(robot, Explorers::kSteps));
@@ -110,11 +112,35 @@ TEST(TeamSolver, ASettledAnswerIsThatOfMerge) {
   EXPECT_EQ(status_of(answer, "dora").reason, merged.left_out_reasons.at(0));
 }
 
+/// Soon and further come to the same as all at once.
+TEST(TeamSolver, AnAnswerThatComesSoonIsCompletedLater) {
+  const Explorers explorers;
+  TeamSolver bit_by_bit({}), at_once({});
+  bit_by_bit.take(news_at(explorers, 2, 4));
+  at_once.take(news_at(explorers, 2, 4));
+  TeamAnswer answer = bit_by_bit.solve(Effort::soon);
+  EXPECT_FALSE(answer.settled);
+  int answers = 1;
+  while (!bit_by_bit.is_complete()) {
+    answer = bit_by_bit.solve(Effort::further);
+    ++answers;
+  }
+  EXPECT_GT(answers, 1);
+  EXPECT_TRUE(answer.settled);
+  const TeamAnswer expected = at_once.solve(Effort::full);
+  ASSERT_EQ(answer.components.size(), expected.components.size());
+  for (std::size_t i = 0; i < expected.robots.size(); ++i) {
+    EXPECT_EQ(answer.robots[i].state, expected.robots[i].state);
+    EXPECT_EQ(answer.robots[i].T_world_map, expected.robots[i].T_world_map);
+    EXPECT_EQ(answer.robots[i].probability, expected.robots[i].probability);
+  }
+}
+
 TEST(TeamSolver, ALittleChangeIsFollowedWithoutASearch) {
   const Explorers explorers;
   TeamSolver solver({});
   solver.take(news_at(explorers, 5));
-  solver.solve(false);
+  solver.solve(Effort::further);
   // One map loses a strip: what it knows is nearly the same.
   OccupancyGrid map = explorers.map(1, 5);
   for (int row = 0; row < map.height / 50; ++row) {
@@ -124,24 +150,24 @@ TEST(TeamSolver, ALittleChangeIsFollowedWithoutASearch) {
   news["bert"] = map_news(map, 1);
   solver.take(news);
   EXPECT_FALSE(solver.is_settled());
-  const TeamAnswer followed = solver.solve(false);
+  const TeamAnswer followed = solver.solve(Effort::further);
   EXPECT_FALSE(followed.settled);
   expect_at(followed, "bert", explorers.between(0, 1));
-  EXPECT_TRUE(solver.solve(true).settled);
+  EXPECT_TRUE(solver.solve(Effort::full).settled);
 }
 
 TEST(TeamSolver, ARobotThatStartsAnewIsPlacedInItsNewFrame) {
   const Explorers explorers;
   TeamSolver solver({});
   solver.take(news_at(explorers, 5));
-  expect_at(solver.solve(false), "bert", explorers.between(0, 1));
+  expect_at(solver.solve(Effort::further), "bert", explorers.between(0, 1));
   const SE2 T_new_old{5.0, 7.0, 2.0};
   OccupancyGrid map = explorers.map(1, 4);
   News news;
   map.origin = T_new_old * map.origin;
   news["bert"] = map_news(map, 1);
   solver.take(news);
-  const TeamAnswer answer = solver.solve(false);
+  const TeamAnswer answer = solver.solve(Effort::further);
   EXPECT_TRUE(has_event(answer, TeamEvent::Kind::restarted, "bert"));
   EXPECT_FALSE(has_event(answer, TeamEvent::Kind::jumped, "bert"));
   expect_at(answer, "bert", explorers.between(0, 1) * inverse(T_new_old));
@@ -157,12 +183,12 @@ TEST(TeamSolver, WhoLeavesIsTakenOutWhenThatIsConfirmed) {
   news["anna"] = map_news(explorers.map(0, 5), 0);
   news["bert"] = map_news(explorers.map(1, 5), 1);
   solver.take(news);
-  EXPECT_EQ(solver.solve(false).components.size(), 1u);
+  EXPECT_EQ(solver.solve(Effort::further).components.size(), 1u);
   // The other floor, in a frame that looks the same to change_between(): it forgets bit by bit.
   OccupancyGrid map = explorers.map(1, 5);
   int answers = 0;
-  for (int part = 1; part <= 9 && status_of(solver.solve(false), "bert").state == RobotState::placed;
-       ++part) {
+  for (int part = 1;
+       part <= 9 && status_of(solver.solve(Effort::further), "bert").state == RobotState::placed; ++part) {
     for (int row = 0; row < map.height; ++row) {
       for (int column = map.width * (part - 1) / 10; column < map.width * part / 10; ++column)
         map.at(column, row) = Cell::unknown;
@@ -173,7 +199,7 @@ TEST(TeamSolver, WhoLeavesIsTakenOutWhenThatIsConfirmed) {
     ++answers;
   }
   EXPECT_GT(answers, 2);
-  EXPECT_FALSE(solver.is_settled() && status_of(solver.solve(false), "bert").component);
+  EXPECT_FALSE(solver.is_settled() && status_of(solver.solve(Effort::further), "bert").component);
 }
 
 TEST(TeamSolver, TheFrameIsThatOfTheRobotHeardFirstForAsLongAsItLives) {
@@ -183,11 +209,11 @@ TEST(TeamSolver, TheFrameIsThatOfTheRobotHeardFirstForAsLongAsItLives) {
   news["carl"] = map_news(explorers.map(2, 5), 10);
   news["bert"] = map_news(explorers.map(1, 5), 20);
   solver.take(news);
-  EXPECT_EQ(solver.solve(false).components.at(0).anchor, "carl");
+  EXPECT_EQ(solver.solve(Effort::further).components.at(0).anchor, "carl");
   news = {};
   news["anna"] = map_news(explorers.map(0, 5), 30);
   solver.take(news);
-  TeamAnswer answer = solver.solve(false);
+  TeamAnswer answer = solver.solve(Effort::further);
   EXPECT_EQ(answer.components.at(0).anchor, "carl");
   EXPECT_EQ(status_of(answer, "carl").T_world_map, SE2{});
   expect_at(answer, "anna", explorers.between(2, 0));
@@ -195,14 +221,14 @@ TEST(TeamSolver, TheFrameIsThatOfTheRobotHeardFirstForAsLongAsItLives) {
   news = {};
   news["bert"].since = TeamTime(std::chrono::seconds(5));
   solver.take(news);
-  answer = solver.solve(false);
+  answer = solver.solve(Effort::further);
   EXPECT_EQ(answer.components.at(0).anchor, "bert");
   expect_at(answer, "anna", explorers.between(1, 0));
   EXPECT_TRUE(answer.events.empty());  // a frame is not a jump
   news = {};
   news["bert"].is_gone = true;
   solver.take(news);
-  answer = solver.solve(false);
+  answer = solver.solve(Effort::further);
   EXPECT_TRUE(has_event(answer, TeamEvent::Kind::left, "bert"));
   EXPECT_EQ(answer.components.at(0).anchor, "carl");
 }
@@ -211,14 +237,14 @@ TEST(TeamSolver, NewsAndOrderGiveTheSameAnswer) {
   const Explorers explorers;
   TeamSolver together({}), apart({});
   together.take(news_at(explorers, 4));
-  const TeamAnswer expected = together.solve(true);
+  const TeamAnswer expected = together.solve(Effort::full);
   for (const int robot : {2, 0, 1}) {
     News news;
     news[kNames[static_cast<std::size_t>(robot)]] = map_news(explorers.map(robot, 4), robot);
     apart.take(news);
-    apart.solve(false);
+    apart.solve(Effort::further);
   }
-  const TeamAnswer answer = apart.solve(true);
+  const TeamAnswer answer = apart.solve(Effort::full);
   ASSERT_EQ(answer.components.size(), expected.components.size());
   EXPECT_EQ(answer.components[0].robots, expected.components[0].robots);
   EXPECT_EQ(answer.components[0].anchor, expected.components[0].anchor);
@@ -232,7 +258,7 @@ TEST(TeamSolver, ACancelledAnswerLosesNothing) {
   TeamSolver solver({}), undisturbed({});
   solver.take(news_at(explorers, 5));
   undisturbed.take(news_at(explorers, 5));
-  const TeamAnswer expected = undisturbed.solve(false);
+  const TeamAnswer expected = undisturbed.solve(Effort::further);
   std::size_t cancelled = 0;
   // Ever later, so that it is cancelled everywhere.
   for (auto wait = std::chrono::microseconds(0);; wait = wait * 2 + std::chrono::microseconds(200)) {
@@ -243,7 +269,7 @@ TEST(TeamSolver, ACancelledAnswerLosesNothing) {
     });
     try {
       with_cancellation(flag, [&] {
-        const TeamAnswer answer = solver.solve(false);
+        const TeamAnswer answer = solver.solve(Effort::further);
         stops.join();
         EXPECT_EQ(answer.components.at(0).map->cells, expected.components.at(0).map->cells);
         EXPECT_EQ(answer.number, 1u);
@@ -265,7 +291,7 @@ TEST(TeamSolver, KnownPosesHoldTheFrame) {
   News news = news_at(explorers, 5);
   news["bert"].known_pose = KnownPose{{100.0, 50.0, 1.0}, 0.0, 0.0, true};
   solver.take(news);
-  const TeamAnswer answer = solver.solve(false);
+  const TeamAnswer answer = solver.solve(Effort::further);
   EXPECT_EQ(answer.components.at(0).anchor, "");
   EXPECT_EQ(status_of(answer, "bert").T_world_map, (SE2{100.0, 50.0, 1.0}));
   expect_at(answer, "anna", SE2{100.0, 50.0, 1.0} * explorers.between(1, 0));
@@ -278,7 +304,7 @@ TEST(TeamSolver, SaysWhatItWaitsFor) {
   news["anna"] = map_news(explorers.map(0, 3));
   news["bert"].known_pose = std::optional<KnownPose>();
   solver.take(news);
-  const TeamAnswer answer = solver.solve(false);
+  const TeamAnswer answer = solver.solve(Effort::further);
   EXPECT_EQ(status_of(answer, "anna").state, RobotState::waiting);
   EXPECT_EQ(status_of(answer, "anna").why, "there is no other map yet");
   EXPECT_EQ(status_of(answer, "bert").why, "no map came yet");
@@ -290,20 +316,20 @@ TEST(TeamSolver, AMapTooLargeToMergeIsAProblemNotTheEnd) {
   TeamOptions options;
   TeamSolver solver(options);
   solver.take(news_at(explorers, 5));
-  const TeamAnswer before = solver.solve(false);
+  const TeamAnswer before = solver.solve(Effort::further);
   EXPECT_EQ(before.problem, "");
   News news;
   // Two fixed robots lie together however far apart they are.
   news["anna"].known_pose = KnownPose{{0.0, 0.0, 0.0}, 0.0, 0.0, true};
   news["bert"].known_pose = KnownPose{{9e6, 9e6, 0.0}, 0.0, 0.0, true};
   solver.take(news);
-  const TeamAnswer answer = solver.solve(false);
+  const TeamAnswer answer = solver.solve(Effort::further);
   EXPECT_NE(answer.problem, "");
   EXPECT_EQ(answer.components.size(), before.components.size());
   news["bert"].known_pose = std::optional<KnownPose>();
   news["anna"].known_pose = std::optional<KnownPose>();
   solver.take(news);
-  EXPECT_EQ(solver.solve(false).problem, "");
+  EXPECT_EQ(solver.solve(Effort::further).problem, "");
 }
 
 }  // namespace

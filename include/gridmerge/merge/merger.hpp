@@ -35,8 +35,8 @@ class Merger {
   void update(MapId id, OccupancyGrid map);
 
   /// As update(), for a map that is little different: what its pairs said stays until search_again(). Where
-  /// the maps lie is adjusted to the new map all the same, so this is how a map follows a robot that explores,
-  /// at the cost of a joint solution instead of k - 1 matches. Throws as update().
+  /// the maps lie is adjusted to the new map all the same, so this is how a map follows a robot that
+  /// explores, at the cost of a joint solution instead of k - 1 matches. Throws as update().
   void grow(MapId id, OccupancyGrid map);
 
   /// The map's pairs are matched again by the next solve(). Throws std::out_of_range for an unknown id.
@@ -56,6 +56,16 @@ class Merger {
   /// cancelled (with_cancellation()) the matches made by then are kept, and the next call goes on with them.
   /// Throws std::invalid_argument when a merged map would exceed 2^28 cells.
   MergeResult solve();
+
+  /// As solve(), for who wants an answer soon and better ones later: looks at all new pairs quickly, but
+  /// again, thoroughly, at no more than so many of those whose maps that leaves apart. What was said
+  /// thoroughly of other pairs before search_again() still serves. Maps are matched with merged groups only
+  /// when no pair is left to be looked at. Called until is_complete(), the last result is that of solve().
+  /// Throws as that.
+  MergeResult solve_soon(std::size_t most_thorough);
+
+  /// Whether the last call looked at all that solve() looks at.
+  bool is_complete() const;
 
  private:
   class State;
