@@ -48,7 +48,8 @@ foreach(component IN LISTS GRIDMERGE_COMPONENTS)
   install(FILES ${PROJECT_BINARY_DIR}/gridmerge-${component}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
           COMPONENT ${component})
 endforeach()
-install(FILES ${PROJECT_SOURCE_DIR}/include/gridmerge/gridmerge.hpp ${PROJECT_BINARY_DIR}/include/gridmerge/version.hpp
+install(FILES ${PROJECT_SOURCE_DIR}/include/gridmerge/gridmerge.hpp ${PROJECT_SOURCE_DIR}/include/gridmerge/export.hpp
+              ${PROJECT_BINARY_DIR}/include/gridmerge/version.hpp
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gridmerge COMPONENT core)
 if(TARGET gridmerge_cli)
   install(TARGETS gridmerge_cli COMPONENT tool)

@@ -3,6 +3,8 @@
 
 function(gridmerge_configure target)
   target_compile_features(${target} PUBLIC cxx_std_20)
+  # A shared library shows what GRIDMERGE_EXPORT and GRIDMERGE_INTERNAL_EXPORT mark.
+  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   # What is in src/ is gridmerge::internal: the project's own targets see it, an installed library does not have it.
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
@@ -64,6 +66,22 @@ macro(gridmerge_find_packages)
   endforeach()
 endmacro()
 
+# gridmerge_with_internals(<list>): each gridmerge::<name> of it becomes a library of the same objects that hides nothing.
+# A static library is one; beside a shared one stands the archive gridmerge_<name>_objects, which is not installed.
+macro(gridmerge_with_internals libraries)
+  if(BUILD_SHARED_LIBS)
+    list(TRANSFORM ${libraries} REPLACE "^gridmerge::(.+)$" "gridmerge_\\1_objects")
+  endif()
+endmacro()
+
+# gridmerge_link_internals(<target> <library>...): what target_link_libraries() does, for a program that uses more of
+# gridmerge::internal than shared libraries show: tests, benchmarks, experiments.
+function(gridmerge_link_internals target)
+  set(libraries ${ARGN})
+  gridmerge_with_internals(libraries)
+  target_link_libraries(${target} PRIVATE ${libraries})
+endfunction()
+
 # gridmerge_add_component(<name> SOURCES ... [PUBLIC libs...] [PRIVATE libs...]): builds libgridmerge_<name>, exported as
 # gridmerge::<name>, unless it is left out.
 function(gridmerge_add_component name)
@@ -78,9 +96,25 @@ function(gridmerge_add_component name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
                                              VERSION ${PROJECT_VERSION}
                                              SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
-                                              $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
-                                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  set(headers PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+                     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_include_directories(${target} ${headers})
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   gridmerge_configure(${target})
+  if(BUILD_SHARED_LIBS)
+    # A shared library takes the same objects as a static one, so a compiler cache serves both.
+    set_target_properties(${target} PROPERTIES DEFINE_SYMBOL "" LINK_DEPENDS ${PROJECT_SOURCE_DIR}/src/hidden.map)
+    target_link_options(${target} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/src/hidden.map)
+    if(NOT GRIDMERGE_SANITIZE)
+      # What another component hides is missed here, not by whoever links this one.
+      target_link_options(${target} PRIVATE LINKER:--no-undefined)
+    endif()
+    add_library(${target}_objects STATIC EXCLUDE_FROM_ALL $<TARGET_OBJECTS:${target}>)
+    set_target_properties(${target}_objects PROPERTIES LINKER_LANGUAGE CXX)
+    target_include_directories(${target}_objects ${headers})
+    gridmerge_with_internals(ARG_PUBLIC)
+    gridmerge_with_internals(ARG_PRIVATE)
+    target_link_libraries(${target}_objects PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+    gridmerge_configure(${target}_objects)
+  endif()
 endfunction()

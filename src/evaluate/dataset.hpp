@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gridmerge/simulate/simulate.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -20,7 +21,9 @@ struct DatasetOptions {
 /// each of them a negative with every robot's map. Negatives are also the strangers of the simulation.
 ///
 /// All files take their places at one point of time, even if the program is killed. Throws FileError.
-void write_dataset(const std::filesystem::path& directory, const Simulation& simulation,
-                   const std::vector<Simulation>& elsewhere, const DatasetOptions& options = {});
+GRIDMERGE_INTERNAL_EXPORT void write_dataset(const std::filesystem::path& directory,
+                                             const Simulation& simulation,
+                                             const std::vector<Simulation>& elsewhere,
+                                             const DatasetOptions& options = {});
 
 }  // namespace gridmerge::internal

@@ -4,15 +4,18 @@
 #include <filesystem>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "internal_export.hpp"
 #include "io/file_set.hpp"
 
 namespace gridmerge::internal {
 
 /// Adds the files that save_map() writes, the image first, to a set that the map belongs to. `yaml_name` has
 /// no folder. Throws as save_map().
-void add_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name);
+GRIDMERGE_INTERNAL_EXPORT void add_map(FileSet& files, const OccupancyGrid& grid,
+                                       const std::filesystem::path& yaml_name);
 
 /// The same of save_probability_map().
-void add_probability_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name);
+GRIDMERGE_INTERNAL_EXPORT void add_probability_map(FileSet& files, const OccupancyGrid& grid,
+                                                   const std::filesystem::path& yaml_name);
 
 }  // namespace gridmerge::internal

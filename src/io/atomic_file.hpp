@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "gridmerge/io/file_error.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -17,7 +18,7 @@ namespace gridmerge::internal {
 /// old bytes or the new ones. A link that leads to nothing is itself replaced by the file. Anything else that
 /// exists, a device or a pipe for example, is an error. Permissions are those of any new file: 0666 less the
 /// umask. A process over its file size limit gets a FileError only if it ignores SIGXFSZ.
-class StagedFile {
+class GRIDMERGE_INTERNAL_EXPORT StagedFile {
  public:
   /// Throws FileError; then nothing is left behind.
   StagedFile(std::filesystem::path path, std::string_view bytes);
@@ -36,6 +37,7 @@ class StagedFile {
 };
 
 /// One file, staged and committed. Throws FileError.
-void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+GRIDMERGE_INTERNAL_EXPORT void write_file_atomically(const std::filesystem::path& path,
+                                                     std::string_view bytes);
 
 }  // namespace gridmerge::internal

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "internal_export.hpp"
+
 namespace gridmerge::internal {
 
 /// Who names a file. A user may name a pipe; where a file names one, the program would wait for what may
@@ -12,7 +14,7 @@ namespace gridmerge::internal {
 enum class NamedBy { user, file };
 
 /// Reads a file in steps, so that its first bytes can decide how many more are worth having.
-class FileReader {
+class GRIDMERGE_INTERNAL_EXPORT FileReader {
  public:
   /// Throws FileError when `path` is missing, unreadable or a directory, and, named by a file, when it is no
   /// regular file.

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "internal_export.hpp"
 #include "io/directory_lock.hpp"
 
 namespace gridmerge::internal {
@@ -26,7 +27,7 @@ namespace gridmerge::internal {
 /// add().
 ///
 /// Every file is flushed to the disk before the turn, and the directories before and after it.
-class FileSet {
+class GRIDMERGE_INTERNAL_EXPORT FileSet {
  public:
   using IfMissing = DirectoryLock::IfMissing;
 

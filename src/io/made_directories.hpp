@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <vector>
 
+#include "internal_export.hpp"
+
 namespace gridmerge::internal {
 
 /// A directory, made if need be with its parents. What was made is removed with this object unless there is
 /// something in it by then, so that work that fails leaves no empty directory behind.
-class MadeDirectories {
+class GRIDMERGE_INTERNAL_EXPORT MadeDirectories {
  public:
   /// Throws FileError.
   explicit MadeDirectories(const std::filesystem::path& directory);

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "internal_export.hpp"
+
 namespace gridmerge::internal {
 
 /// Pixels as a PNG holds them, top row first, no gamma applied.
@@ -21,10 +23,10 @@ struct PngImage {
 /// Reads any PNG: palettes become RGB, 1, 2 and 4 bits become 8, transparent colours an alpha channel.
 /// Throws std::runtime_error with the cause when the bytes are no PNG, are broken or end early, or when the
 /// image has more than `max_pixels` pixels (found out before memory is taken for them). O(pixels).
-PngImage decode_png(std::string_view bytes, std::size_t max_pixels = 1u << 28);
+GRIDMERGE_INTERNAL_EXPORT PngImage decode_png(std::string_view bytes, std::size_t max_pixels = 1u << 28);
 
 /// The bytes of a PNG file. Throws std::invalid_argument unless bit_depth is 8 and samples fits the sizes.
 /// O(pixels).
-std::string encode_png(const PngImage& image);
+GRIDMERGE_INTERNAL_EXPORT std::string encode_png(const PngImage& image);
 
 }  // namespace gridmerge::internal

@@ -7,11 +7,13 @@
 #include <string_view>
 #include <vector>
 
+#include "internal_export.hpp"
+
 namespace gridmerge::internal {
 
 /// A tab-separated text file whose first line names the columns. Knows files, lines and columns, not their
 /// meaning. Every failure is a FileError that says "file:line: cause".
-class TextTable {
+class GRIDMERGE_INTERNAL_EXPORT TextTable {
  public:
   /// Checks the shape of the file's text: every required column once, no column that is neither required nor
   /// optional, and as many fields in every line as there are columns.

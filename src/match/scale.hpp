@@ -5,6 +5,7 @@
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -18,7 +19,8 @@ struct ScaleFound {
 /// ratios of usual resolutions (2, 2.5, 4, 5 or 10, or the inverse), and by which most surely. So many
 /// attempts find a chance match more often than one, so a probability of 0.99 is asked for, and the answer is
 /// a hint for people, no verdict. Ten times the time of match() at most. Throws as match().
-std::optional<ScaleFound> find_scale(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                     const MatchOptions& options = {});
+GRIDMERGE_INTERNAL_EXPORT std::optional<ScaleFound> find_scale(const OccupancyGrid& fixed,
+                                                               const OccupancyGrid& moving,
+                                                               const MatchOptions& options = {});
 
 }  // namespace gridmerge::internal

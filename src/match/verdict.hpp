@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gridmerge/match/match_result.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -22,7 +23,7 @@ enum class TermKind {
 const char* name_of(TermKind kind);
 
 /// A term of the model: the one place where its name, meaning and formula stand. Tables, fit and docs follow.
-struct VerdictTerm {
+struct GRIDMERGE_INTERNAL_EXPORT VerdictTerm {
   const char* name;
   const char* formula;  ///< in words, of the names of pose_figures()
   TermKind kind;
@@ -35,7 +36,7 @@ struct VerdictTerm {
 };
 
 /// All terms, in the order of the model's weights.
-std::span<const VerdictTerm> verdict_terms();
+GRIDMERGE_INTERNAL_EXPORT std::span<const VerdictTerm> verdict_terms();
 
 /// A term of the ranking, which says which of several poses of one pair is the best: the one place where its
 /// name and formula stand.
@@ -46,7 +47,7 @@ struct RankTerm {
 };
 
 /// All of them, in the order of the ranking's weights.
-std::span<const RankTerm> rank_terms();
+GRIDMERGE_INTERNAL_EXPORT std::span<const RankTerm> rank_terms();
 
 /// What speaks for a pose against others of its pair: the weighted sum of its rank terms [nats]. Quality
 /// counts more here than amount, so that a true pose that overlaps little stands before wrong ones that
@@ -73,7 +74,7 @@ std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses);
 
 /// Whether the maps can slide along each other at hardly any loss, as two pieces of a corridor can:
 /// PoseFigures::free_direction says which way.
-bool slides(const PoseFigures& figures);
+GRIDMERGE_INTERNAL_EXPORT bool slides(const PoseFigures& figures);
 
 /// Why the first of these hypotheses, which is the best, is refused where `accept_probability` is asked for;
 /// `none` if it is not, `nothing_to_compare` if there is no hypothesis.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gridmerge/grid/se2.hpp"
+#include "internal_export.hpp"
 #include "merge/coverage.hpp"
 
 namespace gridmerge::internal {
@@ -66,14 +67,15 @@ struct OpenJoin {
 
 /// How far apart a pair's candidate and the poses of an arrangement may put the maps and still agree [m]:
 /// bent maps do not close a cycle exactly.
-double agreement_tolerance(const MapExtent& a, const MapExtent& b);
+GRIDMERGE_INTERNAL_EXPORT double agreement_tolerance(const MapExtent& a, const MapExtent& b);
 
 /// Root mean square distance by which two poses of a map of this extent differ [m].
-double displacement(const MapExtent& moving, const SE2& a, const SE2& b);
+GRIDMERGE_INTERNAL_EXPORT double displacement(const MapExtent& moving, const SE2& a, const SE2& b);
 
 /// How far two ways in which maps a and b may lie differ [m]: the displacement of that map which it moves
 /// less. The same whichever of the two is taken for the moving one.
-double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b, const SE2& T_a_b_other);
+GRIDMERGE_INTERNAL_EXPORT double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b,
+                                            const SE2& T_a_b_other);
 
 /// The arrangement of all maps that the candidates speak for most, as far as it can be believed.
 ///

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -22,7 +23,7 @@ struct InCommon {
 };
 
 /// Where a map knows anything, coarsely: about 100 cells to its longer side.
-class Coverage {
+class GRIDMERGE_INTERNAL_EXPORT Coverage {
  public:
   /// O(cells).
   explicit Coverage(const OccupancyGrid& grid);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gridmerge/merge/merge_result.hpp"
+#include "internal_export.hpp"
 #include "merge/arrangement.hpp"
 
 namespace gridmerge::internal {
@@ -15,7 +16,7 @@ namespace gridmerge::internal {
 void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution);
 
 /// The resolution of the finest of these maps, of which there must be one.
-double finest_resolution(const std::vector<PlacedMap>& maps);
+GRIDMERGE_INTERNAL_EXPORT double finest_resolution(const std::vector<PlacedMap>& maps);
 
 /// A join that means what its own verdict says.
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match);

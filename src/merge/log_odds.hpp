@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -23,7 +24,7 @@ struct Lattice {
 /// what it covers. The inputs' order plays no part. Throws std::invalid_argument for an invalid grid, a
 /// transform that is not finite, a resolution that is not positive, or a lattice of more than 2^28 cells.
 /// O(cells of the inputs).
-Lattice cover(const std::vector<PlacedMap>& inputs, double resolution);
+GRIDMERGE_INTERNAL_EXPORT Lattice cover(const std::vector<PlacedMap>& inputs, double resolution);
 
 /// Log-odds are kept in steps of 1/1024 nat, so that sums are exact and their order does not matter.
 inline constexpr double kLogOddsPerNat = 1024.0;
@@ -57,6 +58,6 @@ struct LogOddsPatch {
 ///
 /// O(map cells + lattice cells in the bounding box of the map's known cells). Throws std::invalid_argument
 /// for an invalid grid or a transform that is not finite.
-LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice);
+GRIDMERGE_INTERNAL_EXPORT LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice);
 
 }  // namespace gridmerge::internal

@@ -59,7 +59,7 @@ void count_common(const PreparedMap& fixed, const PreparedMap& moving, Join& joi
 
 }  // namespace
 
-class Merger::State {
+class __attribute__((visibility("hidden"))) Merger::State {  // or it is as public as Merger
  public:
   explicit State(MergeOptions options) : options_(std::move(options)), groups_(options_.match) {
     validate(options_.match);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gridmerge/match/refine_pose.hpp"
+#include "internal_export.hpp"
 #include "merge/log_odds.hpp"
 
 namespace gridmerge::internal {
@@ -13,6 +14,7 @@ namespace gridmerge::internal {
 /// those of the two maps themselves. Throws std::invalid_argument when there is no fixed map, for an invalid
 /// map or a pose that is not finite, and when the fixed maps lie so far apart that their fusion would exceed
 /// 2^26 cells. Runs in the calling TBB arena; time as fuse() and refine_pose().
-RefinedPose refine_member(const std::vector<PlacedMap>& fixed, const PlacedMap& moving);
+GRIDMERGE_INTERNAL_EXPORT RefinedPose refine_member(const std::vector<PlacedMap>& fixed,
+                                                    const PlacedMap& moving);
 
 }  // namespace gridmerge::internal

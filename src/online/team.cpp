@@ -36,7 +36,7 @@ const char* name_of(RobotState state) {
   return "";
 }
 
-class Team::Worker {
+class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as public as Team
  public:
   Worker(TeamOptions options, OnAnswer on_answer)
       : options_(std::move(options)),

@@ -4,12 +4,13 @@
 #include <string>
 
 #include "gridmerge/similarity/distance_map.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
 /// A PNG of a distance map in gray: black is distance 0, the farther the lighter, and white is the farthest.
 /// Cells from which there is no distance are white too. A pixel a cell; a map of at most 40 cells a side is
 /// magnified, and each cell's distance is written in it ("inf" for none). O(cells).
-std::string distance_map_png(const DistanceMap& map);
+GRIDMERGE_INTERNAL_EXPORT std::string distance_map_png(const DistanceMap& map);
 
 }  // namespace gridmerge::internal

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gridmerge/merge/merge_result.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -21,7 +22,8 @@ std::string report_page(const std::vector<std::string>& names, const std::vector
 
 /// The same for a server that answers what the page asks: its data says that it is `live`, and the policy
 /// lets it talk to where it came from. Throws as report_page().
-std::string live_report_page(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
-                             const MergeResult& result);
+GRIDMERGE_INTERNAL_EXPORT std::string live_report_page(const std::vector<std::string>& names,
+                                                       const std::vector<OccupancyGrid>& maps,
+                                                       const MergeResult& result);
 
 }  // namespace gridmerge::internal

@@ -8,6 +8,7 @@
 
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/refine_pose.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -25,9 +26,9 @@ struct RefineRequest {
 
 /// Reads a request (docs/view.md) about one of `maps` maps. Throws std::invalid_argument, "fixed[1].map is no
 /// map: ...", for what it cannot use: coordinates beyond 1e7 m and angles beyond 100 rad, too. O(bytes).
-RefineRequest parse_refine_request(std::string_view text, std::size_t maps);
+GRIDMERGE_INTERNAL_EXPORT RefineRequest parse_refine_request(std::string_view text, std::size_t maps);
 
 /// The answer: one line of JSON, with its end.
-std::string refined_pose_json(const RefinedPose& pose);
+GRIDMERGE_INTERNAL_EXPORT std::string refined_pose_json(const RefinedPose& pose);
 
 }  // namespace gridmerge::internal

@@ -4,11 +4,12 @@
 #include <cstddef>
 
 #include "gridmerge/merge/merge_result.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
 /// Why `result.left_out[index]` was left out of a merge, as the end of a sentence that begins with its name.
 /// Throws std::out_of_range when there are fewer reasons.
-const char* explain_left_out(const MergeResult& result, std::size_t index);
+GRIDMERGE_INTERNAL_EXPORT const char* explain_left_out(const MergeResult& result, std::size_t index);
 
 }  // namespace gridmerge::internal

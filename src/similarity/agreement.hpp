@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -50,12 +51,13 @@ class AgreementCounter {
 };
 
 /// AgreementCounter for one pose and all cells. O(cells of moving).
-AgreementCounts count_agreement(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                const SE2& T_fixed_moving);
+GRIDMERGE_INTERNAL_EXPORT AgreementCounts count_agreement(const OccupancyGrid& fixed,
+                                                          const OccupancyGrid& moving,
+                                                          const SE2& T_fixed_moving);
 
 /// Share of the smaller map's known area that is known in both, in [0, 1], from what count_agreement found.
 /// O(cells of both).
-double measure_overlap(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                       const AgreementCounts& counts);
+GRIDMERGE_INTERNAL_EXPORT double measure_overlap(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                                 const AgreementCounts& counts);
 
 }  // namespace gridmerge::internal

@@ -8,6 +8,7 @@
 #include "gridmerge/similarity/distance_map.hpp"
 
 namespace gridmerge::internal {
+inline namespace multiversion {
 
 namespace {
 
@@ -245,4 +246,5 @@ CommonCells count_common(const std::uint8_t* a, const std::uint8_t* b, std::size
   return common;
 }
 
+}  // namespace multiversion
 }  // namespace gridmerge::internal

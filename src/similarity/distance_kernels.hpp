@@ -5,6 +5,7 @@
 #include <cstdint>
 
 namespace gridmerge::internal {
+inline namespace multiversion {
 
 // Steps of the Manhattan distance transform. It splits by direction: first along the columns, one row after
 // the other, then along the rows, for which kStripRows rows are laid side by side ("a strip": all rows' cells
@@ -61,4 +62,5 @@ struct CommonCells {
 /// Compares `count` cells of two maps where both are known (not 0).
 CommonCells count_common(const std::uint8_t* a, const std::uint8_t* b, std::size_t count);
 
+}  // namespace multiversion
 }  // namespace gridmerge::internal

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "internal_export.hpp"
 #include "similarity/wall_map.hpp"
 
 namespace gridmerge::internal {
@@ -119,6 +120,7 @@ class WallEvidence {
 double area_evidence(double agreement, double disagreement);
 
 /// At most `count` of the points, evenly spaced along the list.
-std::vector<WallPoint> draw_evenly(const std::vector<WallPoint>& points, std::size_t count);
+GRIDMERGE_INTERNAL_EXPORT std::vector<WallPoint> draw_evenly(const std::vector<WallPoint>& points,
+                                                             std::size_t count);
 
 }  // namespace gridmerge::internal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge {
@@ -12,13 +13,15 @@ struct KnownMoments {
 };
 
 /// O(cells).
-KnownMoments known_moments(const OccupancyGrid& map);
+GRIDMERGE_EXPORT KnownMoments known_moments(const OccupancyGrid& map);
 
 /// Root mean square, over the known cells of the moving map, of the distance between where two transforms of
 /// it put a cell [m]. Symmetric in the transforms. O(1).
-double rms_displacement(const KnownMoments& moving, const SE2& T_estimate, const SE2& T_truth);
+GRIDMERGE_EXPORT double rms_displacement(const KnownMoments& moving, const SE2& T_estimate,
+                                         const SE2& T_truth);
 
 /// The same for a single use. O(cells).
-double rms_displacement(const OccupancyGrid& moving, const SE2& T_estimate, const SE2& T_truth);
+GRIDMERGE_EXPORT double rms_displacement(const OccupancyGrid& moving, const SE2& T_estimate,
+                                         const SE2& T_truth);
 
 }  // namespace gridmerge

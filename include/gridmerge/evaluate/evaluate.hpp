@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gridmerge/evaluate/truth.hpp"
+#include "gridmerge/export.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/tree.hpp"
@@ -87,11 +88,11 @@ struct Evaluation {
 
 /// The files that evaluate() reads: each map of `truth` and its image (see map_files()), once each. Throws
 /// FileError when a map's YAML cannot be read.
-std::vector<std::filesystem::path> input_files(const Truth& truth);
+GRIDMERGE_EXPORT std::vector<std::filesystem::path> input_files(const Truth& truth);
 
 /// Matches every pair and negative and merges every set, one after the other, reading maps as it goes.
 /// Throws FileError when a map cannot be read, and std::runtime_error naming the maps when they cannot be
 /// compared.
-Evaluation evaluate(const Truth& truth, const EvaluateOptions& options = {});
+GRIDMERGE_EXPORT Evaluation evaluate(const Truth& truth, const EvaluateOptions& options = {});
 
 }  // namespace gridmerge

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/se2.hpp"
 
 namespace gridmerge {
@@ -52,20 +53,20 @@ struct TrueSet {
 /// FileError with "file:line: cause".
 
 /// Columns: fixed, moving, x, y, theta, tolerance; optional: tier, overlap (in [0, 1]).
-std::vector<TruePair> read_pairs(const std::filesystem::path& path);
+GRIDMERGE_EXPORT std::vector<TruePair> read_pairs(const std::filesystem::path& path);
 
 /// Columns: fixed, moving.
-std::vector<NegativePair> read_negatives(const std::filesystem::path& path);
+GRIDMERGE_EXPORT std::vector<NegativePair> read_negatives(const std::filesystem::path& path);
 
 /// Columns: set, map, x, y, theta, tolerance. Sets come in the order of their first line.
-std::vector<TrueSet> read_sets(const std::filesystem::path& path);
+GRIDMERGE_EXPORT std::vector<TrueSet> read_sets(const std::filesystem::path& path);
 
 /// The text of a ground-truth file, which reads back to the same values (numbers to the bit). Names are those
 /// of the maps, not their paths; throws std::invalid_argument for one with a tab or a line break.
-std::string format_pairs(const std::vector<TruePair>& pairs);
+GRIDMERGE_EXPORT std::string format_pairs(const std::vector<TruePair>& pairs);
 /// As format_pairs().
-std::string format_negatives(const std::vector<NegativePair>& negatives);
+GRIDMERGE_EXPORT std::string format_negatives(const std::vector<NegativePair>& negatives);
 /// As format_pairs().
-std::string format_sets(const std::vector<TrueSet>& sets);
+GRIDMERGE_EXPORT std::string format_sets(const std::vector<TrueSet>& sets);
 
 }  // namespace gridmerge

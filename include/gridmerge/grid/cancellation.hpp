@@ -5,10 +5,12 @@
 #include <functional>
 #include <stdexcept>
 
+#include "gridmerge/export.hpp"
+
 namespace gridmerge {
 
 /// What work ends with that was asked to stop.
-class Cancelled : public std::runtime_error {
+class GRIDMERGE_EXPORT Cancelled : public std::runtime_error {
  public:
   /// With a message that says so.
   Cancelled();
@@ -17,10 +19,11 @@ class Cancelled : public std::runtime_error {
 /// Runs `work` so that it ends with Cancelled soon after `cancelled` becomes true, from whichever thread. All
 /// long functions of the library look at it, in the threads too that they use. An exception of `work` is
 /// passed on.
-void with_cancellation(const std::atomic<bool>& cancelled, const std::function<void()>& work);
+GRIDMERGE_EXPORT void with_cancellation(const std::atomic<bool>& cancelled,
+                                        const std::function<void()>& work);
 
 /// For long loops of your own: throws Cancelled if the work they belong to was asked to stop.
 /// A few nanoseconds; without with_cancellation() it never throws.
-void throw_if_cancelled();
+GRIDMERGE_EXPORT void throw_if_cancelled();
 
 }  // namespace gridmerge

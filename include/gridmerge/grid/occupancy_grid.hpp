@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/se2.hpp"
 
 namespace gridmerge {
@@ -50,8 +51,8 @@ struct OccupancyGrid {
 };
 
 /// A grid of `width` x `height` cells, all of them `fill`.
-OccupancyGrid make_grid(int width, int height, double resolution, const SE2& origin = {},
-                        Cell fill = Cell::unknown);
+GRIDMERGE_EXPORT OccupancyGrid make_grid(int width, int height, double resolution, const SE2& origin = {},
+                                         Cell fill = Cell::unknown);
 
 /// How many cells of each value a map has.
 struct CellCounts {
@@ -64,11 +65,11 @@ struct CellCounts {
 };
 
 /// Number of cells of each value. O(cells).
-CellCounts count_cells(const OccupancyGrid& grid);
+GRIDMERGE_EXPORT CellCounts count_cells(const OccupancyGrid& grid);
 
 /// Throws std::invalid_argument, saying what is wrong, unless sizes are positive, the vectors' lengths fit
 /// them, and resolution and origin are finite (resolution also positive).
-void validate(const OccupancyGrid& grid);
+GRIDMERGE_EXPORT void validate(const OccupancyGrid& grid);
 
 /// A map, and the transform that takes its frame to the output's.
 struct PlacedMap {

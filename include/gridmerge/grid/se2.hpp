@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "gridmerge/export.hpp"
+
 namespace gridmerge {
 
 /// A point of the plane, in metres, in the frame that its context names.
@@ -26,22 +28,22 @@ struct SE2 {
 };
 
 /// The same angle [rad] in (-pi, pi].
-double normalize_angle(double angle);
+GRIDMERGE_EXPORT double normalize_angle(double angle);
 
 /// The angle of a line, which has no direction [rad]: the same in (-pi/2, pi/2].
-double undirected_angle(double angle);
+GRIDMERGE_EXPORT double undirected_angle(double angle);
 
 /// T_a_c = T_a_b * T_b_c.
-SE2 operator*(const SE2& T_a_b, const SE2& T_b_c);
+GRIDMERGE_EXPORT SE2 operator*(const SE2& T_a_b, const SE2& T_b_c);
 
 /// p_a = T_a_b * p_b.
-Point2 operator*(const SE2& T_a_b, const Point2& p_b);
+GRIDMERGE_EXPORT Point2 operator*(const SE2& T_a_b, const Point2& p_b);
 
 /// T_b_a.
-SE2 inverse(const SE2& T_a_b);
+GRIDMERGE_EXPORT SE2 inverse(const SE2& T_a_b);
 
 /// A transform for many points: its sine and cosine are computed once. To the bit as with the SE2.
-class ManyPointsTransform {
+class GRIDMERGE_EXPORT ManyPointsTransform {
  public:
   /// Takes points of frame b to frame a.
   explicit ManyPointsTransform(const SE2& T_a_b);

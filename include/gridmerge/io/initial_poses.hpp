@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/io/file_error.hpp"
 
@@ -24,9 +25,10 @@ struct InitialPose {
 /// Reads a tab-separated table whose first line names the columns: `map x y theta`, and optionally `sd` and
 /// `sd_theta`; metres and radians. Throws FileError that says "file:line: cause" for what it cannot use, a
 /// map named twice and deviations that are not positive among it.
-std::vector<InitialPose> read_initial_poses(const std::filesystem::path& path);
+GRIDMERGE_EXPORT std::vector<InitialPose> read_initial_poses(const std::filesystem::path& path);
 
 /// The same of the file's text.
-std::vector<InitialPose> parse_initial_poses(const std::filesystem::path& path, std::string_view text);
+GRIDMERGE_EXPORT std::vector<InitialPose> parse_initial_poses(const std::filesystem::path& path,
+                                                              std::string_view text);
 
 }  // namespace gridmerge

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/io/file_error.hpp"
 
@@ -86,12 +87,12 @@ struct LoadedMap {
 /// m, thresholds outside [0, 1] or crossed, YAML above 1 MiB, images with less data than their header
 /// promises (more is tolerated). Throws FileError. O(pixels); peak memory is the file and 3
 /// to 8 bytes a cell, of a progressive JPEG up to 6 more.
-LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options = {});
+GRIDMERGE_EXPORT LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// The files that load_map(path) reads: the YAML and its image, or a bare image alone. The image is not
 /// opened, and need not be there. Throws FileError for a YAML that load_map refuses. O(bytes of the YAML).
-std::vector<std::filesystem::path> map_files(const std::filesystem::path& path,
-                                             const LoadOptions& options = {});
+GRIDMERGE_EXPORT std::vector<std::filesystem::path> map_files(const std::filesystem::path& path,
+                                                              const LoadOptions& options = {});
 
 /// Writes the map for map_server: the YAML, and beside it the image, of the same name but for its ending
 /// `.pgm` (trinary: occupied 0, free 254, unknown 205; thresholds 0.65 and 0.196). `yaml_path` must end in
@@ -101,11 +102,11 @@ std::vector<std::filesystem::path> map_files(const std::filesystem::path& path,
 /// Both files take their places at one point of time, even if the program is killed. A link of such a name is
 /// replaced, not followed. Throws FileError, then the old files are there and nothing is left behind, or
 /// std::invalid_argument for a grid that `validate` refuses.
-void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
+GRIDMERGE_EXPORT void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
 
 /// Writes the map with its probabilities: mode `raw`, a pixel the occupancy in percent, 255 unknown. Loading
 /// gives the probabilities, rounded to a percent, and the cells that follow from them with thresholds 0.65
 /// and 0.196. Throws as save_map(), and std::invalid_argument for a grid without probabilities.
-void save_probability_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
+GRIDMERGE_EXPORT void save_probability_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);
 
 }  // namespace gridmerge

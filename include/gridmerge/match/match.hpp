@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match_result.hpp"
 #include "gridmerge/match/prepared_map.hpp"
@@ -30,13 +31,13 @@ struct SearchMethodName {
 };
 
 /// All of them.
-std::span<const SearchMethodName> search_methods();
+GRIDMERGE_EXPORT std::span<const SearchMethodName> search_methods();
 
 /// "exhaustive", ...
-const char* name_of(SearchMethod method);
+GRIDMERGE_EXPORT const char* name_of(SearchMethod method);
 
 /// The method of that name; none if there is none.
-std::optional<SearchMethod> search_method(std::string_view name);
+GRIDMERGE_EXPORT std::optional<SearchMethod> search_method(std::string_view name);
 
 /// How two maps are matched.
 struct MatchOptions {
@@ -53,17 +54,19 @@ struct MatchOptions {
 
 /// Finds how `moving` lies on `fixed`, searching every pose, and says whether to believe it.
 /// Throws std::invalid_argument for an invalid grid or option (see validate()).
-MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options = {});
+GRIDMERGE_EXPORT MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                   const MatchOptions& options = {});
 
 /// The same of maps that are matched with several others: of their known parts. Runs in the calling TBB
 /// arena, for which `options.threads` changes nothing; may be called by several threads at once.
-MatchResult match(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options = {});
+GRIDMERGE_EXPORT MatchResult match(const PreparedMap& fixed, const PreparedMap& moving,
+                                   const MatchOptions& options = {});
 
 /// The side of the cells in which two maps are compared [m]: the coarser map's, or a multiple of it for large
 /// maps.
-double working_cell(const PreparedMap& fixed, const PreparedMap& moving);
+GRIDMERGE_EXPORT double working_cell(const PreparedMap& fixed, const PreparedMap& moving);
 
 /// Throws std::invalid_argument for options that make no sense.
-void validate(const MatchOptions& options);
+GRIDMERGE_EXPORT void validate(const MatchOptions& options);
 
 }  // namespace gridmerge

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/se2.hpp"
 
 namespace gridmerge {
@@ -16,7 +17,7 @@ enum class Verdict {
 };
 
 /// The verdict's one word in every output: "refused" or "accepted".
-const char* name_of(Verdict verdict);
+GRIDMERGE_EXPORT const char* name_of(Verdict verdict);
 
 /// Why a pair was refused: what, were it otherwise, would let the best hypothesis be accepted.
 enum class Reason {
@@ -30,7 +31,7 @@ enum class Reason {
 };
 
 /// As outputs spell it: "ambiguous", "too_little_overlap", ...; "none" for an accepted pair.
-const char* name_of(Reason reason);
+GRIDMERGE_EXPORT const char* name_of(Reason reason);
 
 /// What speaks for a pose of two maps and against it. pose_figures() lists them with their meanings.
 struct PoseFigures {
@@ -70,7 +71,7 @@ struct PoseFigure {
 };
 
 /// All of them, in the order of PoseFigures.
-std::span<const PoseFigure> pose_figures();
+GRIDMERGE_EXPORT std::span<const PoseFigure> pose_figures();
 
 /// One way in which the moving map may lie on the fixed one.
 struct Hypothesis {
@@ -97,6 +98,6 @@ struct MatchResult {
 };
 
 /// The result of the same two maps when the other one is called fixed. O(hypotheses).
-MatchResult inverse(MatchResult result);
+GRIDMERGE_EXPORT MatchResult inverse(MatchResult result);
 
 }  // namespace gridmerge

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
@@ -32,10 +33,11 @@ struct JointMeasure {
 /// MatchOptions; the result does not depend on it. Throws std::invalid_argument for no moving map, as
 /// SimilarityMeter does, and for a map that lies on none of the others (lie_on_each_other()), naming it by
 /// its place. Per moving map the time of match() and of a Delta.
-JointMeasure measure_maps(const OccupancyGrid& fixed, std::span<const PlacedMap> moving, int threads = 0);
+GRIDMERGE_EXPORT JointMeasure measure_maps(const OccupancyGrid& fixed, std::span<const PlacedMap> moving,
+                                           int threads = 0);
 
 /// The same of a single moving map.
-PoseMeasure measure_pose(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& T_fixed_moving,
-                         int threads = 0);
+GRIDMERGE_EXPORT PoseMeasure measure_pose(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                          const SE2& T_fixed_moving, int threads = 0);
 
 }  // namespace gridmerge

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge {
@@ -15,7 +16,7 @@ struct WallMap;
 
 /// A map with all that matches of it have in common, so that it is worked out once and not for every other
 /// map that it is matched with. May be used by several threads at once.
-class PreparedMap {
+class GRIDMERGE_EXPORT PreparedMap {
  public:
   /// Copies what is known of `grid`. Throws std::invalid_argument for an invalid grid (see validate()).
   explicit PreparedMap(const OccupancyGrid& grid);
@@ -37,6 +38,6 @@ class PreparedMap {
 
 /// Orders maps by what they hold, not by where they come from: by their known area, and what differs between
 /// maps of the same area. Of two maps the smaller is searched in the larger one.
-bool is_smaller(const PreparedMap& a, const PreparedMap& b);
+GRIDMERGE_EXPORT bool is_smaller(const PreparedMap& a, const PreparedMap& b);
 
 }  // namespace gridmerge

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match_result.hpp"
 #include "gridmerge/search/random_walk.hpp"
@@ -45,7 +46,7 @@ struct RandomWalkMatchOptions {
 /// agreement and disagreement are counted on the fixed map's lattice; walks that end within ten cells of each
 /// other are one hypothesis. Throws std::invalid_argument for invalid grids or options, and for a start pose
 /// that puts the maps apart (lie_on_each_other()).
-MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                 const RandomWalkMatchOptions& options = {});
+GRIDMERGE_EXPORT MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                                  const RandomWalkMatchOptions& options = {});
 
 }  // namespace gridmerge

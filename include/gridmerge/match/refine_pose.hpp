@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/match/prepared_map.hpp"
@@ -35,10 +36,12 @@ struct RefinedPose {
 /// Throws std::invalid_argument for a start that is not finite. Neither pose nor figures depend on which map
 /// is called fixed, but for rounding, nor on the number of threads. Runs in the calling TBB arena; about
 /// twice the time of match().
-RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_start);
+GRIDMERGE_EXPORT RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving,
+                                         const SE2& T_start);
 
 /// What the engine says of a pose as it stands: its score, its figures, and the probability that
 /// refine_pose() would give it. Argument, errors, threads and time as there.
-Hypothesis judge_pose(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_fixed_moving);
+GRIDMERGE_EXPORT Hypothesis judge_pose(const PreparedMap& fixed, const PreparedMap& moving,
+                                       const SE2& T_fixed_moving);
 
 }  // namespace gridmerge

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge {
@@ -37,6 +38,6 @@ struct FusedMap {
 /// the result does not depend on the inputs' order. Throws std::invalid_argument for no input, an invalid
 /// grid, a transform that is not finite, a resolution that is not positive, and a result of more than 2^28
 /// cells. O(cells of the inputs + cells of the result).
-FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution);
+GRIDMERGE_EXPORT FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution);
 
 }  // namespace gridmerge

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/merge/merge_result.hpp"
@@ -21,7 +22,7 @@ struct KnownPose {
 
 /// Throws std::invalid_argument for a pose that is not finite or farther off than 10^7 m, or a deviation that
 /// is less than 10^-6; those of a fixed pose may be 0.
-void validate(const KnownPose& known);
+GRIDMERGE_EXPORT void validate(const KnownPose& known);
 
 /// A known pose that a merge did not follow, and why.
 struct UnusedPose {
@@ -46,9 +47,9 @@ struct UnusedPose {
 /// contradict each other cannot be said, and it is the later one. A pose is believed within three standard
 /// deviations, and the tolerance that bent maps need. Arguments as of merge(), with what it returned.
 /// O(cells), and O(known^2) a component.
-std::vector<UnusedPose> find_unused_poses(const std::vector<OccupancyGrid>& maps,
-                                          const std::vector<std::optional<KnownPose>>& known_poses,
-                                          const MergeResult& result);
+GRIDMERGE_EXPORT std::vector<UnusedPose> find_unused_poses(
+    const std::vector<OccupancyGrid>& maps, const std::vector<std::optional<KnownPose>>& known_poses,
+    const MergeResult& result);
 
 /// Two maps whose poses were fixed, and which alone would surely lie elsewhere.
 struct ContradictedFix {
@@ -60,8 +61,8 @@ struct ContradictedFix {
 /// The fixed poses that merge() followed against what the maps say: of each pair that the maps' own match
 /// accepts elsewhere, beyond the tolerance that bent maps need. In the order of the joins. Arguments as of
 /// merge(), with what it returned. O(cells + joins).
-std::vector<ContradictedFix> find_contradicted_fixes(const std::vector<OccupancyGrid>& maps,
-                                                     const std::vector<std::optional<KnownPose>>& known_poses,
-                                                     const MergeResult& result);
+GRIDMERGE_EXPORT std::vector<ContradictedFix> find_contradicted_fixes(
+    const std::vector<OccupancyGrid>& maps, const std::vector<std::optional<KnownPose>>& known_poses,
+    const MergeResult& result);
 
 }  // namespace gridmerge

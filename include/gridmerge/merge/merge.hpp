@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/merge/known_pose.hpp"
@@ -45,7 +46,7 @@ struct MergeOptions {
 /// of a component is its first member's and `joins` are in the order (0, 1), (0, 2), ... Throws
 /// std::invalid_argument for an invalid grid, option or known pose, naming the map by its index, and when a
 /// merged map would exceed 2^28 cells. k * (k - 1) / 2 matches for k maps.
-MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
-                  const std::vector<std::optional<KnownPose>>& known_poses = {});
+GRIDMERGE_EXPORT MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
+                                   const std::vector<std::optional<KnownPose>>& known_poses = {});
 
 }  // namespace gridmerge

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/merge/fuse.hpp"
@@ -22,7 +23,7 @@ enum class JoinOutcome {
 };
 
 /// As outputs spell it: "refused", "accepted", "rescued", "rejected", "known".
-const char* name_of(JoinOutcome outcome);
+GRIDMERGE_EXPORT const char* name_of(JoinOutcome outcome);
 
 /// A comparison of two maps, or up the tree of two groups of maps: then said of the first map of each.
 struct Join {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/merge/merge.hpp"
 
 namespace gridmerge {
@@ -13,7 +14,7 @@ namespace gridmerge {
 /// merge() for maps that come one after the other, or grow: pairs that have not changed are not matched
 /// again. The result is the same as that of merge() with all the maps that are in it, in the order in which
 /// they were added.
-class Merger {
+class GRIDMERGE_EXPORT Merger {
  public:
   /// What add() calls a map; it is not given again when the map is removed.
   using MapId = std::size_t;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
@@ -32,7 +33,7 @@ struct TreeOptions {
 /// comparisons, which is that of `joins`. Throws std::invalid_argument for an invalid grid or option, naming
 /// the map by its index, and when a merged map would exceed 2^28 cells.
 /// At most (k - 1)^2 comparisons for k maps, k * (k - 1) / 2 when nothing joins.
-MergeResult merge_up_tree(const std::vector<OccupancyGrid>& maps, const Matcher& matcher,
-                          const TreeOptions& options = {});
+GRIDMERGE_EXPORT MergeResult merge_up_tree(const std::vector<OccupancyGrid>& maps, const Matcher& matcher,
+                                           const TreeOptions& options = {});
 
 }  // namespace gridmerge

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/online/team_answer.hpp"
 
@@ -29,7 +30,7 @@ struct TeamOptions {
 };
 
 /// Throws std::invalid_argument for options that make no sense.
-void validate(const TeamOptions& options);
+GRIDMERGE_EXPORT void validate(const TeamOptions& options);
 
 /// Robots that map while they are heard, come and go, and know nothing of each other's frames.
 ///
@@ -40,7 +41,7 @@ void validate(const TeamOptions& options);
 /// Answers are steady. A robot's pose follows the evidence, but a robot that was placed moves elsewhere only
 /// when that is confirmed (TeamOptions::confirmations, TeamOptions::quiet), and each jump is told. A
 /// component's frame is that of the robot that was heard first, for as long as it lives.
-class Team {
+class GRIDMERGE_EXPORT Team {
  public:
   /// Is given each answer, by the team's thread, one after the other; must not throw, nor call the team's
   /// destructor.

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/match_result.hpp"
@@ -26,7 +27,7 @@ enum class RobotState {
 };
 
 /// As outputs spell it: "waiting", "placed", "left_out".
-const char* name_of(RobotState state);
+GRIDMERGE_EXPORT const char* name_of(RobotState state);
 
 /// A robot of a team.
 struct RobotStatus {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/match/measure.hpp"
 #include "gridmerge/merge/merge_result.hpp"
@@ -17,21 +18,23 @@ namespace gridmerge {
 // std::invalid_argument, since JSON cannot say it.
 
 /// What `gridmerge match --json` prints: one line, with its end.
-std::string match_json(const std::string& fixed, const std::string& moving, const MatchResult& result);
+GRIDMERGE_EXPORT std::string match_json(const std::string& fixed, const std::string& moving,
+                                        const MatchResult& result);
 
 /// What `gridmerge measure --json` prints: one line, with its end. For one moving map its measures, for
 /// several omega of all and the measures of each on the fixed one. `moving[i]` is what to call moving map i.
 /// Throws std::out_of_range when there are fewer names than maps.
-std::string measure_json(const std::string& fixed, const std::vector<std::string>& moving,
-                         const JointMeasure& measure, double c_lock);
+GRIDMERGE_EXPORT std::string measure_json(const std::string& fixed, const std::vector<std::string>& moving,
+                                          const JointMeasure& measure, double c_lock);
 
 /// `transforms.json` of a merge, indented: all that there is to say of it but the maps' cells, the order of
 /// the maps included, and no times, so that the same merge gives the same bytes. `names[i]` is what to call
 /// map i. Throws std::out_of_range when there are fewer names than maps.
-std::string transforms_json(const std::vector<std::string>& names, const MergeResult& result);
+GRIDMERGE_EXPORT std::string transforms_json(const std::vector<std::string>& names,
+                                             const MergeResult& result);
 
 /// The file of a component's map beside transforms.json, by its place in the result: merged.yaml,
 /// merged_2.yaml, ...
-std::string component_file(std::size_t component);
+GRIDMERGE_EXPORT std::string component_file(std::size_t component);
 
 }  // namespace gridmerge

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 
@@ -24,17 +25,18 @@ struct MergeRecord {
 /// to make sense with the others, angles lie in (-pi, pi], each map is in one place. Keys that it does not
 /// know are passed over. `file` is what to call it. Throws FileError that says what is wrong where:
 /// "file: joins[2].transform.x is no number". O(bytes).
-MergeRecord parse_transforms(const std::filesystem::path& file, std::string_view text);
+GRIDMERGE_EXPORT MergeRecord parse_transforms(const std::filesystem::path& file, std::string_view text);
 
 /// The same of `directory`/transforms.json. Throws FileError also when there is none, or it exceeds 256 MiB.
-MergeRecord read_merge_record(const std::filesystem::path& directory);
+GRIDMERGE_EXPORT MergeRecord read_merge_record(const std::filesystem::path& directory);
 
 /// Fuses the maps of every component anew, at the resolutions of the merged maps that lie in `directory`,
 /// which gives what merge() gave if the maps are the same. `maps[i]` is map i of the record, with as many
 /// maps as names. Returns the components, ascending, whose file holds other cells: it or a map has been
 /// changed since. Throws FileError for a merged map that cannot be read, or not be fused again. Time as
 /// fuse().
-std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<OccupancyGrid>& maps,
-                                    const std::filesystem::path& directory);
+GRIDMERGE_EXPORT std::vector<std::size_t> fuse_again(MergeRecord& record,
+                                                     const std::vector<OccupancyGrid>& maps,
+                                                     const std::filesystem::path& directory);
 
 }  // namespace gridmerge

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
@@ -32,7 +33,7 @@ struct PreviewColours {
 
 /// The colour of input map i, of its walls. The first six are distinct to colour-blind eyes too; further maps
 /// get darker and lighter shades of them.
-Colour map_colour(std::size_t map);
+GRIDMERGE_EXPORT Colour map_colour(std::size_t map);
 
 /// A PNG that shows a merge: each component with its maps in their own colours, what they share and where
 /// they disagree, a scale bar in metres, and the colours' meaning; below, the maps that were left out, each
@@ -41,7 +42,7 @@ Colour map_colour(std::size_t map);
 /// folders that all of them lie in are not shown. `maps` and
 /// `result` as given to and returned by merge(). Throws std::out_of_range when there are fewer names than
 /// maps.
-std::string preview_png(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
-                        const MergeResult& result);
+GRIDMERGE_EXPORT std::string preview_png(const std::vector<std::string>& names,
+                                         const std::vector<OccupancyGrid>& maps, const MergeResult& result);
 
 }  // namespace gridmerge

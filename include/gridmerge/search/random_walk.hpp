@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 
@@ -84,19 +85,22 @@ struct RandomWalkResult {
 /// pose that puts the maps too far apart to be measured has all distances undefined. Throws
 /// std::invalid_argument for invalid grids and maps that are too large (see SimilarityMeter). O(poses)
 /// measurements.
-std::vector<MeasuredPose> measure_poses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                        std::span<const SE2> poses);
+GRIDMERGE_EXPORT std::vector<MeasuredPose> measure_poses(const OccupancyGrid& fixed,
+                                                         const OccupancyGrid& moving,
+                                                         std::span<const SE2> poses);
 
 /// Evenly spaced poses from one to another, both included: the landscape along a cut when they are measured.
 /// The centre of the moving map's known rectangle goes straight, and the map turns the shorter way. Throws
 /// std::invalid_argument for an invalid grid, for poses that are not finite, and for a count below 2.
-std::vector<SE2> poses_between(const OccupancyGrid& moving, const SE2& from, const SE2& to, int count);
+GRIDMERGE_EXPORT std::vector<SE2> poses_between(const OccupancyGrid& moving, const SE2& from, const SE2& to,
+                                                int count);
 
 /// The start poses in the order rotation, row, column, with their measures, from which Delta follows for any
 /// c_lock: measure_poses() of them. Throws std::invalid_argument also for options that make no sense, and for
 /// more than 10^6 poses.
-std::vector<MeasuredPose> measure_start_poses(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                              const StartPoseOptions& options = {});
+GRIDMERGE_EXPORT std::vector<MeasuredPose> measure_start_poses(const OccupancyGrid& fixed,
+                                                               const OccupancyGrid& moving,
+                                                               const StartPoseOptions& options = {});
 
 /// The adaptive random walk of Birk & Carpin 2006 (algorithm 1) from one pose. It minimises Delta = psi +
 /// c_lock * (dis - agr). Proposals are normal; their mean and covariance are those of the steps between the
@@ -122,12 +126,12 @@ std::vector<MeasuredPose> measure_start_poses(const OccupancyGrid& fixed, const 
 ///
 /// The same seed gives the same walk on the same machine. Throws std::invalid_argument for invalid grids,
 /// options or start. O(proposals) measurements.
-RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& start,
-                             const RandomWalkOptions& options = {});
+GRIDMERGE_EXPORT RandomWalkResult random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                              const SE2& start, const RandomWalkOptions& options = {});
 
 /// Throws std::invalid_argument, saying what is wrong, for options that make no sense.
-void validate(const RandomWalkOptions& options);
+GRIDMERGE_EXPORT void validate(const RandomWalkOptions& options);
 /// Throws std::invalid_argument, saying what is wrong, for options that make no sense.
-void validate(const StartPoseOptions& options);
+GRIDMERGE_EXPORT void validate(const StartPoseOptions& options);
 
 }  // namespace gridmerge

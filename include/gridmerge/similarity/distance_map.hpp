@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge {
@@ -31,7 +32,7 @@ struct DistanceMap {
 /// Algorithm 2 of the paper, with its two passes split by direction: both ways along the columns, then both
 /// ways along the rows, sixteen of which go at a time. Throws std::invalid_argument if width + height >
 /// kMaxDistanceMapSides. O(cells); vectorised.
-DistanceMap make_distance_map(const OccupancyGrid& grid, Cell value);
+GRIDMERGE_EXPORT DistanceMap make_distance_map(const OccupancyGrid& grid, Cell value);
 
 /// Algorithm 2 of the paper to look at: what its two passes leave.
 struct DistanceMapPasses {
@@ -42,6 +43,6 @@ struct DistanceMapPasses {
 
 /// The passes as the paper writes them, cell by cell; `backward` equals make_distance_map(), which is ten
 /// times as fast. The upper row is the last one: y points up. Throws as make_distance_map(). O(cells).
-DistanceMapPasses trace_distance_map(const OccupancyGrid& grid, Cell value);
+GRIDMERGE_EXPORT DistanceMapPasses trace_distance_map(const OccupancyGrid& grid, Cell value);
 
 }  // namespace gridmerge

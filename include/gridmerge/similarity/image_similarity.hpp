@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge {
@@ -23,13 +24,13 @@ namespace gridmerge {
 /// there. Symmetric for maps of one size and origin under the identity. Throws std::invalid_argument for
 /// invalid grids, resolutions that differ by more than 100 times, sides of more than a million cells, and a
 /// transform that is not finite or puts the maps that far apart. O(cells of the fixed map).
-std::int64_t count_equal_cells(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                               const SE2& T_fixed_moving);
+GRIDMERGE_EXPORT std::int64_t count_equal_cells(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                                const SE2& T_fixed_moving);
 
 /// omega for k maps (eq. 3): cells at which all of them have the same value, unknown included. The maps must
 /// be of one size; resolutions and origins are not looked at. Every cell counts for a single map, none for no
 /// map. Throws std::invalid_argument if sizes differ. O(k * cells).
-std::int64_t count_equal_cells(std::span<const OccupancyGrid> maps);
+GRIDMERGE_EXPORT std::int64_t count_equal_cells(std::span<const OccupancyGrid> maps);
 
 /// d(m1, m2, c) (algorithm 3, divided by the number of cells): the mean over the cells of m1 with value c of
 /// the Manhattan distance to m2's nearest cell with value c.
@@ -81,14 +82,14 @@ struct CommonClasses {
 
 /// Whether `a` is the better pose of the two: fewer undefined distances (which count nothing, and would
 /// reward a pose at which a class is lost), then the smaller Delta.
-bool is_better(const ImageSimilarity& a, const ImageSimilarity& b, double c_lock);
+GRIDMERGE_EXPORT bool is_better(const ImageSimilarity& a, const ImageSimilarity& b, double c_lock);
 
 /// Measures poses of one pair of maps. The fixed map's distance maps are made once; a pose then costs the
 /// moving map's turning, its two distance maps and the sums, in memory that is kept from pose to pose. Only
 /// the rectangle of known cells of either map is touched, which changes nothing in the results.
 ///
 /// Copies share what belongs to the maps and have memory of their own: one copy a thread.
-class SimilarityMeter {
+class GRIDMERGE_EXPORT SimilarityMeter {
  public:
   /// Copies what it needs of the maps. Throws std::invalid_argument for an invalid grid, for resolutions that
   /// differ by more than 100 times, and unless width + height of the fixed map's known rectangle and one and
@@ -121,7 +122,7 @@ class SimilarityMeter {
 };
 
 /// The same for a single pose.
-ImageSimilarity measure_similarity(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                   const SE2& T_fixed_moving);
+GRIDMERGE_EXPORT ImageSimilarity measure_similarity(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                                    const SE2& T_fixed_moving);
 
 }  // namespace gridmerge

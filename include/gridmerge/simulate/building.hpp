@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge {
@@ -28,13 +29,13 @@ enum class BuildingKind {
 };
 
 /// All kinds, in the order above.
-std::span<const BuildingKind> building_kinds();
+GRIDMERGE_EXPORT std::span<const BuildingKind> building_kinds();
 
 /// As the command line and Python spell it.
-const char* name_of(BuildingKind kind);
+GRIDMERGE_EXPORT const char* name_of(BuildingKind kind);
 
 /// The kind of that name; none if there is none.
-std::optional<BuildingKind> building_kind(std::string_view name);
+GRIDMERGE_EXPORT std::optional<BuildingKind> building_kind(std::string_view name);
 
 /// A straight edge that stops a laser beam. Metres, in the building's frame.
 struct Edge {
@@ -59,10 +60,10 @@ inline constexpr double kMaxBuildingSide = 500.0;  ///< [m]
 /// An invented building of about `width` x `height` metres. The same arguments give the same building.
 /// Throws std::invalid_argument for sides outside [kMinBuildingSide, kMaxBuildingSide]. O(area); O(area^2)
 /// for an arena, a quarter of a second at the largest.
-Building make_building(BuildingKind kind, double width, double height, std::uint64_t seed);
+GRIDMERGE_EXPORT Building make_building(BuildingKind kind, double width, double height, std::uint64_t seed);
 
 /// The building as a map in its own frame, `resolution` metres a cell: edges occupied, floor that can be
 /// reached free, the rest unknown. Throws std::invalid_argument unless resolution is in [0.01, 1]. O(cells).
-OccupancyGrid draw_building(const Building& building, double resolution);
+GRIDMERGE_EXPORT OccupancyGrid draw_building(const Building& building, double resolution);
 
 }  // namespace gridmerge

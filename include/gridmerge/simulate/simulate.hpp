@@ -9,13 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/simulate/building.hpp"
 
 namespace gridmerge {
 
 /// A scanning laser range finder.
-struct RangeFinder {
+struct GRIDMERGE_EXPORT RangeFinder {
   double field_of_view = 4.71238898038469;    ///< [rad], about the heading: 270 degrees
   double angular_step = 0.00872664625997165;  ///< between two beams [rad]: half a degree
   double range = 8.0;                         ///< [m]: what is farther gives no echo
@@ -115,18 +116,18 @@ struct Simulation {
 /// std::invalid_argument, saying what is wrong, for options out of range, a building in which no robot can
 /// stand, starts where none can, and an overlap that cannot be had. O(robots * way * beams), and some ten
 /// times the planning where an overlap is asked for.
-Simulation simulate(const SimulateOptions& options);
+GRIDMERGE_EXPORT Simulation simulate(const SimulateOptions& options);
 
 /// The map of one robot that goes along a given way: straight from corner to corner, turning on the spot. Of
 /// the options those count that say how a robot maps: `sensor`, `robot_radius`, `scan_every`, `drift`,
 /// `clutter`, `resolution`, `tidy` and `seed`. `way` is in the building's frame [m]. Throws
 /// std::invalid_argument, saying what is wrong, for such options out of range, a way without a point, one
 /// that goes through a wall, and a start where no robot can stand. O(way * beams).
-SimulatedMap simulate_way(const Building& building, std::span<const Point2> way,
-                          const SimulateOptions& options);
+GRIDMERGE_EXPORT SimulatedMap simulate_way(const Building& building, std::span<const Point2> way,
+                                           const SimulateOptions& options);
 
 /// The options for one robot in another building of the same kind, a different one for each `number` from 0
 /// on: its map is a negative.
-SimulateOptions elsewhere(SimulateOptions options, int number);
+GRIDMERGE_EXPORT SimulateOptions elsewhere(SimulateOptions options, int number);
 
 }  // namespace gridmerge
