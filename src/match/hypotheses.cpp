@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "match/drawn_walls.hpp"
 #include "similarity/wall_lines.hpp"
 
 namespace gridmerge::internal {
@@ -54,8 +55,8 @@ ComparedMaps::ComparedMaps(const PreparedMap& fixed_map, const PreparedMap& movi
       moving(moving_map.known()),
       cell(working_cell(fixed_map, moving_map)),
       smaller_area(std::min(known_area(fixed_map), known_area(moving_map))),
-      fixed_walls(fixed_map.walls(cell)),
-      moving_walls(moving_map.walls(cell)) {}
+      fixed_walls(DrawnWalls::of(fixed_map, cell)),
+      moving_walls(DrawnWalls::of(moving_map, cell)) {}
 
 SE2 to_map_frames(const SE2& T_cells, const WallMap& fixed, const WallMap& moving) {
   const SE2 T_metres{T_cells.x * fixed.cell, T_cells.y * fixed.cell, T_cells.theta};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "match/drawn_walls.hpp"
 #include "match/looks.hpp"
 #include "similarity/lattice_frames.hpp"
 
@@ -79,8 +80,8 @@ void weigh_among_all(Hypothesis& pose, const ComparedMaps& maps) {
 
 double displacement(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_a, const SE2& T_b) {
   const double cell = working_cell(fixed, moving);
-  const WallMap& fixed_walls = fixed.walls(cell);
-  const WallMap& moving_walls = moving.walls(cell);
+  const WallMap& fixed_walls = DrawnWalls::of(fixed, cell);
+  const WallMap& moving_walls = DrawnWalls::of(moving, cell);
   return cell * make_pose_metric(moving_walls)
                     .displacement(to_cells(T_a, fixed_walls, moving_walls),
                                   to_cells(T_b, fixed_walls, moving_walls));

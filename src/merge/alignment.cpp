@@ -6,6 +6,7 @@
 #include <set>
 
 #include "gridmerge/match/match.hpp"
+#include "match/drawn_walls.hpp"
 #include "merge/pose_problem.hpp"
 #include "merge/wall_error.hpp"
 
@@ -74,8 +75,9 @@ void add_walls(const std::vector<AlignedMap>& maps, const RelativePose& relative
                 std::make_unique<WallError>(seen_walls, maps[seen].extent.centre, walls,
                                             maps[seeing].extent.centre, sd));
   };
-  add(relative.fixed, relative.moving, fixed.walls(cell), moving.walls(cell));
-  add(relative.moving, relative.fixed, moving.walls(cell), fixed.walls(cell));
+  const WallMap &fixed_walls = DrawnWalls::of(fixed, cell), &moving_walls = DrawnWalls::of(moving, cell);
+  add(relative.fixed, relative.moving, fixed_walls, moving_walls);
+  add(relative.moving, relative.fixed, moving_walls, fixed_walls);
 }
 
 }  // namespace
