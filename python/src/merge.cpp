@@ -91,19 +91,13 @@ nb::bytes preview(const Merged& merged, const std::vector<nb::bytes>& names) {
 }
 
 void bind_results(nb::module_& module) {
-  nb::class_<Join>(module, "Join")
+  nb::class_<Join, PairPose>(module, "Join")
       .def_ro("fixed", &Join::fixed)
       .def_ro("moving", &Join::moving)
       .def_ro("match", &Join::match)
       .def_prop_ro("outcome", [](const Join& join) { return name_of(join.outcome); })
       .def_prop_ro("used", &Join::used)
-      .def_prop_ro("transform", [](const Join& join) { return to_pose(join.T_fixed_moving); })
-      .def_ro("probability", &Join::probability)
-      .def_prop_ro("reason", [](const Join& join) { return name_of(join.reason()); })
-      .def_ro("acceptance_index", &Join::acceptance_index)
-      .def_ro("agreement", &Join::agreement)
-      .def_ro("disagreement", &Join::disagreement)
-      .def_ro("overlap", &Join::overlap);
+      .def_prop_ro("reason", [](const Join& join) { return name_of(join.reason()); });
   nb::class_<PoseDeviation>(module, "PoseDeviation")
       .def_ro("position", &PoseDeviation::position)
       .def_ro("theta", &PoseDeviation::theta);

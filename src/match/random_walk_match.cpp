@@ -13,7 +13,7 @@
 
 #include "grid/parallel.hpp"
 #include "gridmerge/similarity/lattice.hpp"
-#include "similarity/agreement.hpp"
+#include "match/pair_pose.hpp"
 
 namespace gridmerge {
 
@@ -142,12 +142,9 @@ MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid
   const RandomWalkResult& best = *ranked.front();
   result.hypotheses = list_distinct(ranked, fixed, moving, options.max_hypotheses);
   result.T_fixed_moving = best.T_fixed_moving;
-  result.acceptance_index = best.similarity.acceptance_index();
-  result.probability = result.acceptance_index;
-  result.agreement = best.similarity.agreement;
-  result.disagreement = best.similarity.disagreement;
   // The counts are in cells of the fixed map.
-  result.overlap = measure_overlap(moving, fixed, {result.agreement, result.disagreement});
+  set_common({best.similarity.agreement, best.similarity.disagreement}, moving, fixed, result);
+  result.probability = result.acceptance_index;
   // Without free or without occupied cells in both maps every pose at which they touch has a perfect index.
   const bool comparable = result.agreement + result.disagreement >= options.least_common_cells &&
                           best.similarity.undefined_terms() == 0;

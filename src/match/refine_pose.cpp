@@ -7,6 +7,7 @@
 
 #include "match/drawn_walls.hpp"
 #include "match/looks.hpp"
+#include "match/pair_pose.hpp"
 #include "similarity/lattice_frames.hpp"
 
 namespace gridmerge {
@@ -99,20 +100,15 @@ RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, con
   const Hypothesis start = judge.judge(T_start_cells);
   Hypothesis best = best_around(start, T_start_cells, maps, judge);
 
-  RefinedPose refined{.T_fixed_moving = T_start};
+  RefinedPose refined;
   refined.start_score = start.score;
   refined.score = best.score;
-  SE2 T = T_start_maps;
-  if (refined.score > refined.start_score) {
-    T = best.T_fixed_moving;
-    refined.T_fixed_moving = swapped ? inverse(T) : T;
-    refined.moved = displacement(fixed, moving, T_start, refined.T_fixed_moving);
-  }
-  const AgreementCounts common = count_agreement(maps.fixed, maps.moving, T);
-  refined.acceptance_index = common.acceptance_index();
-  refined.agreement = common.agreement;
-  refined.disagreement = common.disagreement;
-  refined.overlap = measure_overlap(maps.fixed, maps.moving, common);
+  const bool is_better = refined.score > refined.start_score;
+  const SE2 T_maps = is_better ? best.T_fixed_moving : T_start_maps;
+  refined.T_fixed_moving = T_maps;
+  count_common(maps.fixed, maps.moving, refined);
+  refined.T_fixed_moving = !is_better ? T_start : swapped ? inverse(T_maps) : T_maps;
+  if (is_better) refined.moved = displacement(fixed, moving, T_start, refined.T_fixed_moving);
   if (best.score > 0.0) weigh_among_all(best, maps);
   refined.probability = best.probability;
   return refined;

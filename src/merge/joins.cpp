@@ -36,12 +36,7 @@ Join make_join(std::size_t fixed, std::size_t moving, MatchResult match) {
   join.moving = moving;
   join.match = std::move(match);
   join.outcome = join.match.verdict == Verdict::accepted ? JoinOutcome::accepted : JoinOutcome::refused;
-  join.T_fixed_moving = join.match.T_fixed_moving;
-  join.probability = join.match.probability;
-  join.acceptance_index = join.match.acceptance_index;
-  join.agreement = join.match.agreement;
-  join.disagreement = join.match.disagreement;
-  join.overlap = join.match.overlap;
+  static_cast<PairPose&>(join) = join.match;
   return join;
 }
 

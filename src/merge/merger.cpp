@@ -13,6 +13,7 @@
 #include "grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/prepared_map.hpp"
+#include "match/pair_pose.hpp"
 #include "merge/arrangement.hpp"
 #include "merge/candidates.hpp"
 #include "merge/component.hpp"
@@ -22,7 +23,6 @@
 #include "merge/joins.hpp"
 #include "merge/pair_matches.hpp"
 #include "merge/prior.hpp"
-#include "similarity/agreement.hpp"
 
 namespace gridmerge {
 
@@ -42,20 +42,6 @@ struct Input {
   PreparedMap prepared;
   Coverage coverage;
 };
-
-/// The figures of a join whose pose is not the pair's best hypothesis.
-void count_common(const PreparedMap& fixed, const PreparedMap& moving, Join& join) {
-  // As match() does it, so that they do not depend on which map is called fixed.
-  const bool swapped = is_smaller(fixed, moving);
-  const OccupancyGrid &larger = (swapped ? moving : fixed).known(),
-                      &smaller = (swapped ? fixed : moving).known();
-  const AgreementCounts counts =
-      count_agreement(larger, smaller, swapped ? inverse(join.T_fixed_moving) : join.T_fixed_moving);
-  join.acceptance_index = counts.acceptance_index();
-  join.agreement = counts.agreement;
-  join.disagreement = counts.disagreement;
-  join.overlap = measure_overlap(larger, smaller, counts);
-}
 
 }  // namespace
 

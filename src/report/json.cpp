@@ -19,19 +19,17 @@ Json member_json(const std::string& name, const Member& member) {
 }
 
 Json join_json(const std::string& fixed, const std::string& moving, const Join& join) {
-  return {{"fixed", fixed},
-          {"moving", moving},
-          {"transform", transform_json(join.T_fixed_moving)},
-          {"verdict", name_of(join.verdict())},
-          {"probability", number_json(join.probability)},
-          {"outcome", name_of(join.outcome)},
-          {"reason", reason_json(join.reason())},
-          {"by_themselves", own_verdict_json(join.match)},
-          {"acceptance_index", number_json(join.acceptance_index)},
-          {"agreement", join.agreement},
-          {"disagreement", join.disagreement},
-          {"overlap", number_json(join.overlap)},
-          {"hypotheses", hypotheses_json(join)}};
+  Json json{{"fixed", fixed},
+            {"moving", moving},
+            {"transform", transform_json(join.T_fixed_moving)},
+            {"verdict", name_of(join.verdict())},
+            {"probability", number_json(join.probability)},
+            {"outcome", name_of(join.outcome)},
+            {"reason", reason_json(join.reason())},
+            {"by_themselves", own_verdict_json(join.match)}};
+  json.update(common_json(join));
+  json["hypotheses"] = hypotheses_json(join);
+  return json;
 }
 
 /// Every line but the first further in.
@@ -96,18 +94,15 @@ Json pair_measure_json(const std::string& fixed, const std::string& moving, cons
 }  // namespace
 
 std::string match_json(const std::string& fixed, const std::string& moving, const MatchResult& result) {
-  const Json json{{"fixed", fixed},
-                  {"moving", moving},
-                  {"verdict", name_of(result.verdict)},
-                  {"reason", reason_json(own_reason(result))},
-                  {"transform", transform_json(result.T_fixed_moving)},
-                  {"probability", number_json(result.probability)},
-                  {"acceptance_index", number_json(result.acceptance_index)},
-                  {"agreement", result.agreement},
-                  {"disagreement", result.disagreement},
-                  {"overlap", number_json(result.overlap)},
-                  {"seconds", number_json(result.seconds)},
-                  {"hypotheses", hypotheses_json(result.hypotheses)}};
+  Json json{{"fixed", fixed},
+            {"moving", moving},
+            {"verdict", name_of(result.verdict)},
+            {"reason", reason_json(own_reason(result))},
+            {"transform", transform_json(result.T_fixed_moving)},
+            {"probability", number_json(result.probability)}};
+  json.update(common_json(result));
+  json["seconds"] = number_json(result.seconds);
+  json["hypotheses"] = hypotheses_json(result.hypotheses);
   return text_of(json, -1) + "\n";
 }
 

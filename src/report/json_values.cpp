@@ -27,6 +27,13 @@ Json hypotheses_json(const std::vector<Hypothesis>& hypotheses) {
   return list;
 }
 
+Json common_json(const PairPose& pose) {
+  return {{"acceptance_index", number_json(pose.acceptance_index)},
+          {"agreement", pose.agreement},
+          {"disagreement", pose.disagreement},
+          {"overlap", number_json(pose.overlap)}};
+}
+
 Json hypotheses_json(const Join& join) {
   constexpr std::size_t kMost = 3;
   constexpr double kLeastProbability = 0.01;

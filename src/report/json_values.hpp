@@ -19,6 +19,9 @@ Json number_json(double value);
 Json transform_json(const SE2& T);
 Json hypotheses_json(const std::vector<Hypothesis>& hypotheses);
 
+/// What two maps have in common at a pose: four keys, from "acceptance_index" to "overlap".
+Json common_json(const PairPose& pose);
+
 /// null of none.
 Json reason_json(Reason reason);
 

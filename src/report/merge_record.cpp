@@ -177,21 +177,26 @@ class RecordReader {
                                      JoinOutcome::rejected, JoinOutcome::known});
     if (json.at("verdict").text() != name_of(join.verdict()))
       json.at("verdict").fail("does not go with the outcome");
-    join.T_fixed_moving = json.at("transform").transform(kFarthest);
-    join.probability = share(json.at("probability"));
-    join.match = read_match(json);
+    static_cast<PairPose&>(join) = read_pair_pose(json);
+    join.match = read_match(json, join);
     const JsonReader reason = json.at("reason");
     const Reason told = reason.is_null() ? Reason::none : read_reason(reason);
     if (told != join.reason() && json.has("by_themselves")) reason.fail("does not go with the outcome");
-    join.acceptance_index = join.match.acceptance_index;
-    join.agreement = join.match.agreement;
-    join.disagreement = join.match.disagreement;
-    join.overlap = join.match.overlap;
     return join;
   }
 
-  static MatchResult read_match(const JsonReader& json) {
+  static PairPose read_pair_pose(const JsonReader& json) {
+    return {json.at("transform").transform(kFarthest), share(json.at("probability")),
+            share(json.at("acceptance_index")),        json.at("agreement").count(),
+            json.at("disagreement").count(),           share(json.at("overlap"))};
+  }
+
+  /// What the two say by themselves. What they have in common is told of the join's pose alone.
+  static MatchResult read_match(const JsonReader& json, const PairPose& of_join) {
     MatchResult match;
+    static_cast<PairPose&>(match) = of_join;
+    match.T_fixed_moving = {};
+    match.probability = 0.0;
     // Earlier versions told the reason of the two alone as that of the join.
     const JsonReader own = json.has("by_themselves") ? json.at("by_themselves") : json;
     const JsonReader reason = own.at("reason");
@@ -199,10 +204,6 @@ class RecordReader {
     match.reason = reason.is_null() ? Reason::none : read_reason(reason);
     if (json.has("by_themselves") && own.at("verdict").text() != name_of(match.verdict))
       own.at("verdict").fail("does not go with the reason");
-    match.acceptance_index = share(json.at("acceptance_index"));
-    match.agreement = json.at("agreement").count();
-    match.disagreement = json.at("disagreement").count();
-    match.overlap = share(json.at("overlap"));
     const JsonReader hypotheses = json.at("hypotheses");
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
       const JsonReader hypothesis = hypotheses.at(i);

@@ -53,18 +53,16 @@ Json component_json(std::size_t index, const Component& component, const ShownMa
 }
 
 Json join_json(const Join& join) {
-  return {{"fixed", join.fixed},
-          {"moving", join.moving},
-          {"outcome", name_of(join.outcome)},
-          {"reason", reason_json(join.reason())},
-          {"by_themselves", own_verdict_json(join.match)},
-          {"transform", transform_json(join.T_fixed_moving)},
-          {"probability", number_json(join.probability)},
-          {"acceptance_index", number_json(join.acceptance_index)},
-          {"agreement", join.agreement},
-          {"disagreement", join.disagreement},
-          {"overlap", number_json(join.overlap)},
-          {"hypotheses", hypotheses_json(join)}};
+  Json json{{"fixed", join.fixed},
+            {"moving", join.moving},
+            {"outcome", name_of(join.outcome)},
+            {"reason", reason_json(join.reason())},
+            {"by_themselves", own_verdict_json(join.match)},
+            {"transform", transform_json(join.T_fixed_moving)},
+            {"probability", number_json(join.probability)}};
+  json.update(common_json(join));
+  json["hypotheses"] = hypotheses_json(join);
+  return json;
 }
 
 /// All maps, then all fused ones: what takes time is done for several at once.

@@ -28,8 +28,7 @@ inline MergeResult merged(const std::vector<OccupancyGrid>& maps,
       join.match.probability = 0.75;
       join.match.T_fixed_moving = members[i].T_component_map;
       join.outcome = JoinOutcome::accepted;
-      join.T_fixed_moving = join.match.T_fixed_moving;
-      join.probability = join.match.probability;
+      static_cast<PairPose&>(join) = join.match;
       result.joins.push_back(join);
     }
     result.components.push_back({members, fuse(inputs, maps[members[0].map].resolution)});

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -25,18 +24,14 @@ enum class JoinOutcome {
 /// As outputs spell it: "refused", "accepted", "rescued", "rejected", "known".
 GRIDMERGE_EXPORT const char* name_of(JoinOutcome outcome);
 
-/// A comparison of two maps, or up the tree of two groups of maps: then said of the first map of each.
-struct Join {
+/// A comparison of two maps, or up the tree of two groups of maps: then said of the first map of each. Its
+/// pose is the one that was used, or the best hypothesis of a join that was not; the probability is that from
+/// these two maps alone.
+struct Join : PairPose {
   std::size_t fixed = 0;   ///< index of the input map
   std::size_t moving = 0;  ///< index of the input map
   MatchResult match;       ///< what the two say by themselves, between the frames of these two input maps
   JoinOutcome outcome = JoinOutcome::refused;  ///< what became of it
-  SE2 T_fixed_moving;             ///< the pose that was used, or the best hypothesis of a join that was not
-  double probability = 0.0;       ///< of that pose, from these two maps alone
-  double acceptance_index = 0.0;  ///< of that pose, as MatchResult has it of the best hypothesis
-  std::int64_t agreement = 0;     ///< likewise
-  std::int64_t disagreement = 0;  ///< likewise
-  double overlap = 0.0;           ///< likewise
 
   /// Whether the maps lie so in the result.
   bool used() const { return outcome != JoinOutcome::refused && outcome != JoinOutcome::rejected; }
