@@ -206,10 +206,8 @@ std::string describe(const MergeCommandOptions& options, const MergeResult& resu
   }
   if (result.expected_false_joins && !result.components.empty())
     fmt::format_to(out, "of these joins, {:.3f} are expected to be false\n", *result.expected_false_joins);
-  for (std::size_t i = 0; i < result.left_out.size(); ++i) {
-    fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[result.left_out[i]]),
-                   explain_left_out(result, i));
-  }
+  for (const LeftOut& one : result.left_out)
+    fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain_left_out(result, one));
   text += describe_open_ways(names, result);
   for (const Join& join : result.joins) {
     const std::string pair =
@@ -234,12 +232,13 @@ std::string scale_hints(const MergeCommandOptions& options, const std::vector<Oc
   constexpr std::size_t kMostHints = 2;  // each takes as long as ten matches
   if (options.search.up_the_tree() || result.left_out.empty()) return {};
   const bool has_merged = !result.components.empty();
-  const std::size_t first = result.left_out.front();
+  const std::size_t first = result.left_out.front().map;
   const NamedMap fixed = has_merged ? NamedMap{component_file(0), result.components.front().fused.grid}
                                     : NamedMap{options.maps[first], maps[first]};
   std::string text;
   std::size_t asked = 0;
-  for (const std::size_t map : result.left_out) {
+  for (const LeftOut& one : result.left_out) {
+    const std::size_t map = one.map;
     if ((!has_merged && map == first) || count_cells(maps[map]).known() == 0 || asked == kMostHints) continue;
     ++asked;
     console.progress("trying other scales");

@@ -140,11 +140,9 @@ void bind_results(nb::module_& module) {
       .def_prop_ro("left_out",
                    [](const Merged& merged) {
                      std::vector<std::tuple<std::size_t, std::string, std::string>> left_out;
-                     for (std::size_t i = 0; i < merged.result->left_out.size(); ++i) {
-                       const Reason reason = merged.result->left_out_reasons[i];
-                       left_out.emplace_back(merged.result->left_out[i], name_of(reason),
-                                             explain_left_out(*merged.result, i));
-                     }
+                     for (const LeftOut& one : merged.result->left_out)
+                       left_out.emplace_back(one.map, name_of(one.reason),
+                                             explain_left_out(*merged.result, one));
                      return left_out;
                    })
       .def("preview", &preview, nb::arg("names"))

@@ -106,9 +106,7 @@ void add_copies(const std::vector<Copy>& copies, const std::vector<const Occupan
     Component* component = nullptr;
     const Member* original = find_member(result, copy.original, component);
     if (original == nullptr) {
-      const auto alone = std::lower_bound(result.left_out.begin(), result.left_out.end(), copy.original);
-      result.left_out_reasons.erase(result.left_out_reasons.begin() + (alone - result.left_out.begin()));
-      result.left_out.erase(alone);
+      std::erase_if(result.left_out, [&](const LeftOut& one) { return one.map == copy.original; });
       const PlacedMap placed{grids[copy.original], {}};
       component = &result.components.emplace_back();
       component->members.push_back({copy.original, {}, 1.0, {}});

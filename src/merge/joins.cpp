@@ -90,13 +90,13 @@ std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const
   return ways;
 }
 
-Reason why_left_out(const std::vector<Join>& joins, std::size_t map) {
+LeftOut left_out(std::size_t map, const std::vector<Join>& joins) {
   const Join* nearest = nullptr;
   for (const Join& join : joins) {
     if (join.fixed != map && join.moving != map) continue;
     if (nearest == nullptr || join.match.probability > nearest->match.probability) nearest = &join;
   }
-  return nearest == nullptr ? Reason::nothing_to_compare : nearest->reason();
+  return {map, nearest == nullptr ? Reason::nothing_to_compare : nearest->reason()};
 }
 
 }  // namespace gridmerge::internal

@@ -38,7 +38,7 @@ Join inverted(Join join);
 std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const ArrangementProblem& problem,
                                     const Arrangement& arrangement);
 
-/// Why a map joined nothing: the reason of the refused join of it that was most probable.
-Reason why_left_out(const std::vector<Join>& joins, std::size_t map);
+/// A map that joined nothing, for the reason of the refused join of it that was most probable.
+LeftOut left_out(std::size_t map, const std::vector<Join>& joins);
 
 }  // namespace gridmerge::internal

@@ -96,9 +96,9 @@ std::vector<UnusedPose> find_unused_poses(const std::vector<OccupancyGrid>& maps
   for (const Component& component : result.components) {
     for (const UnusedPose& one : overruled_in(component, known)) unused.push_back(one);
   }
-  for (const std::size_t map : result.left_out) {
-    if (!known.contains(map)) continue;
-    if (const std::optional<UnusedPose> one = unused_of(map, known)) unused.push_back(*one);
+  for (const LeftOut& alone : result.left_out) {
+    if (!known.contains(alone.map)) continue;
+    if (const std::optional<UnusedPose> one = unused_of(alone.map, known)) unused.push_back(*one);
   }
   std::sort(unused.begin(), unused.end(),
             [](const UnusedPose& a, const UnusedPose& b) { return a.map < b.map; });

@@ -353,14 +353,13 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     const MergeInputs inputs = inputs_of(maps);
     for (const NodeGroup& group : arrangement.groups) {
       if (group.size() == 1) {
-        result.left_out.push_back(inputs.index[group.front().map]);
+        result.left_out.push_back(left_out(inputs.index[group.front().map], result.joins));
       } else {
         result.components.push_back(make_component(group, problem, arrangement, inputs, options_.resolution));
       }
     }
-    std::sort(result.left_out.begin(), result.left_out.end());
-    for (const std::size_t map : result.left_out)
-      result.left_out_reasons.push_back(why_left_out(result.joins, map));
+    std::sort(result.left_out.begin(), result.left_out.end(),
+              [](const LeftOut& a, const LeftOut& b) { return a.map < b.map; });
   }
 
   static void sort_components(MergeResult& result) {

@@ -189,8 +189,7 @@ void TeamSolver::propose(const MergeResult& result, Placements::Weight weight) {
     proposed.push_back(std::move(group));
   }
   left_out_.clear();
-  for (std::size_t i = 0; i < result.left_out.size(); ++i)
-    left_out_[names[result.left_out[i]]] = result.left_out_reasons[i];
+  for (const LeftOut& one : result.left_out) left_out_[names[one.map]] = one.reason;
   std::map<std::string, MapExtent> extents;
   for (const auto& [name, robot] : robots_) {
     if (robot.id) extents[name] = robot.extent;

@@ -126,10 +126,10 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
                           {"omega_share", omega ? number_json(omega->share()) : Json()}});
   }
   Json left_out = Json::array(), left_out_maps = Json::array();
-  for (std::size_t i = 0; i < result.left_out.size(); ++i) {
-    const std::string& name = names.at(result.left_out[i]);
+  for (const LeftOut& one : result.left_out) {
+    const std::string& name = names.at(one.map);
     left_out.push_back(name);
-    left_out_maps.push_back({{"source", name}, {"reason", name_of(result.left_out_reasons.at(i))}});
+    left_out_maps.push_back({{"source", name}, {"reason", name_of(one.reason)}});
   }
   std::string text;
   const auto add = [&](const char* key, const std::string& value) {

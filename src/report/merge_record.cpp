@@ -224,16 +224,16 @@ class RecordReader {
     const bool has_objects = json.has("left_out_maps");
     const JsonReader reasons = json.at(has_objects ? "left_out_maps" : "left_out_reasons");
     if (maps.size() != reasons.size()) reasons.fail("does not go with left_out");
-    std::vector<std::size_t>& left_out = record_.result.left_out;
+    std::vector<LeftOut>& left_out = record_.result.left_out;
     for (std::size_t i = 0; i < maps.size(); ++i) {
-      left_out.push_back(place(maps.at(i), i > 0 ? left_out.back() : 0));
-      if (i > 0 && left_out[i - 1] > left_out[i]) maps.at(i).fail("is not in the order of the maps");
+      left_out.push_back({place(maps.at(i), i > 0 ? left_out.back().map : 0)});
+      if (i > 0 && left_out[i - 1].map > left_out[i].map) maps.at(i).fail("is not in the order of the maps");
     }
     for (std::size_t i = 0; i < maps.size(); ++i) {
       const JsonReader reason = reasons.at(i);
-      if (has_objects && reason.at("source").text() != record_.names[left_out[i]])
+      if (has_objects && reason.at("source").text() != record_.names[left_out[i].map])
         reason.at("source").fail("does not go with left_out");
-      record_.result.left_out_reasons.push_back(read_reason(has_objects ? reason.at("reason") : reason));
+      left_out[i].reason = read_reason(has_objects ? reason.at("reason") : reason);
     }
   }
 

@@ -89,12 +89,9 @@ Json page_data(const std::vector<std::string>& names, const std::vector<Occupanc
   Json joins = Json::array();
   for (const Join& join : result.joins) joins.push_back(join_json(join));
   Json left_out = Json::array();
-  for (std::size_t i = 0; i < result.left_out.size(); ++i) {
-    const Reason reason = result.left_out_reasons.at(i);
-    left_out.push_back({{"map", result.left_out[i]},
-                        {"reason", name_of(reason)},
-                        {"explanation", explain_left_out(result, i)}});
-  }
+  for (const LeftOut& one : result.left_out)
+    left_out.push_back(
+        {{"map", one.map}, {"reason", name_of(one.reason)}, {"explanation", explain_left_out(result, one)}});
   return {{"version", kVersion},           {"live", false},
           {"maps", std::move(shown_maps)}, {"components", std::move(components)},
           {"joins", std::move(joins)},     {"left_out", std::move(left_out)}};

@@ -169,8 +169,9 @@ std::string preview_png(const std::vector<std::string>& names, const std::vector
   if (!entries.empty()) blocks.push_back(flow(entries, width, kLegendGap));
 
   std::vector<Canvas> left_out;
-  for (const std::size_t map : result.left_out) {
+  for (const LeftOut& one : result.left_out) {
     if (left_out.size() == kMostLeftOutPanels) break;
+    const std::size_t map = one.map;
     left_out.push_back(draw_panel(left_out_panel(called.at(map), maps.at(map), map), TextSize::small));
   }
   if (!left_out.empty()) {

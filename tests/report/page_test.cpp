@@ -41,7 +41,7 @@ MergeResult two_of_four() {
   refused.overlap = 0.375;
   refused.match.hypotheses = {{{0.5, 0.25, 3.0}, 10.0, 0.0625}, {{7.0, 8.0, -1.0}, 9.5, 0.03125}};
   result.joins.push_back(refused);
-  result.left_out_reasons.front() = Reason::ambiguous;
+  result.left_out.front().reason = Reason::ambiguous;
   return result;
 }
 

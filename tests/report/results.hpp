@@ -34,9 +34,7 @@ inline MergeResult merged(const std::vector<OccupancyGrid>& maps,
     result.components.push_back({members, fuse(inputs, maps[members[0].map].resolution)});
   }
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    if (joined[i]) continue;
-    result.left_out.push_back(i);
-    result.left_out_reasons.push_back(Reason::nothing_to_compare);
+    if (!joined[i]) result.left_out.push_back({i, Reason::nothing_to_compare});
   }
   return result;
 }

@@ -82,13 +82,21 @@ struct OpenWay {
 /// Ways that are less probable are not told.
 inline constexpr double kLeastOpenProbability = 0.1;
 
+/// A map that joined nothing.
+struct LeftOut {
+  std::size_t map = 0;                         ///< index of the input map
+  Reason reason = Reason::nothing_to_compare;  ///< why it joined nothing
+
+  /// Whether the map and the reason are the same.
+  friend bool operator==(const LeftOut&, const LeftOut&) = default;
+};
+
 /// What a merge made of its maps.
 struct MergeResult {
-  std::vector<Component> components;     ///< of two or more maps each, most members first
-  std::vector<Join> joins;               ///< every comparison made, whatever its outcome
-  std::vector<std::size_t> left_out;     ///< maps that joined nothing, ascending
-  std::vector<Reason> left_out_reasons;  ///< why, one for each that was left out
-  std::vector<OpenWay> open_ways;        ///< most probable first. The tree knows none
+  std::vector<Component> components;  ///< of two or more maps each, most members first
+  std::vector<Join> joins;            ///< every comparison made, whatever its outcome
+  std::vector<LeftOut> left_out;      ///< ascending by map
+  std::vector<OpenWay> open_ways;     ///< most probable first. The tree knows none
   /// How many joins are expected to be false, of all that were made. The tree does not know.
   std::optional<double> expected_false_joins = {};
 };
