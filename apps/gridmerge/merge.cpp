@@ -276,7 +276,7 @@ int run_merge(const MergeCommandOptions& options) {
   if (!options.search.trace.empty()) try_trace(options, inputs.files);
   const MergeResult result = merge_maps(inputs.maps, known_poses.poses(), options, matcher, coarser, console);
   console.progress("writing the result");
-  write_merge_output(options.output, inputs.files, options.maps, inputs.maps, result);
+  write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   matcher.write_trace();
   const std::string hints = scale_hints(options, inputs.maps, result, console);
   console.clear();

@@ -21,9 +21,8 @@ struct ReportCommandOptions {
 int run_report(const ReportCommandOptions& options) {
   Console console(options.common);
   const SavedMerge merge = load_saved_merge(options.merge, console);
-  with_threads(options.common.threads, [&] {
-    write_report(options.merge.directory, merge.files, merge.names, merge.maps, merge.result);
-  });
+  with_threads(options.common.threads,
+               [&] { write_report(options.merge.directory, merge.files, merge.named()); });
   print((std::filesystem::path(options.merge.directory) / "report.html").string() + "\n");
   return kDone;
 }

@@ -77,7 +77,7 @@ void save(const Merged& merged, const nb::bytes& directory, const std::vector<nb
   const std::vector<std::string> texts = to_strings(names);
   const std::filesystem::path path = to_string(directory);
   const OthersRun meanwhile;
-  write_merge_output(path, inputs, texts, grids_of(merged.maps), *merged.result);
+  write_merge_output(path, inputs, {texts, grids_of(merged.maps), *merged.result});
 }
 
 // The picture that save() writes.
@@ -85,7 +85,7 @@ nb::bytes preview(const Merged& merged, const std::vector<nb::bytes>& names) {
   const std::vector<std::string> texts = to_strings(names);
   const std::string png = [&] {
     const OthersRun meanwhile;
-    return preview_png(texts, grids_of(merged.maps), *merged.result);
+    return preview_png({texts, grids_of(merged.maps), *merged.result});
   }();
   return nb::bytes(png.data(), png.size());
 }

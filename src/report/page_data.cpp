@@ -78,8 +78,8 @@ std::vector<ShownMap> show_all(const std::vector<OccupancyGrid>& maps, const Mer
 
 }  // namespace
 
-Json page_data(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
-               const MergeResult& result) {
+Json page_data(const NamedMerge& merge) {
+  const auto& [names, maps, result] = merge;
   const std::vector<ShownMap> shown = show_all(maps, result);
   Json shown_maps = Json::array();
   for (std::size_t i = 0; i < maps.size(); ++i) shown_maps.push_back(map_json(names.at(i), i, shown[i]));

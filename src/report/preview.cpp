@@ -155,8 +155,8 @@ Colour map_colour(std::size_t map) {
   return {shade(colour.red), shade(colour.green), shade(colour.blue)};
 }
 
-std::string preview_png(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
-                        const MergeResult& result) {
+std::string preview_png(const NamedMerge& merge) {
+  const auto& [names, maps, result] = merge;
   const std::vector<std::string> called = short_names(names);
   const TextSize size = result.components.empty() ? TextSize::small : TextSize::large;
   std::vector<Canvas> blocks;

@@ -207,7 +207,7 @@ TEST(FuseAgain, GivesTheMergedMaps) {
     save_map(result.components[i].fused.grid, directory.file(component_file(i)));
   MergeRecord record = parse(transforms_json(kNames, result));
   EXPECT_TRUE(fuse_again(record, kMaps, directory.path()).empty());
-  EXPECT_EQ(report_page(record.names, kMaps, record.result), report_page(kNames, kMaps, result));
+  EXPECT_EQ(report_page({record.names, kMaps, record.result}), report_page({kNames, kMaps, result}));
 }
 
 TEST(FuseAgain, TellsWhichHaveBeenChanged) {

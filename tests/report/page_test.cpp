@@ -66,7 +66,7 @@ Json transform(double x, double y, double theta) {
 }
 
 TEST(ReportPage, HoldsTheMaps) {
-  const Json data = data_of(report_page(kNames, kMaps, two_of_four()));
+  const Json data = data_of(report_page({kNames, kMaps, two_of_four()}));
   EXPECT_EQ(data.at("version"), kVersion);
   EXPECT_EQ(data.at("live"), false);
   ASSERT_EQ(data.at("maps").size(), 4u);
@@ -83,7 +83,7 @@ TEST(ReportPage, HoldsTheMaps) {
 }
 
 TEST(ReportPage, AMapOfWhichNothingIsKnownHasNoCells) {
-  const Json data = data_of(report_page(kNames, kMaps, two_of_four()));
+  const Json data = data_of(report_page({kNames, kMaps, two_of_four()}));
   const Json& map = data.at("maps").at(3);
   EXPECT_EQ(map.at("width"), 0);
   EXPECT_EQ(map.at("height"), 0);
@@ -92,7 +92,7 @@ TEST(ReportPage, AMapOfWhichNothingIsKnownHasNoCells) {
 
 TEST(ReportPage, HoldsTheComponents) {
   const MergeResult result = two_of_four();
-  const Json data = data_of(report_page(kNames, kMaps, result));
+  const Json data = data_of(report_page({kNames, kMaps, result}));
   ASSERT_EQ(data.at("components").size(), 1u);
   const Json& component = data.at("components").at(0);
   EXPECT_EQ(component.at("file"), "merged.yaml");
@@ -116,11 +116,11 @@ TEST(ReportPage, AComponentInTheWorldsFrameHasNoMapsFrame) {
   result.components[0].in_world_frame = true;
   for (Member& member : result.components[0].members)
     member.T_component_map = SE2{100.0, 0.0, 0.0} * member.T_component_map;
-  EXPECT_TRUE(data_of(report_page(kNames, kMaps, result)).at("components").at(0).at("frame").is_null());
+  EXPECT_TRUE(data_of(report_page({kNames, kMaps, result})).at("components").at(0).at("frame").is_null());
 }
 
 TEST(ReportPage, HoldsTheJoins) {
-  const Json joins = data_of(report_page(kNames, kMaps, two_of_four())).at("joins");
+  const Json joins = data_of(report_page({kNames, kMaps, two_of_four()})).at("joins");
   ASSERT_EQ(joins.size(), 2u);
   EXPECT_EQ(joins.at(0).at("outcome"), "accepted");
   EXPECT_TRUE(joins.at(0).at("reason").is_null());
@@ -143,7 +143,7 @@ TEST(ReportPage, HoldsTheJoins) {
 
 TEST(ReportPage, SaysWhyMapsWereLeftOut) {
   EXPECT_EQ(
-      data_of(report_page(kNames, kMaps, two_of_four())).at("left_out"),
+      data_of(report_page({kNames, kMaps, two_of_four()})).at("left_out"),
       Json::array({{{"map", 1}, {"reason", "ambiguous"}, {"explanation", "it fits in more than one way"}},
                    {{"map", 3},
                     {"reason", "nothing_to_compare"},
@@ -151,12 +151,12 @@ TEST(ReportPage, SaysWhyMapsWereLeftOut) {
 }
 
 TEST(ReportPage, NamesAreDataWhateverTheyHold) {
-  const std::string innocent = take_apart(report_page(kNames, kMaps, two_of_four())).rest;
+  const std::string innocent = take_apart(report_page({kNames, kMaps, two_of_four()})).rest;
   std::vector<std::string> hostile = test::kHostileNames;
   hostile.insert(hostile.end(), {"</script><script>alert(1)</script>", "<!--<script>", "&lt;/script&gt;",
                                  "]]>", "<!--DATA-->", "<CONNECT>", "\xe2\x80\xa8"});
   for (const std::string& name : hostile) {
-    const Parts page = take_apart(report_page({name, name, name, name}, kMaps, two_of_four()));
+    const Parts page = take_apart(report_page({{name, name, name, name}, kMaps, two_of_four()}));
     EXPECT_EQ(page.rest, innocent);
     EXPECT_EQ(page.data.find_first_of("<>&"), std::string::npos);
     const std::string shown = Json::parse(page.data).at("maps").at(0).at("name");
@@ -167,12 +167,12 @@ TEST(ReportPage, NamesAreDataWhateverTheyHold) {
 }
 
 TEST(ReportPage, WhatIsNoUtf8IsMarked) {
-  const Json data = data_of(report_page({"\xff", "b", "c", "d"}, kMaps, two_of_four()));
+  const Json data = data_of(report_page({{"\xff", "b", "c", "d"}, kMaps, two_of_four()}));
   EXPECT_EQ(data.at("maps").at(0).at("name"), "\xef\xbf\xbd");
 }
 
 TEST(ReportPage, AFileFetchesNothing) {
-  const std::string page = report_page(kNames, kMaps, two_of_four());
+  const std::string page = report_page({kNames, kMaps, two_of_four()});
   EXPECT_TRUE(contains(page, "default-src 'none'; script-src 'sha256-"));
   EXPECT_TRUE(contains(page, "connect-src 'none'; base-uri 'none'; form-action 'none'\">"));
   EXPECT_FALSE(contains(page, "unsafe"));
@@ -180,22 +180,22 @@ TEST(ReportPage, AFileFetchesNothing) {
 }
 
 TEST(ReportPage, ALiveOneAsksItsServerAlone) {
-  const std::string page = live_report_page(kNames, kMaps, two_of_four());
+  const std::string page = live_report_page({kNames, kMaps, two_of_four()});
   EXPECT_TRUE(contains(page, "connect-src 'self'; "));
   Json data = data_of(page);
   EXPECT_EQ(data.at("live"), true);
   data["live"] = false;
-  EXPECT_EQ(data, data_of(report_page(kNames, kMaps, two_of_four())));
+  EXPECT_EQ(data, data_of(report_page({kNames, kMaps, two_of_four()})));
 }
 
 TEST(ReportPage, OfNothing) {
-  const Json data = data_of(report_page({}, {}, {}));
+  const Json data = data_of(report_page({{}, {}, {}}));
   for (const char* list : {"maps", "components", "joins", "left_out"})
     EXPECT_EQ(data.at(list), Json::array());
 }
 
 TEST(ReportPage, EveryMapNeedsAName) {
-  EXPECT_THROW(report_page({"a"}, kMaps, two_of_four()), std::out_of_range);
+  EXPECT_THROW(report_page({{"a"}, kMaps, two_of_four()}), std::out_of_range);
 }
 
 }  // namespace
