@@ -183,10 +183,11 @@ OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map,
   const SE2 T_grid_target = inverse(T_target_grid);
   const double c = std::cos(T_grid_target.theta) / grid.resolution;
   const double s = std::sin(T_grid_target.theta) / grid.resolution;
+  const ManyPointsTransform T_frame_target(target.origin);
   for (int row = 0; row < target.height; ++row) {
     throw_if_cancelled();
     for (int column = 0; column < target.width; ++column) {
-      const Point2 p = target.cell_center(column, row);
+      const Point2 p = T_frame_target * Point2{(column + 0.5) * resolution, (row + 0.5) * resolution};
       const double source_x = c * p.x - s * p.y + T_grid_target.x / grid.resolution;
       const double source_y = s * p.x + c * p.y + T_grid_target.y / grid.resolution;
       // Compared before the cast: with a coarse target the centre may be further away than an int can tell.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "grid/logistic.hpp"
 #include "match/verdict_model.hpp"
 
 namespace gridmerge::internal {
@@ -55,10 +56,6 @@ double cells_agree(double acceptance_index) {
 double agrees_better(const PoseFigures& f) {
   constexpr double kAnyPose = 0.93;
   return cells_agree(f.acceptance_index) - cells_agree(std::max(f.next_acceptance_index, kAnyPose));
-}
-
-double logistic(double log_odds) {
-  return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grid/parallel.hpp"
+#include "match/ascend.hpp"
 #include "match/refine.hpp"
 #include "similarity/evidence.hpp"
 
@@ -76,11 +77,7 @@ std::size_t look_up(const WallMap& map, const std::vector<WallPoint>& walls, con
   const ManyPointsTransform T_points(T_map_walls);
   std::size_t unseen = 0;
   for (const WallPoint& wall : walls) {
-    const auto [x, y] = T_points * wall.position;
-    Place place;
-    if (x >= 0.0 && y >= 0.0 && x < map.width && y < map.height)
-      place = map.places[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +
-                         static_cast<std::size_t>(x)];
+    const Place place = map.place_at(T_points * wall.position);
     if (place.distance == kUnseen) {
       ++unseen;
     } else {
@@ -154,11 +151,8 @@ class PatchMatcher {
     return sum;
   }
 
-  /// Steepest ascent; the step is halved whenever none helps.
   SE2 climb(const Patch& patch) const {
-    constexpr int kMaxMoves = 5;  // a step
-    constexpr std::array<std::array<double, 3>, 6> kMoves{
-        {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+    constexpr int kMaxMoves = 5;
     const std::vector<WallPoint> fixed_walls = draw_evenly(patch.fixed, kClimbingWalls);
     const std::vector<WallPoint> moving_walls = draw_evenly(patch.moving, kClimbingWalls);
     const PoseMetric metric{patch.centre, 0.4 * side_};
@@ -171,28 +165,14 @@ class PatchMatcher {
       return moving_weight * worth_of(fixed_, moving_walls, T_fixed_moving) +
              fixed_weight * worth_of(moving_, fixed_walls, inverse(T_fixed_moving));
     };
-    SE2 best = start_;
-    double most = worth_at(best);
-    for (double step = kFirstStep / fixed_.cell; step >= kLastStep; step /= 2.0) {
-      std::size_t last = kMoves.size();
-      for (int i = 0; i < kMaxMoves; ++i) {
-        const SE2 from = best;
-        const std::size_t back = last ^ 1U;  // would undo the last move
-        last = kMoves.size();
-        for (std::size_t m = 0; m < kMoves.size(); ++m) {
-          const auto& [dx, dy, turn] = kMoves[m];
-          const SE2 pose = metric.moved(from, step * dx, step * dy, step * turn / metric.radius);
-          if (m == back || metric.displacement(pose, start_) > kFarthestShift / fixed_.cell) continue;
-          const double worth = worth_at(pose);
-          if (worth <= most) continue;
-          most = worth;
-          best = pose;
-          last = m;
-        }
-        if (last == kMoves.size()) break;
-      }
-    }
-    return best;
+    double most = worth_at(start_);
+    return ascend(metric, start_, {kFirstStep / fixed_.cell, kLastStep, kMaxMoves}, [&](const SE2& pose) {
+      if (metric.displacement(pose, start_) > kFarthestShift / fixed_.cell) return false;
+      const double worth = worth_at(pose);
+      if (worth <= most) return false;
+      most = worth;
+      return true;
+    });
   }
 
   const WallMap& fixed_;

@@ -16,10 +16,6 @@ namespace gridmerge::internal {
 
 namespace {
 
-/// Bent maps of 70 m close cycles of three within 2.4 m in 95 of 100 cases.
-constexpr double kLeastTolerance = 0.5;  // [m]
-constexpr double kToleranceShare = 0.045;
-
 /// A map that moves elsewhere must gain so much, or rounding would keep it moving [nats].
 constexpr double kLeastGain = 0.1;
 
@@ -245,25 +241,6 @@ NodeGroup in_order(NodeGroup group) {
   group.front().T_group_map = {};
   return group;
 }
-
-}  // namespace
-
-double agreement_tolerance(const MapExtent& a, const MapExtent& b) {
-  return std::max(kLeastTolerance, kToleranceShare * std::max(a.side, b.side));
-}
-
-double displacement(const MapExtent& moving, const SE2& a, const SE2& b) {
-  const Point2 at_a = a * moving.centre;
-  const Point2 at_b = b * moving.centre;
-  const double turned = 2.0 * (1.0 - std::cos(a.theta - b.theta)) * moving.radius * moving.radius;
-  return std::sqrt((at_a.x - at_b.x) * (at_a.x - at_b.x) + (at_a.y - at_b.y) * (at_a.y - at_b.y) + turned);
-}
-
-double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b, const SE2& T_a_b_other) {
-  return std::min(displacement(b, T_a_b, T_a_b_other), displacement(a, inverse(T_a_b), inverse(T_a_b_other)));
-}
-
-namespace {
 
 Arrangement arrange(const ArrangementProblem& problem, double accept_probability, double keep_probability) {
   validate(problem, accept_probability);

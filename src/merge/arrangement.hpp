@@ -5,52 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "gridmerge/grid/se2.hpp"
-#include "internal_export.hpp"
-#include "merge/coverage.hpp"
+#include "merge/pair_candidates.hpp"
 
 namespace gridmerge::internal {
-
-/// One way in which two maps may lie, from what they say of each other alone.
-struct CandidateJoin {
-  SE2 T_fixed_moving;     ///< between the map frames
-  double log_odds = 0.0;  ///< of being true, from these two maps alone [nats]
-  double sd = 1.0;        ///< if it is true: standard deviation of the displacement from the true pose [m]
-  bool is_known = false;  ///< it is not what the maps say, but what is known of their poses beforehand
-};
-
-/// The candidates of two maps.
-struct PairCandidates {
-  std::size_t fixed = 0;  ///< index of the map, less than `moving`
-  std::size_t moving = 0;
-  std::vector<CandidateJoin> candidates;  ///< distinct; none if nothing speaks for the pair
-};
-
-/// All that is known of k maps.
-struct ArrangementProblem {
-  std::vector<MapExtent> maps;
-  std::vector<PairCandidates> pairs;  ///< at most one a pair of maps
-  /// Where each map knows anything; without it no two maps are thought to have anything in common, and every
-  /// pair is thought to speak of other places than the rest.
-  std::vector<const Coverage*> coverage;
-  /// Poses in one frame that are the truth, whatever pairs say; may be shorter than `maps`.
-  std::vector<std::optional<SE2>> fixed;
-};
-
-struct PlacedNode {
-  std::size_t map = 0;
-  SE2 T_group_map;
-  double probability = 1.0;  ///< that the map lies there, given where the others of the group lie
-};
-
-/// Maps that lie together. The frame is that of the first.
-using NodeGroup = std::vector<PlacedNode>;
-
-/// A candidate that the arrangement agrees with.
-struct UsedCandidate {
-  std::size_t pair = 0;       ///< index into ArrangementProblem::pairs
-  std::size_t candidate = 0;  ///< index into its candidates
-};
 
 struct Arrangement {
   std::vector<NodeGroup> groups;    ///< every map is in one; ascending by first map, maps ascending
@@ -64,18 +21,6 @@ struct OpenJoin {
   SE2 T_a_b;                 ///< between the groups' frames
   double probability = 0.0;  ///< against lying otherwise, and apart
 };
-
-/// How far apart a pair's candidate and the poses of an arrangement may put the maps and still agree [m]:
-/// bent maps do not close a cycle exactly.
-GRIDMERGE_INTERNAL_EXPORT double agreement_tolerance(const MapExtent& a, const MapExtent& b);
-
-/// Root mean square distance by which two poses of a map of this extent differ [m].
-GRIDMERGE_INTERNAL_EXPORT double displacement(const MapExtent& moving, const SE2& a, const SE2& b);
-
-/// How far two ways in which maps a and b may lie differ [m]: the displacement of that map which it moves
-/// less. The same whichever of the two is taken for the moving one.
-GRIDMERGE_INTERNAL_EXPORT double difference(const MapExtent& a, const MapExtent& b, const SE2& T_a_b,
-                                            const SE2& T_a_b_other);
 
 /// The arrangement of all maps that the candidates speak for most, as far as it can be believed.
 ///

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "gridmerge/match/match.hpp"
-#include "merge/arrangement.hpp"
+#include "merge/pair_candidates.hpp"
 
 namespace gridmerge::internal {
 

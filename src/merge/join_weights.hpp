@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "merge/arrangement.hpp"
+#include "merge/pair_candidates.hpp"
 
 namespace gridmerge::internal {
 

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "grid/logistic.hpp"
+
 namespace gridmerge::internal {
 
 namespace {
@@ -22,7 +24,7 @@ void weigh_again(std::vector<CandidateJoin>& candidates, const std::vector<bool>
   std::vector<double> weights;
   double none = 1.0, sum = 0.0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const double probability = 1.0 / (1.0 + std::exp(-candidates[i].log_odds));
+    const double probability = logistic(candidates[i].log_odds);
     none -= probability;
     weights.push_back(probability * std::exp(is_near[i] ? nats : -nats));
     sum += weights.back();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "grid/logistic.hpp"
 #include "merge/join_weights.hpp"
 
 namespace gridmerge::internal {
@@ -108,7 +109,7 @@ std::vector<WeighedJoin> JoinWeights::ways_of_pair(const PlacedNode& a, const Pl
   const PairCandidates& pair = problem_.pairs[*index];
   const bool of_many = problem_.maps.size() > 2;
   const auto probability = [&](const CandidateJoin& candidate) {
-    const double p = 1.0 / (1.0 + std::exp(-candidate.log_odds));
+    const double p = logistic(candidate.log_odds);
     if (!of_many || candidate.is_known) return p;
     const double odds = kOddsAmongMany * p / (1.0 - p + kRepeats);
     return odds / (1.0 + odds);

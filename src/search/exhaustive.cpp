@@ -29,7 +29,7 @@ EvidenceImage make_evidence_image(const WallMap& fixed, const SearchFrame& frame
     throw_if_cancelled();
     const std::size_t line = static_cast<std::size_t>(y / options.coarse_factor) * frame.fixed_width;
     for (int x = 0; x < fixed.width; ++x) {
-      const int distance = fixed.places[static_cast<std::size_t>(y) * fixed.width + x].distance;
+      const int distance = fixed.places[fixed.index(x, y)].distance;
       if (distance == kUnseen) continue;
       sums[line + x / options.coarse_factor] += table[encounter(distance, kUnclearFacing)];
     }

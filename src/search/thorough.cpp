@@ -63,7 +63,7 @@ EvidenceImage make_evidence(const WallMap& fixed, const SearchFrame& frame,
     for (int y = row * options.coarse_factor; y < std::min(fixed.height, (row + 1) * options.coarse_factor);
          ++y) {
       for (int x = 0; x < fixed.width; ++x) {
-        const Place& place = fixed.places[static_cast<std::size_t>(y) * fixed.width + x];
+        const Place& place = fixed.places[fixed.index(x, y)];
         if (place.distance == kUnseen) continue;
         const BySector& met = nats[static_cast<std::size_t>(place.facing) * kDistanceBins + place.distance];
         BySector& sum = sums[x / options.coarse_factor];
@@ -85,7 +85,7 @@ EvidenceImage make_evidence(const WallMap& fixed, const SearchFrame& frame,
 EvidenceImage make_seen_pairs(const WallMap& fixed, const SearchFrame& frame, int factor) {
   std::vector<int> counts(static_cast<std::size_t>(frame.fixed_width) * frame.fixed_height, 0);
   for (int y = 0; y < fixed.height; ++y) {
-    const Place* const row = fixed.places.data() + static_cast<std::size_t>(y) * fixed.width;
+    const Place* const row = fixed.places.data() + fixed.index(0, y);
     int* const sums = counts.data() + static_cast<std::size_t>(y / factor) * frame.fixed_width;
     for (int x = 0; x < fixed.width; ++x) sums[x / factor] += row[x].distance != kUnseen;
   }

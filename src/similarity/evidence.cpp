@@ -222,7 +222,7 @@ WallEvidence::LookUp::LookUp(const WallMap& map)
   const unsigned rows_of_tiles = tiles_along(map.height, kTileRows);
   places.resize(static_cast<std::size_t>(row_of_tiles) * rows_of_tiles * kTileColumns * kTileRows);
   for (int y = 0; y < map.height; ++y) {
-    const Place* const row = map.places.data() + static_cast<std::size_t>(y) * map.width;
+    const Place* const row = map.places.data() + map.index(0, y);
     for (int x = 0; x < map.width; ++x) {
       const Place& place = row[x];
       const int distance = place.distance == kUnseen ? kEncounters : place.distance;

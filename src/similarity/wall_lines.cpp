@@ -44,9 +44,7 @@ std::vector<MetPoint> find_met_walls(const WallMap& fixed, const WallMap& moving
   std::vector<MetPoint> met;
   for (const WallPoint& wall : moving.walls) {
     const Point2 p = T_points * wall.position;
-    if (!(p.x >= 0.0 && p.y >= 0.0 && p.x < fixed.width && p.y < fixed.height)) continue;
-    const Place& place = fixed.places[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(fixed.width) +
-                                      static_cast<std::size_t>(p.x)];
+    const Place place = fixed.place_at(p);
     if (place.distance == kUnseen || place.distance > kMeetingDistance) continue;
     if (wall.facing == kNoDirection || place.facing == kNoDirection) continue;
     const std::uint8_t facing = turned(wall.facing, turn);

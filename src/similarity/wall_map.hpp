@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -63,6 +64,17 @@ struct WallMap {
   std::vector<WallPoint> walls;  ///< one a cell that holds a wall
   std::array<double, kDistanceBins>
       background;  ///< share of the seen area in each distance bin; sums to 1, none is 0
+
+  /// Where `places` holds a cell.
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
+  }
+
+  /// What the map says at a point of the grid frame [cells]; outside of it, nothing is seen.
+  Place place_at(const Point2& point) const {
+    if (!(point.x >= 0.0 && point.y >= 0.0 && point.x < width && point.y < height)) return {};
+    return places[index(static_cast<int>(point.x), static_cast<int>(point.y))];
+  }
 };
 
 /// Draws `grid` with cells of `cell` metres (at least the grid's own resolution). A wall point is the

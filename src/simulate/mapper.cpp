@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "grid/logistic.hpp"
 #include "gridmerge/grid/resample.hpp"
 
 namespace gridmerge::internal {
@@ -67,7 +68,7 @@ OccupancyGrid Mapper::grid() const {
   grid.probability.assign(grid.cells.size(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < log_odds_.size(); ++i) {
     if (std::isnan(log_odds_[i])) continue;
-    const double probability = 1.0 / (1.0 + std::exp(-static_cast<double>(log_odds_[i])));
+    const double probability = logistic(static_cast<double>(log_odds_[i]));
     grid.probability[i] = static_cast<float>(probability);
     if (probability > kOccupied) grid.cells[i] = Cell::occupied;
     if (probability < kFree) grid.cells[i] = Cell::free;

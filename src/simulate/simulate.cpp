@@ -59,12 +59,14 @@ char tier_of(const OccupancyGrid& fixed, const OccupancyGrid& moving, const Simu
              double bend) {
   constexpr double kNear = 0.1;  // [m]
   const int reach = static_cast<int>(std::ceil((kNear + bend) / fixed.resolution));
-  const SE2 T_grid_moving = inverse(fixed.origin) * pair.T_fixed_moving;
+  const ManyPointsTransform T_map_grid(moving.origin);
+  const ManyPointsTransform T_grid_moving(inverse(fixed.origin) * pair.T_fixed_moving);
   int shared = 0, matching = 0;
   for (int row = 0; row < moving.height; ++row) {
     for (int column = 0; column < moving.width; ++column) {
       if (moving.at(column, row) != Cell::occupied) continue;
-      const Point2 p = T_grid_moving * moving.cell_center(column, row);
+      const Point2 p = T_grid_moving * (T_map_grid * Point2{(column + 0.5) * moving.resolution,
+                                                            (row + 0.5) * moving.resolution});
       const int x = static_cast<int>(std::floor(p.x / fixed.resolution));
       const int y = static_cast<int>(std::floor(p.y / fixed.resolution));
       if (!fixed.contains(x, y) || fixed.at(x, y) == Cell::unknown) continue;
@@ -87,8 +89,9 @@ char tier_of(const OccupancyGrid& fixed, const OccupancyGrid& moving, const Simu
 double difference(const DrawnPlaces& places, const SE2& a, const SE2& b) {
   double sum = 0.0;
   const std::vector<PointPair> all = places.building_and_map();
+  const ManyPointsTransform T_a(a), T_b(b);
   for (const PointPair& place : all) {
-    const Point2 at_a = a * place.in_b, at_b = b * place.in_b;
+    const Point2 at_a = T_a * place.in_b, at_b = T_b * place.in_b;
     sum += (at_a.x - at_b.x) * (at_a.x - at_b.x) + (at_a.y - at_b.y) * (at_a.y - at_b.y);
   }
   return all.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(all.size()));
