@@ -52,9 +52,7 @@ MatchResult walk(const OccupancyGrid& fixed, const OccupancyGrid& moving, const 
   RandomWalkMatchOptions walk = options.random_walk;
   walk.threads = options.threads;
   walk.max_hypotheses = options.max_hypotheses;
-  walk.progress = nullptr;
-  if (options.progress)
-    walk.progress = [&](int done, int all) { options.progress(static_cast<double>(done) / all); };
+  walk.progress = options.progress;
   return match_by_random_walk(fixed, moving, walk);
 }
 

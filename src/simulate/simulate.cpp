@@ -28,8 +28,8 @@ bool is_between(double value, double low, double high) {
 }
 
 /// How one robot maps.
-void check_mapping(const SimulateOptions& options) {
-  options.sensor.validate();
+void validate_mapping(const SimulateOptions& options) {
+  validate(options.sensor);
   require(is_between(options.robot_radius, 0.05, 5.0), "a robot's radius must be between 0.05 and 5 metres");
   require(is_between(options.scan_every, 0.02, 10.0), "scans must be between 0.02 and 10 metres apart");
   require(is_between(options.drift, 0.0, 10.0), "drift must be between 0 and 10");
@@ -40,8 +40,8 @@ void check_mapping(const SimulateOptions& options) {
   require(!options.tidy || is_between(*options.tidy, 0.0, 1.0), "walls can be made thicker by 0 to 1 metres");
 }
 
-void check(const SimulateOptions& options) {
-  check_mapping(options);
+void validate(const SimulateOptions& options) {
+  validate_mapping(options);
   require(options.robots >= 1 && options.robots <= 1000, "there must be between 1 and 1000 robots");
   require(!options.overlap || is_between(*options.overlap, 0.0, 1.0), "overlap must lie in [0, 1]");
   require(!options.overlap || options.robots >= 2, "an overlap takes two robots");
@@ -209,20 +209,20 @@ Simulation simulate_in_arena(const SimulateOptions& options) {
 
 }  // namespace
 
-void RangeFinder::validate() const {
+void validate(const RangeFinder& sensor) {
   const auto is_share = [](double value) { return value >= 0.0 && value <= 1.0; };
-  require(field_of_view > 0.0 && field_of_view <= 2.0 * std::numbers::pi + 1e-9,
+  require(sensor.field_of_view > 0.0 && sensor.field_of_view <= 2.0 * std::numbers::pi + 1e-9,
           "the field of view must be between 0 and 360 degrees");
-  require(angular_step >= 1e-4 && angular_step <= field_of_view,
+  require(sensor.angular_step >= 1e-4 && sensor.angular_step <= sensor.field_of_view,
           "the angular step must be positive, and not above the field of view");
-  require(range >= 0.2 && range <= 200.0, "the range must be between 0.2 and 200 metres");
-  require(noise >= 0.0 && noise <= 10.0, "the noise must be between 0 and 10 metres");
-  require(is_share(stray_share) && is_share(missed_share) && is_share(cleared_share),
+  require(sensor.range >= 0.2 && sensor.range <= 200.0, "the range must be between 0.2 and 200 metres");
+  require(sensor.noise >= 0.0 && sensor.noise <= 10.0, "the noise must be between 0 and 10 metres");
+  require(is_share(sensor.stray_share) && is_share(sensor.missed_share) && is_share(sensor.cleared_share),
           "shares of beams must lie in [0, 1]");
 }
 
 Simulation simulate(const SimulateOptions& options) {
-  check(options);
+  validate(options);
   Simulation simulation;
   with_threads(options.threads, [&] { simulation = simulate_in_arena(options); });
   return simulation;
@@ -230,7 +230,7 @@ Simulation simulate(const SimulateOptions& options) {
 
 SimulatedMap simulate_way(const Building& building, std::span<const Point2> way,
                           const SimulateOptions& options) {
-  check_mapping(options);
+  validate_mapping(options);
   require(!way.empty(), "a way must have a point");
   const RayCaster walls(building.edges);
   std::vector<SE2> path{{way.front().x, way.front().y, 0.0}};

@@ -24,10 +24,10 @@ struct GRIDMERGE_EXPORT RangeFinder {
   double noise = 0.02;                        ///< standard deviation of a range [m]
   double stray_share = 0.002;  ///< beams that end before what they should meet: dust, edges, people
   double missed_share = 0.02;  ///< beams that come back with nothing
-
-  /// Throws std::invalid_argument, saying what is wrong, for a range finder that cannot be.
-  void validate() const;
 };
+
+/// Throws std::invalid_argument, saying what is wrong, for a range finder that cannot be.
+void validate(const RangeFinder& sensor);
 
 /// What maps are wanted. Metres and radians.
 struct SimulateOptions {
