@@ -28,7 +28,7 @@ from ._evaluate import (
 from ._grid import MapLike, OccupancyGrid, load, save
 from ._inputs import MapWarning
 from ._known_poses import InitialPose
-from ._match import Hypothesis, MatchResult, Reason, Verdict, match
+from ._match import Hypothesis, MatchResult, PairPose, Reason, Verdict, match
 from ._measure import (
     CellClass,
     CommonCells,
@@ -80,6 +80,7 @@ __all__ = [
     "OccupancyGridMessage",
     "OpenWay",
     "PairCounts",
+    "PairPose",
     "PoseLike",
     "PoseMeasure",
     "PsiTerms",

@@ -18,9 +18,13 @@ class PairCounts:
     """Pairs of maps of one place."""
 
     total: int
+    """How many pairs there are."""
     accepted_correct: int
+    """Pairs that are accepted at the true pose."""
     accepted_wrong: int
+    """Pairs that are accepted at another pose."""
     refused: int
+    """Pairs that are not accepted."""
     best_correct: int
     """The best hypothesis is correct, accepted or not."""
 
@@ -30,7 +34,9 @@ class NegativeCounts:
     """Pairs of maps with no common place: the only right answer is to refuse."""
 
     total: int
+    """How many such pairs there are."""
     accepted: int
+    """Of them, those that are accepted, all of them wrongly."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +44,15 @@ class SetCounts:
     """Sets of maps that were merged."""
 
     total: int
+    """How many sets there are."""
     maps: int
+    """Maps of all sets together."""
     maps_correct: int
+    """Maps that lie where they should, relative to the member that makes most maps of its component correct."""
     maps_wrong: int
+    """Maps that were joined to others and lie elsewhere."""
     maps_left_out: int
+    """Maps that lie alone."""
     complete: int
     """Sets with every map correct."""
 
@@ -51,8 +62,11 @@ class TimeSummary:
     """Wall times of the matches [s]."""
 
     median: float
+    """Half of the matches took no longer [s]."""
     p90: float
+    """Nine of ten matches took no longer [s]."""
     max: float
+    """The longest match [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +82,11 @@ class MatchCase:
     tier: str
     """How hard the pair is, in the table's own words; empty where it has none."""
     verdict: Verdict
+    """On the best hypothesis."""
     reason: Reason
+    """Why the pair was refused; "none" if it was accepted."""
     probability: float
+    """That the best hypothesis is the true pose."""
     error: float | None
     """Root mean square displacement of the best hypothesis [m]; None for a negative, and without a hypothesis."""
     tolerance: float | None
@@ -77,6 +94,7 @@ class MatchCase:
     correct: bool | None
     """Whether the best hypothesis is the true pose; None for a negative."""
     seconds: float
+    """Wall time from maps in memory to the verdict."""
 
     def __repr__(self) -> str:
         right = self.verdict == "refused" if self.negative else self.correct
@@ -93,10 +111,15 @@ class SetCase:
     """How one set of maps went."""
 
     name: str
+    """Of the set, as the table writes it."""
     maps: int
+    """How many maps it has."""
     correct: int
+    """Maps that lie where they should."""
     wrong: int
+    """Maps that were joined to others and lie elsewhere."""
     left_out: int
+    """Maps that lie alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,12 +127,17 @@ class Evaluation:
     """The engine's answers, held against the truth."""
 
     pairs: PairCounts
+    """Of the pairs that have a true pose."""
     negatives: NegativeCounts
+    """Of the pairs that have no common place."""
     sets: SetCounts
+    """Of the sets that were merged."""
     seconds: TimeSummary
+    """Of the matches of pairs and negatives."""
     cases: tuple[MatchCase, ...]
     """The pairs, then the negatives, each in the table's order."""
     set_cases: tuple[SetCase, ...]
+    """The sets, in the table's order."""
     _core: _core.Evaluation = field(repr=False, compare=False)
 
     def __repr__(self) -> str:

@@ -11,7 +11,7 @@ from ._arguments import Progress
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_maps
 from ._known_poses import InitialPoses, MapKey, NamedMaps, to_known_poses
-from ._match import MatchResult, Reason, to_match_result
+from ._match import MatchResult, PairPose, Reason, pair_pose, to_match_result
 from ._repr import count, listed, probability, short_pose, shortened
 from ._transform import Transform
 
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 JoinOutcome: TypeAlias = Literal["refused", "accepted", "rescued", "rejected", "known"]
+"""What became of a comparison of two maps: "rescued" is too weak by itself and agrees with the others, "rejected" would
+be believed by itself and contradicts them, "known" lies so because it is known beforehand."""
 Strategy: TypeAlias = Literal["joint", "tree"]
 
 
@@ -29,6 +31,7 @@ class Member:
     map: int
     """Index of the input map."""
     name: str
+    """Of the map: its file, or what merge() was told to call it."""
     transform: Transform
     """Takes points of the map's frame to the component's."""
     probability: float | None
@@ -74,27 +77,23 @@ class Component:
 
 
 @dataclass(frozen=True, slots=True)
-class Join:
-    """A comparison of two maps, and what became of it."""
+class Join(PairPose):
+    """A comparison of two maps, and what became of it.
+
+    The pose is the one that was used, or the best hypothesis if none was. The probability is that from these two maps
+    alone.
+    """
 
     fixed: int
     """Index of the input map."""
     moving: int
     """Index of the input map."""
     outcome: JoinOutcome
+    """What became of the comparison in the merge."""
     used: bool
     """Whether the maps lie so in the result."""
-    transform: Transform
-    """T_fixed_moving of the pose that was used, or of the best hypothesis if none was."""
-    probability: float
-    """Of that pose, from these two maps alone."""
     reason: Reason | None
     """Why the merge did not use it; None if it did."""
-    acceptance_index: float
-    """Of that pose, as the next three."""
-    agreement: int
-    disagreement: int
-    overlap: float
     match: MatchResult
     """What the two maps say by themselves."""
 
@@ -113,7 +112,9 @@ class LeftOut:
     map: int
     """Index of the input map."""
     name: str
+    """Of the map: its file, or what merge() was told to call it."""
     reason: Reason
+    """Of the refused join that was most probable."""
     explanation: str
     """The reason as the end of a sentence that begins with the map's name."""
 
@@ -342,16 +343,11 @@ def _to_open_way(way: _core.OpenWay) -> OpenWay:
 
 def _to_join(join: _core.Join) -> Join:
     return Join(
+        **pair_pose(join),
         fixed=join.fixed,
         moving=join.moving,
         outcome=cast(JoinOutcome, join.outcome),
         used=join.used,
-        transform=Transform(*join.transform),
-        probability=join.probability,
         reason=None if join.reason == "none" else cast(Reason, join.reason),
-        acceptance_index=join.acceptance_index,
-        agreement=join.agreement,
-        disagreement=join.disagreement,
-        overlap=join.overlap,
         match=to_match_result(join.match),
     )

@@ -72,6 +72,7 @@ class Simulation:
     building: OccupancyGrid
     """The building itself, in its own frame."""
     maps: tuple[SimulatedMap, ...]
+    """The robots' maps, in their order."""
     pairs: tuple[SimulatedPair, ...]
     """Maps that share a place; pairs that hardly share any are neither here nor among the strangers."""
     strangers: tuple[tuple[int, int], ...]
