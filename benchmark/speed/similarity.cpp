@@ -5,7 +5,7 @@
 #include <cstring>
 #include <vector>
 
-#include "../tests/similarity/literal_similarity.hpp"
+#include "../../tests/similarity/literal_similarity.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/similarity/distance_map.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
