@@ -256,7 +256,7 @@ def merge(
         to_known_poses(NamedMaps(called, grids), init, fix),
         _arguments.threads(threads),
         None if accept is None else _arguments.share("accept", accept),
-        _arguments.at_least_0("max_false_joins", max_false_joins),
+        _arguments.not_negative("max_false_joins", max_false_joins),
         to_output_resolution(output_resolution),
         up_the_tree,
         _arguments.choice("search", search, tuple(_core.search_methods())),

@@ -35,7 +35,7 @@ class Merger:
         self._core = _core.Merger(
             _arguments.threads(threads),
             _arguments.share("accept", accept),
-            _arguments.at_least_0("max_false_joins", max_false_joins),
+            _arguments.not_negative("max_false_joins", max_false_joins),
             to_output_resolution(output_resolution),
         )
         self._maps: dict[int, tuple[OccupancyGrid, str]] = {}

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "grid/box.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 
 namespace gridmerge {
@@ -163,23 +164,19 @@ OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map,
   const SE2 T_target_grid = T_target_map * grid.origin;
   const double width_m = grid.width * grid.resolution;
   const double height_m = grid.height * grid.resolution;
-  double min_x = std::numeric_limits<double>::infinity(), min_y = min_x, max_x = -min_x, max_y = -min_x;
+  internal::Box box;
   for (const Point2& corner :
        std::array<Point2, 4>{{{0, 0}, {width_m, 0}, {0, height_m}, {width_m, height_m}}}) {
-    const Point2 p = T_target_grid * corner;
-    min_x = std::min(min_x, p.x);
-    min_y = std::min(min_y, p.y);
-    max_x = std::max(max_x, p.x);
-    max_y = std::max(max_y, p.y);
+    box.add(T_target_grid * corner);
   }
   // The small slack keeps a grid that already fits whole cells from growing by one through rounding.
-  const double columns = std::max(1.0, std::ceil((max_x - min_x) / resolution - 1e-6));
-  const double rows = std::max(1.0, std::ceil((max_y - min_y) / resolution - 1e-6));
+  const double columns = std::max(1.0, std::ceil((box.max_x - box.min_x) / resolution - 1e-6));
+  const double rows = std::max(1.0, std::ceil((box.max_y - box.min_y) / resolution - 1e-6));
   if (!(columns * rows <= kMaxCells))
     throw std::invalid_argument("the transformed map would exceed 2^28 cells");
 
   OccupancyGrid target =
-      make_grid(static_cast<int>(columns), static_cast<int>(rows), resolution, {min_x, min_y, 0.0});
+      make_grid(static_cast<int>(columns), static_cast<int>(rows), resolution, {box.min_x, box.min_y, 0.0});
   const SE2 T_grid_target = inverse(T_target_grid);
   const double c = std::cos(T_grid_target.theta) / grid.resolution;
   const double s = std::sin(T_grid_target.theta) / grid.resolution;
