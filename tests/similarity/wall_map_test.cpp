@@ -45,6 +45,28 @@ TEST(WallMap, DistancesAreWithinEightPercentOfTheEuclideanOnes) {
   }
 }
 
+TEST(WallMap, APlaceIsThatOfItsCellAndNothingIsSeenOutside) {
+  const WallMap map = make_wall_map(test::random_grid(3, 12, 7), 0.1);
+  ASSERT_NE(map.width, map.height);
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      const Place& place = map.places[static_cast<std::size_t>(y) * map.width + x];
+      for (const Point2& within : {Point2{0.0, 0.0}, Point2{0.999, 0.001}, Point2{0.5, 0.999}}) {
+        const Place found = map.place_at({x + within.x, y + within.y});
+        EXPECT_EQ(found.distance, place.distance);
+        EXPECT_EQ(found.facing, place.facing);
+      }
+    }
+  }
+  // As if all of it were seen, so that what is outside does not look like the rim.
+  WallMap seen = map;
+  for (Place& place : seen.places) place = {0, 0};
+  const double width = map.width, height = map.height, nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Point2& outside : {Point2{-1e-9, 1.0}, Point2{1.0, -1e-9}, Point2{width, 1.0},
+                                Point2{1.0, height}, Point2{1e300, 1.0}, Point2{nan, 1.0}, Point2{1.0, nan}})
+    EXPECT_EQ(seen.place_at(outside).distance, kUnseen) << outside.x << " " << outside.y;
+}
+
 TEST(WallMap, WallsKeepTheirPlaceInTheMapFrame) {
   OccupancyGrid grid = make_grid(30, 20, 0.05, {3.0, -2.0, 0.7}, Cell::free);
   grid.at(21, 13) = Cell::occupied;
