@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "gridmerge/grid/resample.hpp"
-#include "merge/arrangement.hpp"
 #include "merge/coverage.hpp"
+#include "merge/map_extent.hpp"
 #include "merge/prior.hpp"
 
 namespace gridmerge {
