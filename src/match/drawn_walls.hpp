@@ -6,12 +6,13 @@
 #include <mutex>
 
 #include "gridmerge/match/prepared_map.hpp"
+#include "internal_export.hpp"
 #include "similarity/wall_map.hpp"
 
 namespace gridmerge::internal {
 
 /// A prepared map as it is compared: drawn once in cells of each size.
-class DrawnWalls {
+class GRIDMERGE_INTERNAL_EXPORT DrawnWalls {
  public:
   /// In cells of `cell` metres; drawn when first asked for, O(cells) then. Lives as long as the map.
   static const WallMap& of(const PreparedMap& map, double cell);

@@ -3,6 +3,7 @@
 
 #include "gridmerge/match/match_result.hpp"
 #include "gridmerge/match/prepared_map.hpp"
+#include "internal_export.hpp"
 #include "similarity/agreement.hpp"
 
 namespace gridmerge::internal {
@@ -16,6 +17,7 @@ void set_common(const AgreementCounts& counts, const OccupancyGrid& fixed, const
 void count_common(const OccupancyGrid& fixed, const OccupancyGrid& moving, PairPose& pose);
 
 /// The same on cells of the smaller map, so that it does not depend on which one is called fixed.
-void count_common(const PreparedMap& fixed, const PreparedMap& moving, PairPose& pose);
+GRIDMERGE_INTERNAL_EXPORT void count_common(const PreparedMap& fixed, const PreparedMap& moving,
+                                            PairPose& pose);
 
 }  // namespace gridmerge::internal

@@ -16,7 +16,7 @@
 namespace gridmerge {
 
 /// A scanning laser range finder.
-struct GRIDMERGE_EXPORT RangeFinder {
+struct RangeFinder {
   double field_of_view = 4.71238898038469;    ///< [rad], about the heading: 270 degrees
   double angular_step = 0.00872664625997165;  ///< between two beams [rad]: half a degree
   double range = 8.0;                         ///< [m]: what is farther gives no echo
@@ -27,7 +27,7 @@ struct GRIDMERGE_EXPORT RangeFinder {
 };
 
 /// Throws std::invalid_argument, saying what is wrong, for a range finder that cannot be.
-void validate(const RangeFinder& sensor);
+GRIDMERGE_EXPORT void validate(const RangeFinder& sensor);
 
 /// What maps are wanted. Metres and radians.
 struct SimulateOptions {
