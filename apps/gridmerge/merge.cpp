@@ -176,17 +176,17 @@ std::string describe_nothing(const MergeCommandOptions& options, const MergeResu
 
 /// How maps that lie apart may lie together, the most probable ways.
 std::string describe_open_ways(const std::vector<std::string>& names, const MergeResult& result) {
-  constexpr std::size_t kMostTold = 6;
+  constexpr std::size_t kMaxTold = 6;
   std::string text;
   const auto out = std::back_inserter(text);
-  for (std::size_t i = 0; i < std::min(result.open_ways.size(), kMostTold); ++i) {
+  for (std::size_t i = 0; i < std::min(result.open_ways.size(), kMaxTold); ++i) {
     const OpenWay& way = result.open_ways[i];
     fmt::format_to(out, "perhaps: {} in the frame of {} at {} (probability {:.2f})\n",
                    escape_controls(names[way.moving]), escape_controls(names[way.fixed]),
                    describe_pose(way.T_fixed_moving), way.probability);
   }
-  if (result.open_ways.size() > kMostTold)
-    fmt::format_to(out, "and {} more such ways: see transforms.json\n", result.open_ways.size() - kMostTold);
+  if (result.open_ways.size() > kMaxTold)
+    fmt::format_to(out, "and {} more such ways: see transforms.json\n", result.open_ways.size() - kMaxTold);
   return text;
 }
 
@@ -229,7 +229,7 @@ std::string describe(const MergeCommandOptions& options, const MergeResult& resu
 /// another map, at another scale.
 std::string scale_hints(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
                         const MergeResult& result, Console& console) {
-  constexpr std::size_t kMostHints = 2;  // each takes as long as ten matches
+  constexpr std::size_t kMaxHints = 2;  // each takes as long as ten matches
   if (options.search.up_the_tree() || result.left_out.empty()) return {};
   const bool has_merged = !result.components.empty();
   const std::size_t first = result.left_out.front().map;
@@ -239,7 +239,7 @@ std::string scale_hints(const MergeCommandOptions& options, const std::vector<Oc
   std::size_t asked = 0;
   for (const LeftOut& one : result.left_out) {
     const std::size_t map = one.map;
-    if ((!has_merged && map == first) || count_cells(maps[map]).known() == 0 || asked == kMostHints) continue;
+    if ((!has_merged && map == first) || count_cells(maps[map]).known() == 0 || asked == kMaxHints) continue;
     ++asked;
     console.progress("trying other scales");
     text += scale_hint(fixed, {options.maps[map], maps[map]}, match_options(options.common, options.search));

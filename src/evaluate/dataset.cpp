@@ -50,7 +50,7 @@ std::vector<TrueSet> sets(const Simulation& simulation) {
   for (std::size_t robot = 0; robot < simulation.maps.size(); ++robot) {
     const SimulatedMap& map = simulation.maps[robot];
     set.members.push_back({robot_map(robot), inverse(first.T_building_map) * map.T_building_map,
-                           std::max(kLeastTolerance, 0.3 + 2.0 * (first.bend + map.bend))});
+                           std::max(kMinTolerance, 0.3 + 2.0 * (first.bend + map.bend))});
   }
   return {set};
 }

@@ -89,8 +89,8 @@ OccupancyGrid quarter_turned(const OccupancyGrid& grid, int quarters) {
 }
 
 OccupancyGrid without_painted(const OccupancyGrid& grid, double reach) {
-  constexpr int kLeastReach = 3;
-  const int cells = std::clamp(static_cast<int>(std::min(reach / grid.resolution, 250.0)), kLeastReach, 250);
+  constexpr int kMinReach = 3;
+  const int cells = std::clamp(static_cast<int>(std::min(reach / grid.resolution, 250.0)), kMinReach, 250);
   // Cells to the nearest free one of the column, as far as it matters.
   const std::size_t width = static_cast<std::size_t>(grid.width);
   const auto far = static_cast<std::uint8_t>(cells + 1);

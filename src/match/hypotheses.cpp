@@ -19,8 +19,8 @@ constexpr double kCoarseCellsAlongSide = 150.0;
 constexpr double kCoarseSigma = 0.8;  // tolerance of the search [coarse cells]
 /// Steps of rotation move the walls by so much on average, within bounds.
 constexpr double kTurnStep = 2.0;  // coarse cells
-constexpr int kLeastRotations = 180;
-constexpr int kMostRotations = 720;
+constexpr int kMinRotations = 180;
+constexpr int kMaxRotations = 720;
 /// Poses nearer than this share of the larger map's side, and never less than kMinDistinct, are one
 /// hypothesis.
 constexpr double kDistinctShare = 0.03;
@@ -75,7 +75,7 @@ ExhaustiveSearchOptions choose_search(const ComparedMaps& maps) {
   search.sigma = kCoarseSigma * search.coarse_factor;
   const double radius = make_pose_metric(maps.moving_walls).radius / search.coarse_factor;
   search.rotations = std::clamp(static_cast<int>(std::ceil(2.0 * std::numbers::pi * radius / kTurnStep)),
-                                kLeastRotations, kMostRotations);
+                                kMinRotations, kMaxRotations);
   return search;
 }
 

@@ -20,8 +20,8 @@ constexpr double kShiftReach = 1.0;   // [m] along either axis
 constexpr double kTurnReach = 0.125;  // [rad]
 /// No further than this on either side, in steps between poses: with cells of less than 2 cm, or maps of more
 /// than 8000 cells, there would be no end of poses.
-constexpr int kMostShifts = 25;
-constexpr int kMostTurns = 128;
+constexpr int kMaxShifts = 25;
+constexpr int kMaxTurns = 128;
 /// Maxima that are ranked. Those of the walls are not always those of walls and area together.
 constexpr std::size_t kMaxima = 6;
 constexpr double kDistinctMaxima = 2.0;  // [cells]
@@ -30,8 +30,8 @@ constexpr double kDistinctMaxima = 2.0;  // [cells]
 /// those from which match() climbs.
 std::vector<PoseCandidate> poses_around(const SE2& start, const ComparedMaps& maps, double spacing) {
   const PoseMetric metric = make_pose_metric(maps.moving_walls);
-  const double shift_reach = std::min(kShiftReach / maps.cell, kMostShifts * spacing);
-  const double turn_reach = std::min(kTurnReach, kMostTurns * spacing / metric.radius);
+  const double shift_reach = std::min(kShiftReach / maps.cell, kMaxShifts * spacing);
+  const double turn_reach = std::min(kTurnReach, kMaxTurns * spacing / metric.radius);
   const int shifts = static_cast<int>(std::ceil(shift_reach / spacing));
   const int turns = static_cast<int>(std::ceil(turn_reach * metric.radius / spacing));
   std::vector<PoseCandidate> poses{{start, 0}};

@@ -29,8 +29,8 @@ double things_share(const PoseFigures& f) {
 
 /// How well the pose is held in its weakest direction, against its strongest. A corridor slides.
 double how_held(const PoseFigures& f) {
-  constexpr double kLeast = 0.03;
-  return logarithm(std::max(f.held, 0.0) / std::max(f.held_most, 1.0), kLeast);
+  constexpr double kMin = 0.03;
+  return logarithm(std::max(f.held, 0.0) / std::max(f.held_most, 1.0), kMin);
 }
 constexpr double kSlides = -2.0;  // of it: less than an eighth
 
@@ -119,7 +119,7 @@ double log_odds_of(const PoseFigures& figures) {
 namespace {
 
 /// Nothing stands out more: also what has no rivals.
-constexpr double kMostStandingOut = 20.0;  // nats
+constexpr double kMaxStandingOut = 20.0;  // nats
 
 /// What has less than this share of a pose's score has too little in common to tell whose cells agree better.
 constexpr double kRivalScore = 0.5;
@@ -131,7 +131,7 @@ void compare_rivals(std::span<PoseFigures> hypotheses,
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     PoseFigures& one = hypotheses[i];
     const double rank = rank_of(one);
-    double next_score = 0.0, others = std::exp(-kMostStandingOut);
+    double next_score = 0.0, others = std::exp(-kMaxStandingOut);
     one.next_acceptance_index = 0.0;
     for (std::size_t j = 0; j < hypotheses.size(); ++j) {
       const PoseFigures& other = hypotheses[j];

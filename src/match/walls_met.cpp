@@ -16,13 +16,13 @@ namespace gridmerge::internal {
 
 namespace {
 
-constexpr double kPatchSide = 6.0;        // [m]
-constexpr double kLeastPatchSide = 60.0;  // [cells]
-constexpr double kFarthestShift = 1.2;    // [m]
-constexpr double kFirstStep = 0.4;        // [m]
-constexpr double kLastStep = 0.5;         // [cells]
-constexpr double kLeastWall = 2.0;        // that a patch must have where both have seen, to move [m]
-constexpr int kMeetingDistance = 2;       // [cells]
+constexpr double kPatchSide = 6.0;      // [m]
+constexpr double kMinPatchSide = 60.0;  // [cells]
+constexpr double kFarthestShift = 1.2;  // [m]
+constexpr double kFirstStep = 0.4;      // [m]
+constexpr double kLastStep = 0.5;       // [cells]
+constexpr double kMinWall = 2.0;        // that a patch must have where both have seen, to move [m]
+constexpr int kMeetingDistance = 2;     // [cells]
 constexpr std::size_t kClimbingWalls = 60;
 
 /// A wall that lies in what the other map has not seen is worth this much when a patch climbs: about what an
@@ -140,7 +140,7 @@ class PatchMatcher {
 
   /// `rigid` is what rigidly() says of the patch.
   Meetings locally(const Patch& patch, const Meetings& rigid) const {
-    if (patch.moving.empty() || rigid.seen * fixed_.cell < kLeastWall) return rigid;
+    if (patch.moving.empty() || rigid.seen * fixed_.cell < kMinWall) return rigid;
     return at(patch, climb(patch));
   }
 
@@ -195,7 +195,7 @@ double share(double part, double whole) {
 
 WallPatches::WallPatches(const WallMap& map)
     : map_(map),
-      side_(std::max(kPatchSide / map.cell, kLeastPatchSide)),
+      side_(std::max(kPatchSide / map.cell, kMinPatchSide)),
       columns_(static_cast<std::size_t>(map.width / side_) + 1),
       rows_(static_cast<std::size_t>(map.height / side_) + 1),
       walls_(columns_ * rows_) {

@@ -17,7 +17,7 @@ namespace gridmerge::internal {
 namespace {
 
 /// A map that moves elsewhere must gain so much, or rounding would keep it moving [nats].
-constexpr double kLeastGain = 0.1;
+constexpr double kMinGain = 0.1;
 
 /// Weighs groups against each other, and keeps what it has found until the groups change.
 class Arranger {
@@ -79,7 +79,7 @@ class Arranger {
   /// Takes out the map that gains most by lying elsewhere, or alone, and puts it there; false if none gains.
   bool move_one() {
     weigh_moves();
-    double most = kLeastGain;
+    double most = kMinGain;
     std::optional<std::pair<std::size_t, std::size_t>> which;  // group, place in it
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (groups_[g].size() < 2) continue;
@@ -307,15 +307,15 @@ Arrangement arrange_within(const ArrangementProblem& problem, double accept_prob
   if (!(max_false_joins >= 0.0) || !std::isfinite(max_false_joins))
     throw std::invalid_argument("max_false_joins must be a number from 0 on");
   Arrangement arrangement = arrange(problem, accept_probability);
-  constexpr double kLeastStep = 0.2;    // of the doubt that is still allowed, so that this ends
-  constexpr double kLeastDoubt = 1e-9;  // from there on nothing is surer
+  constexpr double kMinStep = 0.2;    // of the doubt that is still allowed, so that this ends
+  constexpr double kMinDoubt = 1e-9;  // from there on nothing is surer
   double keep = accept_probability;
-  while (expected_false_joins(arrangement) > max_false_joins && 1.0 - keep > kLeastDoubt) {
+  while (expected_false_joins(arrangement) > max_false_joins && 1.0 - keep > kMinDoubt) {
     double least = 1.0;
     for (const NodeGroup& group : arrangement.groups) {
       for (const PlacedNode& node : group) least = std::min(least, node.probability);
     }
-    keep = std::min(1.0, std::max(std::nextafter(least, 2.0), keep + kLeastStep * (1.0 - keep)));
+    keep = std::min(1.0, std::max(std::nextafter(least, 2.0), keep + kMinStep * (1.0 - keep)));
     arrangement = arrange(problem, accept_probability, keep);
   }
   return arrangement;

@@ -12,7 +12,7 @@ namespace gridmerge::internal {
 namespace {
 
 constexpr double kCellsAlongSide = 100.0;
-constexpr std::size_t kMostCentres = 200;
+constexpr std::size_t kMaxCentres = 200;
 
 }  // namespace
 
@@ -61,7 +61,7 @@ Coverage::Coverage(const OccupancyGrid& grid)
         centres.push_back(T_map_grid * Point2{(column + 0.5) * cell_, (row + 0.5) * cell_});
     }
   }
-  const std::size_t drawn = std::min(centres.size(), kMostCentres);
+  const std::size_t drawn = std::min(centres.size(), kMaxCentres);
   for (std::size_t i = 0; i < drawn; ++i) centres_.push_back(centres[i * centres.size() / drawn]);
 }
 

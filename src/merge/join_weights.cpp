@@ -14,7 +14,7 @@ namespace gridmerge::internal {
 namespace {
 
 /// No single pair says more than this about two maps: their errors have causes in common with other pairs'.
-constexpr double kMostLogOdds = 6.0;
+constexpr double kMaxLogOdds = 6.0;
 /// Where the strongest pair has spoken, the second counts by so much, the third by the square of that...
 constexpr double kDependence = 0.3;
 /// A pair of whose places a share is fresh speaks of them with this power of the share: what borders on known
@@ -116,7 +116,7 @@ std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t a,
     const double log_odds = pair.candidates[i].log_odds;
     if (!(off <= tolerance * tolerance) || (best && log_odds <= pair.candidates[best->candidate].log_odds))
       continue;
-    best = {*index, i, std::min(log_odds, kMostLogOdds) + kPoseNats};
+    best = {*index, i, std::min(log_odds, kMaxLogOdds) + kPoseNats};
   }
   return best;
 }

@@ -77,7 +77,7 @@ std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const
     });
   };
   std::vector<OpenWay> ways;
-  for (const OpenJoin& open : find_open_joins(problem, arrangement, kLeastOpenProbability)) {
+  for (const OpenJoin& open : find_open_joins(problem, arrangement, kMinOpenProbability)) {
     PlacedNode fixed = first_input(arrangement.groups[open.a]);
     PlacedNode moving = first_input(arrangement.groups[open.b]);
     SE2 T = inverse(fixed.T_group_map) * open.T_a_b * moving.T_group_map;

@@ -18,7 +18,7 @@ using namespace internal;
 namespace {
 
 constexpr double kFarthest = 1e7;  // [m]
-constexpr double kLeastDeviation = 1e-6;
+constexpr double kMinDeviation = 1e-6;
 
 struct KnownMap {
   KnownPose pose;
@@ -127,7 +127,7 @@ void validate(const KnownPose& known) {
   if (!(std::abs(T.x) <= kFarthest && std::abs(T.y) <= kFarthest && std::isfinite(T.theta)))
     throw std::invalid_argument("a known pose must be finite, and within 10000 km");
   if (known.fixed) return;
-  const auto is_deviation = [](double sd) { return std::isfinite(sd) && sd >= kLeastDeviation; };
+  const auto is_deviation = [](double sd) { return std::isfinite(sd) && sd >= kMinDeviation; };
   if (!is_deviation(known.sd_position) || !is_deviation(known.sd_theta))
     throw std::invalid_argument(
         "the standard deviations of a known pose must be at least 0.000001, unless it is fixed");

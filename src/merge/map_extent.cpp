@@ -10,13 +10,13 @@ namespace gridmerge::internal {
 namespace {
 
 /// Bent maps of 70 m close cycles of three within 2.4 m in 95 of 100 cases.
-constexpr double kLeastTolerance = 0.5;  // [m]
+constexpr double kMinTolerance = 0.5;  // [m]
 constexpr double kToleranceShare = 0.045;
 
 }  // namespace
 
 double agreement_tolerance(const MapExtent& a, const MapExtent& b) {
-  return std::max(kLeastTolerance, kToleranceShare * std::max(a.side, b.side));
+  return std::max(kMinTolerance, kToleranceShare * std::max(a.side, b.side));
 }
 
 double displacement(const MapExtent& moving, const SE2& a, const SE2& b) {

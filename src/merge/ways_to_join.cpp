@@ -19,9 +19,9 @@ constexpr double kOddsAmongMany = 0.4;
 constexpr double kRepeats = 0.005;
 
 /// So many poses are weighed in full for two groups: those with which most pairs agree.
-constexpr std::size_t kMostProposals = 50;
+constexpr std::size_t kMaxProposals = 50;
 /// Candidates less likely than this propose no join, though they may agree with one.
-constexpr double kLeastLogOdds = -6.0;
+constexpr double kMinLogOdds = -6.0;
 /// Poses nearer to each other than this many tolerances are one way to join: the same candidate may agree
 /// with both.
 constexpr double kDistinct = 2.0;
@@ -72,7 +72,7 @@ std::vector<SE2> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) 
       if (!index) continue;
       const PairCandidates& pair = problem_.pairs[*index];
       for (const CandidateJoin& candidate : pair.candidates) {
-        if (candidate.log_odds < kLeastLogOdds) continue;
+        if (candidate.log_odds < kMinLogOdds) continue;
         const SE2 T = pair.fixed == in_a.map ? candidate.T_fixed_moving : inverse(candidate.T_fixed_moving);
         all.push_back({in_a.T_group_map * T * inverse(in_b.T_group_map)});
       }
@@ -97,7 +97,7 @@ std::vector<SE2> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) 
       return difference(of_a, of_b, proposal.T_a_b, other) < distinct;
     });
     if (is_new) kept.push_back(proposal.T_a_b);
-    if (kept.size() == kMostProposals) break;
+    if (kept.size() == kMaxProposals) break;
   }
   return kept;
 }

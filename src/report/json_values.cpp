@@ -35,12 +35,12 @@ Json common_json(const PairPose& pose) {
 }
 
 Json hypotheses_json(const Join& join) {
-  constexpr std::size_t kMost = 3;
-  constexpr double kLeastProbability = 0.01;
+  constexpr std::size_t kMax = 3;
+  constexpr double kMinProbability = 0.01;
   if (join.outcome != JoinOutcome::refused) return hypotheses_json(join.match.hypotheses);
   std::vector<Hypothesis> kept;
   for (const Hypothesis& hypothesis : join.match.hypotheses) {
-    if (kept.empty() || (kept.size() < kMost && hypothesis.probability >= kLeastProbability))
+    if (kept.empty() || (kept.size() < kMax && hypothesis.probability >= kMinProbability))
       kept.push_back(hypothesis);
   }
   return hypotheses_json(kept);

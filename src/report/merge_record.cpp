@@ -25,8 +25,8 @@ namespace {
 constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 constexpr double kFarthest =
     1e12;  // [m]: maps' origins are within 1e9, and poses were multiplied a few times
-constexpr std::size_t kMostEqual = 100;  // of one name: what is said of them is looked for among all pairs
-constexpr double kRounding = 1e-9;       // probabilities are differences, too
+constexpr std::size_t kMaxEqual = 100;  // of one name: what is said of them is looked for among all pairs
+constexpr double kRounding = 1e-9;      // probabilities are differences, too
 constexpr double kInfinity = std::numeric_limits<double>::max();
 
 double share(const JsonReader& json) {
@@ -72,7 +72,7 @@ class RecordReader {
       const std::string name = json.at(i).text();
       if (name.empty() || name.find('\0') != std::string::npos) json.at(i).fail("is no name of a file");
       named_[name].push_back(i);
-      if (named_[name].size() > kMostEqual) json.at(i).fail("is there too often: '" + name + "'");
+      if (named_[name].size() > kMaxEqual) json.at(i).fail("is there too often: '" + name + "'");
       record_.names.push_back(name);
     }
     is_placed_.assign(record_.names.size(), false);

@@ -25,7 +25,7 @@ constexpr int kLegendGap = 6;  // between its lines [pixels]
 constexpr int kPageMinWidth = 1000, kPageMaxWidth = 2400;
 constexpr int kComponentMinSide = 1400, kComponentMaxSide = kPageMaxWidth - 2 * kGap;
 constexpr int kLeftOutMinSide = 280, kLeftOutMaxSide = 560;
-constexpr std::size_t kMostLeftOutPanels = 12;
+constexpr std::size_t kMaxLeftOutPanels = 12;
 
 MapPanel component_panel(const std::vector<OccupancyGrid>& maps, const MergeResult& result,
                          std::size_t index) {
@@ -170,7 +170,7 @@ std::string preview_png(const NamedMerge& merge) {
 
   std::vector<Canvas> left_out;
   for (const LeftOut& one : result.left_out) {
-    if (left_out.size() == kMostLeftOutPanels) break;
+    if (left_out.size() == kMaxLeftOutPanels) break;
     const std::size_t map = one.map;
     left_out.push_back(draw_panel(left_out_panel(called.at(map), maps.at(map), map), TextSize::small));
   }

@@ -13,12 +13,12 @@ namespace gridmerge::internal {
 
 namespace {
 
-constexpr double kFarthest = 1e7;      // [m]
-constexpr double kMostTurned = 100.0;  // [rad]: a page may have counted whole turns
+constexpr double kFarthest = 1e7;     // [m]
+constexpr double kMaxTurned = 100.0;  // [rad]: a page may have counted whole turns
 
 SE2 read_pose(const JsonReader& json) {
   return {json.at("x").number_in(-kFarthest, kFarthest), json.at("y").number_in(-kFarthest, kFarthest),
-          normalize_angle(json.at("theta").number_in(-kMostTurned, kMostTurned))};
+          normalize_angle(json.at("theta").number_in(-kMaxTurned, kMaxTurned))};
 }
 
 std::size_t read_map(const JsonReader& json, std::size_t maps) {

@@ -38,7 +38,7 @@ OccupancyGrid at_most(OccupancyGrid grid, std::size_t max_cells) {
 
 ShownMap show_map(const OccupancyGrid& grid) {
   if (count_cells(grid).known() == 0) return {0, 0, grid.resolution, grid.origin, ""};
-  const OccupancyGrid known = at_most(crop_to_known(grid), kMostShownCells);
+  const OccupancyGrid known = at_most(crop_to_known(grid), kMaxShownCells);
   return {known.width, known.height, known.resolution, known.origin, to_base64(deflated(known.cells))};
 }
 

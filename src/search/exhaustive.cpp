@@ -17,7 +17,7 @@ namespace {
 constexpr double kScale = 6.0;           // score units a nat
 constexpr std::size_t kPilotMargin = 4;  // see foreseen_score()
 /// Shifts at which fewer than this share of the samples could lie on the fixed map are not looked at.
-constexpr double kLeastMet = 0.08;
+constexpr double kMinMet = 0.08;
 static_assert(kMaxSearchSamples * kMaxCorrelated < 32767);
 
 /// The evidence of a wall in each coarse cell of the fixed map.
@@ -55,7 +55,7 @@ class PeakFinder {
              const EvidenceImage& pooled)
       : frame_(frame),
         walls_(walls),
-        least_met_(1 + static_cast<std::size_t>(kLeastMet * static_cast<double>(walls.size()))),
+        least_met_(1 + static_cast<std::size_t>(kMinMet * static_cast<double>(walls.size()))),
         evidence_(evidence),
         pooled_(pooled) {}
 

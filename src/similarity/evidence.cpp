@@ -268,12 +268,12 @@ WallEvidence::Histogram WallEvidence::count_encounters(const LookUp& map, const 
   // Several counters, because neighbouring walls often meet the same: adding to one twice in a row would
   // wait. Short ones, because to clear and to sum them takes as long as to count a hundred walls.
   constexpr std::size_t kCounters = 4;
-  constexpr std::size_t kMostCounted = 65535 / kBlock * kBlock;
+  constexpr std::size_t kMaxCounted = 65535 / kBlock * kBlock;
   using Counts = std::array<std::uint16_t, kEncounters + 1>;
   Histogram histogram{};
   std::array<int, kBlock> at;
-  for (std::size_t begin = 0; begin < points.x.size(); begin += kMostCounted) {
-    const std::size_t end = std::min(points.x.size(), begin + kMostCounted);
+  for (std::size_t begin = 0; begin < points.x.size(); begin += kMaxCounted) {
+    const std::size_t end = std::min(points.x.size(), begin + kMaxCounted);
     std::array<Counts, kCounters> counts{};
     for (std::size_t first = begin; first < end; first += kBlock) {
       const std::size_t count = std::min(kBlock, end - first);

@@ -27,7 +27,7 @@ constexpr double kAxisFree = 0.3;
 
 /// A thing that stands alone: at least so many wall cells that touch each other and no other wall, no farther
 /// apart than this.
-constexpr std::size_t kLeastThing = 3;
+constexpr std::size_t kMinThing = 3;
 constexpr double kLargestThing = 2.5;  // [m]
 
 /// A chamfer distance with a label of the place it was measured to: the label is in the low byte, so that the
@@ -177,7 +177,7 @@ void mark_things(WallMap& map, const std::vector<int>& at) {
         }
       }
     }
-    if (thing.size() < kLeastThing || std::hypot(right - left, top - bottom) > largest) continue;
+    if (thing.size() < kMinThing || std::hypot(right - left, top - bottom) > largest) continue;
     for (const int wall : thing) map.walls[wall].stands_alone = true;
   }
 }

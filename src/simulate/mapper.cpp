@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kHit = 0.85F;
 constexpr float kMiss = -0.5F;
-constexpr float kMost = 4.0F;  // either way
+constexpr float kMax = 4.0F;  // either way
 constexpr double kOccupied = 0.65;
 constexpr double kFree = 0.196;
 
@@ -32,7 +32,7 @@ void Mapper::update(int column, int row, float evidence) {
   row += half_;
   if (column < 0 || row < 0 || column >= side_ || row >= side_) return;
   float& cell = log_odds_[static_cast<std::size_t>(row) * side_ + column];
-  cell = std::clamp((std::isnan(cell) ? 0.0F : cell) + evidence, -kMost, kMost);
+  cell = std::clamp((std::isnan(cell) ? 0.0F : cell) + evidence, -kMax, kMax);
 }
 
 void Mapper::add_beam(Point2 from, Point2 to, bool hits) {

@@ -105,7 +105,7 @@ SimulatedPair make_pair(const std::vector<Survey>& surveys, std::size_t fixed, s
   // Bent maps have a transform for what they share and another one for all of them; an estimate may be
   // nearer to either.
   const double doubt = difference(m.places, fit.T_a_b, inverse(f.map.T_building_map) * m.map.T_building_map);
-  pair.tolerance = std::max(kLeastTolerance, 0.3 + 2.0 * fit.rms + doubt);
+  pair.tolerance = std::max(kMinTolerance, 0.3 + 2.0 * fit.rms + doubt);
   pair.overlap =
       static_cast<double>(common.size()) / std::max(1, std::min(f.places.count(), m.places.count()));
   pair.tier = tier_of(f.map.grid, m.map.grid, pair, fit.rms);
@@ -113,14 +113,13 @@ SimulatedPair make_pair(const std::vector<Survey>& surveys, std::size_t fixed, s
 }
 
 void list_pairs(const std::vector<Survey>& surveys, Simulation& simulation) {
-  constexpr double kLeastShared = 1.0;  // [m^2]: less is next to nothing, but not nothing
+  constexpr double kMinShared = 1.0;  // [m^2]: less is next to nothing, but not nothing
   std::vector<double> largest(surveys.size(), 0.0);
   for (std::size_t i = 0; i < surveys.size(); ++i) {
     for (std::size_t k = i + 1; k < surveys.size(); ++k) {
       const std::vector<PointPair> common = common_places(surveys[i].places, surveys[k].places);
       if (common.empty()) simulation.strangers.emplace_back(i, k);
-      if (static_cast<double>(common.size()) * DrawnPlaces::kCell * DrawnPlaces::kCell < kLeastShared)
-        continue;
+      if (static_cast<double>(common.size()) * DrawnPlaces::kCell * DrawnPlaces::kCell < kMinShared) continue;
       simulation.pairs.push_back(make_pair(surveys, i, k, common));
       for (const std::size_t map : {i, k})
         largest[map] = std::max(largest[map], simulation.pairs.back().overlap);

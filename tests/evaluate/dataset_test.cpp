@@ -90,7 +90,7 @@ TEST(Dataset, HoldsMapsAndTruthThatBelongTogether) {
     const SimulatedMap &first = simulation.maps[0], &map = simulation.maps[i];
     const TrueMember& member = sets[0].members[i];
     EXPECT_EQ(member.map.name, "robot_" + std::to_string(i + 1) + ".yaml");
-    EXPECT_EQ(member.tolerance, std::max(kLeastTolerance, 0.3 + 2.0 * (first.bend + map.bend)));
+    EXPECT_EQ(member.tolerance, std::max(kMinTolerance, 0.3 + 2.0 * (first.bend + map.bend)));
     const SE2 T = inverse(first.T_building_map) * map.T_building_map;
     EXPECT_NEAR(member.T_set_map.x, T.x, 1e-12);
     EXPECT_NEAR(member.T_set_map.y, T.y, 1e-12);

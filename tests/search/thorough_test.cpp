@@ -47,7 +47,7 @@ class LiteralScore {
       seen += seen_share(x - shift_parity(T, 0), y - shift_parity(T, 1));
     }
     const double n = static_cast<double>(walls_.size()) / looked_up * seen / 15.0;
-    if (n < kLeastSeenSamples) return 0.0;
+    if (n < kMinSeenSamples) return 0.0;
     return 256.0 * (sum / 6.0 + 0.37 * n) / (0.48 * std::pow(n, 0.75));
   }
 
@@ -254,7 +254,7 @@ TEST(SearchThoroughly, RefusesOptionsThatMakeNoSense) {
   };
   refused([](auto& options) { options.coarse_factor = 0; });
   refused([](auto& options) { options.rotations = 0; });
-  refused([](auto& options) { options.samples = kMostThoroughSamples + 1; });
+  refused([](auto& options) { options.samples = kMaxThoroughSamples + 1; });
   refused([](auto& options) { options.sigma = 0.0; });
   refused([](auto& options) { options.outliers = 1.0; });
   const WallMap other = make_wall_map(test::random_grid(1, 30, 30), 0.2);

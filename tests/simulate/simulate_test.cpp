@@ -79,7 +79,7 @@ TEST(Simulate, MapsLieOnTheirBuildingAndOnEachOtherUnderTheTruth) {
         rms_displacement(simulation.maps[1].grid, pair.T_fixed_moving,
                          inverse(simulation.maps[0].T_building_map) * simulation.maps[1].T_building_map),
         0.1);
-    EXPECT_NEAR(pair.tolerance, kLeastTolerance, 0.05);
+    EXPECT_NEAR(pair.tolerance, kMinTolerance, 0.05);
   }
 }
 

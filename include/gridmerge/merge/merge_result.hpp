@@ -76,11 +76,11 @@ struct OpenWay {
   std::size_t fixed = 0;     ///< the first map of its component, or one that was left out
   std::size_t moving = 0;    ///< likewise, apart from `fixed` and after it
   SE2 T_fixed_moving;        ///< between the frames of these two maps
-  double probability = 0.0;  ///< with all that the other maps say, kLeastOpenProbability or more
+  double probability = 0.0;  ///< with all that the other maps say, kMinOpenProbability or more
 };
 
 /// Ways that are less probable are not told.
-inline constexpr double kLeastOpenProbability = 0.1;
+inline constexpr double kMinOpenProbability = 0.1;
 
 /// A map that joined nothing.
 struct LeftOut {

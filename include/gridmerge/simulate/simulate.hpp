@@ -82,7 +82,7 @@ struct SimulatedMap {
 };
 
 /// An estimate is never asked to be nearer to the truth than this [m].
-inline constexpr double kLeastTolerance = 0.5;
+inline constexpr double kMinTolerance = 0.5;
 
 /// Two maps that share a place.
 struct SimulatedPair {
@@ -92,7 +92,7 @@ struct SimulatedPair {
   SE2 T_fixed_moving;
   /// Largest rms_displacement() of a correct estimate [m]: half a metre, or more where the maps' bending
   /// leaves the true transform that uncertain.
-  double tolerance = kLeastTolerance;
+  double tolerance = kMinTolerance;
   double overlap = 0.0;  ///< share of the smaller map's area that both have drawn
   /// 'A': 400 cells of shared wall (of 0.05 m), 80 % of them matching; 'B': 150 and 60 %; 'C': less.
   char tier = 'C';
