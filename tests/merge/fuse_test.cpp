@@ -210,7 +210,7 @@ RC_GTEST_PROP(Fuse, EqualsTheNaiveSum, ()) {
       double sum = 0.0;
       for (const PlacedMap& input : inputs) {
         const Point2 p =
-            inverse(input.T_output_map * input.map->origin) * fused.grid.cell_center(column, row);
+            inverse(input.T_output_map * input.map->origin) * fused.grid.cell_centre(column, row);
         const int x = static_cast<int>(std::floor(p.x / input.map->resolution + 1e-6));
         const int y = static_cast<int>(std::floor(p.y / input.map->resolution + 1e-6));
         if (!input.map->contains(x, y) || input.map->at(x, y) == Cell::unknown) continue;

@@ -32,7 +32,7 @@ TEST(WallMap, DistancesAreWithinEightPercentOfTheEuclideanOnes) {
         for (int column = 0; column < grid.width; ++column) {
           if (grid.at(column, row) != Cell::occupied) continue;
           const Point2 p = centre_of(map, x, y);
-          const Point2 wall = grid.cell_center(column, row);
+          const Point2 wall = grid.cell_centre(column, row);
           nearest = std::min(nearest, std::hypot(p.x - wall.x, p.y - wall.y) / map.cell);
         }
       }
@@ -75,8 +75,8 @@ TEST(WallMap, WallsKeepTheirPlaceInTheMapFrame) {
     ASSERT_EQ(map.walls.size(), 1U) << cell;
     const Point2 found =
         map.T_map_grid * Point2{map.walls[0].position.x * cell, map.walls[0].position.y * cell};
-    EXPECT_NEAR(found.x, grid.cell_center(21, 13).x, 1e-5);
-    EXPECT_NEAR(found.y, grid.cell_center(21, 13).y, 1e-5);
+    EXPECT_NEAR(found.x, grid.cell_centre(21, 13).x, 1e-5);
+    EXPECT_NEAR(found.y, grid.cell_centre(21, 13).y, 1e-5);
   }
 }
 

@@ -39,7 +39,7 @@ double walls_met(const OccupancyGrid& fixed, const OccupancyGrid& moving, const 
   for (int row = 0; row < moving.height; ++row) {
     for (int column = 0; column < moving.width; ++column) {
       if (moving.at(column, row) != Cell::occupied) continue;
-      const Point2 p = T_grid_moving * moving.cell_center(column, row);
+      const Point2 p = T_grid_moving * moving.cell_centre(column, row);
       const int x = static_cast<int>(std::floor(p.x / fixed.resolution));
       const int y = static_cast<int>(std::floor(p.y / fixed.resolution));
       if (!fixed.contains(x, y) || fixed.at(x, y) == Cell::unknown) continue;
