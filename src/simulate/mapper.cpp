@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "grid/logistic.hpp"
+#include "gridmerge/grid/message_values.hpp"
 #include "gridmerge/grid/resample.hpp"
 
 namespace gridmerge::internal {
@@ -16,8 +17,6 @@ namespace {
 constexpr float kHit = 0.85F;
 constexpr float kMiss = -0.5F;
 constexpr float kMax = 4.0F;  // either way
-constexpr double kOccupied = 0.65;
-constexpr double kFree = 0.196;
 
 }  // namespace
 
@@ -70,8 +69,8 @@ OccupancyGrid Mapper::grid() const {
     if (std::isnan(log_odds_[i])) continue;
     const double probability = logistic(static_cast<double>(log_odds_[i]));
     grid.probability[i] = static_cast<float>(probability);
-    if (probability > kOccupied) grid.cells[i] = Cell::occupied;
-    if (probability < kFree) grid.cells[i] = Cell::free;
+    if (probability > kOccupiedThreshold) grid.cells[i] = Cell::occupied;
+    if (probability < kFreeThreshold) grid.cells[i] = Cell::free;
   }
   return crop_to_known(grid);
 }
