@@ -61,3 +61,6 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/gridmergeConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/gridmergeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/gridmergeConfig.cmake ${PROJECT_BINARY_DIR}/gridmergeConfigVersion.cmake
         DESTINATION ${package_dir} COMPONENT core)
+# For packages of which neither CMake nor they themselves say how they are found.
+install(FILES ${PROJECT_SOURCE_DIR}/cmake/Findlz4.cmake ${PROJECT_SOURCE_DIR}/cmake/Findzstd.cmake
+        DESTINATION ${package_dir} COMPONENT bag)

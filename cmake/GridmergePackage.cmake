@@ -34,7 +34,7 @@ list(JOIN dev_depends ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libgridmerge-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_DESCRIPTION "C++ libraries with their headers: grids, matching of two maps, merging of
-many, map files, simulated maps, evaluation, reports.")
+many, map files, ROS bags, simulated maps, evaluation, reports.")
 
 # What Debian wants to find in usr/share/doc.
 set(documents ${PROJECT_BINARY_DIR}/debian)

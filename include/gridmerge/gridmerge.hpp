@@ -18,6 +18,9 @@
 #include "gridmerge/io/initial_poses.hpp"
 #include "gridmerge/io/map_file.hpp"
 #endif
+#if __has_include("gridmerge/bag/any_map.hpp")
+#include "gridmerge/bag/any_map.hpp"
+#endif
 #if __has_include("gridmerge/report/merge_output.hpp")
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/merge_record.hpp"

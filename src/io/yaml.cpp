@@ -34,8 +34,8 @@ class DepthGuard : public YAML::EventHandler {
 
  private:
   void descend() {
-    constexpr int kMost = 16;  // a map file has two
-    if (++depth_ > kMost) throw ParseError("not valid YAML: nested too deeply");
+    constexpr int kMax = 16;  // a map file has two
+    if (++depth_ > kMax) throw ParseError("not valid YAML: nested too deeply");
   }
 
   int depth_ = 0;
