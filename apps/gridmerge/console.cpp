@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "gridmerge/bag/any_map.hpp"
 #include "io/atomic_file.hpp"
 
 namespace gridmerge::cli {
@@ -132,7 +133,7 @@ void try_output_file(const std::string& path, const std::vector<std::filesystem:
 }
 
 LoadedMap MapReader::read(const std::string& path) {
-  LoadedMap map = load_map(path, options_);
+  LoadedMap map = load_any_map(path, options_);
   for (const MapWarning& warning : map.warnings) warned_.push_back({path, warning});
   console_.remark(fmt::format("read {}: {} x {} cells of {} m", path, map.grid.width, map.grid.height,
                               map.grid.resolution));

@@ -16,6 +16,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "gridmerge/bag/any_map.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"
@@ -51,10 +52,6 @@ void tell_of_copies(const MergeCommandOptions& options, const std::vector<Occupa
                     Console& console) {
   std::vector<std::string> twice;   // named before
   std::vector<std::string> copies;  // of another file's cells
-  const auto is_one_file = [&](std::size_t i, std::size_t j) {
-    std::error_code absent;
-    return std::filesystem::equivalent(options.maps[i], options.maps[j], absent);
-  };
   const auto has_equal_cells = [&](std::size_t i, std::size_t j) {
     return maps[i].width == maps[j].width && maps[i].resolution == maps[j].resolution &&
            maps[i].cells == maps[j].cells;
@@ -63,7 +60,7 @@ void tell_of_copies(const MergeCommandOptions& options, const std::vector<Occupa
     bool is_twice = false;
     std::optional<std::size_t> original;
     for (std::size_t j = 0; j < i; ++j) {
-      is_twice = is_twice || is_one_file(i, j);
+      is_twice = is_twice || is_same_map(options.maps[i], options.maps[j]);
       if (!original && has_equal_cells(i, j)) original = j;
     }
     if (!(is_twice || original) || count_cells(maps[i]).known() == 0) continue;
@@ -292,8 +289,8 @@ int run_merge(const MergeCommandOptions& options) {
 void add_merge(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("merge", "Merge maps into one, as far as they fit together");
   const auto options = std::make_shared<MergeCommandOptions>();
-  command->add_option("MAP", options->maps, "map_server YAMLs, or images with --resolution")
-      ->type_name("FILE")
+  command->add_option("MAP", options->maps, std::string(kMapHelp))
+      ->type_name("MAP")
       ->required()
       ->expected(2, -1);
   command->add_option("-o,--output", options->output, "Directory for the results; made if need be")
@@ -324,6 +321,7 @@ void add_merge(CLI::App& app, Action& action) {
       "Every pair is matched, and what all pairs say together decides: a weak pair that agrees with the\n"
       "others is used (rescued), a strong one that contradicts them is not (rejected).\n\n"
       "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged\n"
+      "  gridmerge merge robot1.mcap team.mcap#/tb2/map team.mcap#/tb3/map -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml --fix robot2.yaml -o "
       "merged");
