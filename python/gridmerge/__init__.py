@@ -14,6 +14,7 @@ that is named first: that of ``match(fixed, moving)`` takes a point of the movin
 from importlib.metadata import version
 from types import FunctionType
 
+from ._bag import BagTopic, RecordedMap, bag_topics, recorded_maps
 from ._core import FileError
 from ._evaluate import (
     Evaluation,
@@ -56,6 +57,7 @@ __version__ = version("gridmerge")
 
 __all__ = [
     "BUILDING_KINDS",
+    "BagTopic",
     "CellClass",
     "CommonCells",
     "Component",
@@ -86,6 +88,7 @@ __all__ = [
     "PsiTerms",
     "RandomWalkMatch",
     "Reason",
+    "RecordedMap",
     "RobotStatus",
     "SetCase",
     "SetCounts",
@@ -101,6 +104,7 @@ __all__ = [
     "Transform",
     "Verdict",
     "Walk",
+    "bag_topics",
     "count_equal_cells",
     "distance_map",
     "draw_on_lattice",
@@ -114,6 +118,7 @@ __all__ = [
     "merge",
     "plot_walk",
     "poses_between",
+    "recorded_maps",
     "save",
     "simulate",
 ]

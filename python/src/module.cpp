@@ -10,6 +10,7 @@ NB_MODULE(_core, module) {
   bind_worker(module);
   bind_grid(module);
   bind_io(module);
+  bind_bag(module);
   bind_match(module);
   bind_measure(module);
   bind_merge(module);

@@ -16,6 +16,7 @@ from typing import Any
 import gridmerge
 import numpy as np
 import pytest
+from conftest import ROOT
 from numpy.typing import NDArray
 
 UNKNOWN, FREE, WALL = (221, 221, 217), (255, 255, 255), (32, 32, 36)
@@ -52,6 +53,8 @@ def results(robots: list[str], elsewhere: str, team: gridmerge.Simulation, team_
         gridmerge.Transform(1.0, 2.0, 3.0),
         gridmerge.InitialPose((1.0, 2.0, 3.0)),
         merger,
+        *gridmerge.bag_topics(ROOT / "tests" / "bag" / "data" / "lz4.mcap"),
+        next(gridmerge.recorded_maps(ROOT / "tests" / "bag" / "data" / "lz4.mcap", "/tb1/map")),
         gridmerge.merge(robots[:2], accept=1.0),  # nothing is sure enough, so a way stays open
     ]
 
