@@ -2,7 +2,7 @@
 # The build reads these lists, and so does the installed package.
 
 # In an order in which each comes after those that it needs.
-set(GRIDMERGE_COMPONENTS core merge online io bag simulate evaluate report)
+set(GRIDMERGE_COMPONENTS core merge online io bag simulate evaluate report dds)
 
 set(gridmerge_core_packages TBB Eigen3)
 set(gridmerge_merge_packages Ceres)
@@ -12,6 +12,7 @@ set(gridmerge_bag_packages yaml-cpp SQLite3 lz4 zstd ZLIB fmt)
 set(gridmerge_simulate_packages)
 set(gridmerge_evaluate_packages nlohmann_json fmt)
 set(gridmerge_report_packages nlohmann_json fmt ZLIB)
+set(gridmerge_dds_packages CycloneDDS fmt)
 
 # The oldest that will do, where that matters.
 set(gridmerge_version_Eigen3 3.3)
@@ -25,6 +26,7 @@ set(gridmerge_bag_rooms bag)
 set(gridmerge_simulate_rooms simulate)
 set(gridmerge_evaluate_rooms evaluate)
 set(gridmerge_report_rooms report)
+set(gridmerge_dds_rooms dds)
 
 # Of gridmerge itself, all that a component needs.
 set(gridmerge_core_needs)
@@ -35,6 +37,7 @@ set(gridmerge_bag_needs core io)
 set(gridmerge_simulate_needs core)
 set(gridmerge_evaluate_needs core merge io bag simulate)
 set(gridmerge_report_needs core merge io)
+set(gridmerge_dds_needs core merge online)
 
 set(gridmerge_debian_TBB libtbb-dev)
 set(gridmerge_debian_Eigen3 libeigen3-dev)
@@ -49,6 +52,7 @@ set(gridmerge_debian_lz4 liblz4-dev)
 set(gridmerge_debian_zstd libzstd-dev)
 set(gridmerge_debian_nlohmann_json nlohmann-json3-dev)
 set(gridmerge_debian_fmt libfmt-dev)
+set(gridmerge_debian_CycloneDDS cyclonedds-dev)
 
 # How pkg-config's users link a package that a static library needs.
 set(gridmerge_link_TBB -ltbb)
@@ -62,3 +66,4 @@ set(gridmerge_link_SQLite3 -lsqlite3)
 set(gridmerge_link_lz4 -llz4)
 set(gridmerge_link_zstd -lzstd)
 set(gridmerge_link_fmt -lfmt)
+set(gridmerge_link_CycloneDDS -lddsc)

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "node_options.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <stdexcept>
+
+#include "gridmerge/io/file_error.hpp"
+#include "gridmerge/io/initial_poses.hpp"
+
+namespace gridmerge::cli {
+
+namespace {
+
+constexpr const char* kUsualPattern = "/*/map";
+
+const CLI::Validator kNamedTopic(
+    [](std::string& text) {
+      const std::size_t at = text.find('=');
+      const bool is_named = at != std::string::npos && at > 0 && at + 1 < text.size();
+      return is_named ? std::string() : "'" + text + "' is not NAME=TOPIC, as tb1=/tb1/map";
+    },
+    "");
+
+const std::map<std::string, TransformTopic>& transform_topics() {
+  static const std::map<std::string, TransformTopic> kTopics{
+      {"static", TransformTopic::tf_static}, {"dynamic", TransformTopic::tf}, {"none", TransformTopic::none}};
+  return kTopics;
+}
+
+std::map<std::string, KnownPose> known_poses(const NodeCommandOptions& options, Console& console) {
+  std::map<std::string, KnownPose> known;
+  if (!options.init.empty()) {
+    for (const InitialPose& pose : read_initial_poses(options.init)) {
+      known[pose.name] = KnownPose{pose.T_world_map, pose.sd, pose.sd_theta, false};
+      if (std::abs(pose.theta_as_written) > 2.0 * std::numbers::pi)
+        console.warn(fmt::format("{}: theta of {} is {}, more than a turn: it must be in radians",
+                                 options.init, pose.name, pose.theta_as_written));
+    }
+  }
+  // A single robot holds its own frame; how several lie to each other has to be said.
+  const bool needs_poses = options.fix.size() > 1 || !options.init.empty();
+  for (const std::string& robot : options.fix) {
+    if (needs_poses && !known.contains(robot))
+      throw std::runtime_error(
+          fmt::format("--fix {}: needs a pose in a table that --init names", escape_controls(robot)));
+    known[robot].fixed = true;
+  }
+  return known;
+}
+
+}  // namespace
+
+void add_node_options(CLI::App& command, NodeCommandOptions& options) {
+  RosNodeOptions& node = options.node;
+  command
+      .add_option(
+          "--pattern", options.patterns,
+          fmt::format("Topics of maps: '*' stands for any characters between two slashes, a level '**' for "
+                      "any levels. {} if neither this nor --robot is given; repeat it for others",
+                      kUsualPattern))
+      ->type_name("PATTERN")
+      ->allow_extra_args(false);
+  command
+      .add_option(
+          "--robot", options.robots,
+          "A robot's name and the topic of its map; repeat it for others. Robots found by a pattern are "
+          "named after their topic's namespace")
+      ->type_name("NAME=TOPIC")
+      ->allow_extra_args(false)
+      ->check(kNamedTopic);
+  command
+      .add_option(
+          "--init", options.init,
+          "Poses that you know, of some or all robots' map frames: a table (TSV) with the columns map x y "
+          "theta, where map is the robot's name, as of 'gridmerge merge'")
+      ->type_name("FILE");
+  command
+      .add_option(
+          "--fix", options.fix,
+          "Keep this robot's map where it is. The merged map takes its frame, or that of --init, if given. "
+          "Repeat it for others. Each of several needs a pose in --init")
+      ->option_text("ROBOT")
+      ->allow_extra_args(false);
+  command
+      .add_option("--world", node.world_frame,
+                  "The frame of the merged map; further merged maps have it with _2, _3, ...")
+      ->type_name("FRAME")
+      ->capture_default_str();
+  command
+      .add_option("--output", node.output, "Topic of the merged map; further ones have it with _2, _3, ...")
+      ->type_name("TOPIC")
+      ->capture_default_str();
+  command.add_option("--name", node.name, "The node's name, as ROS's tools show it")
+      ->type_name("NODE")
+      ->capture_default_str();
+  command
+      .add_option(
+          "--tf", options.transforms,
+          "Transforms from the world to the robots' map frames: static on /tf_static when they change, "
+          "dynamic on /tf ten times a second, or none")
+      ->type_name("WHERE")
+      ->check(CLI::IsMember(transform_topics()).description(""))
+      ->capture_default_str();
+  command
+      .add_option("--accept", options.search.accept,
+                  fmt::format("Probability from which on two maps are joined; {} if not given",
+                              MatchOptions{}.accept_probability))
+      ->type_name("P")
+      ->check(kProbability);
+  command
+      .add_option(
+          "--max-false-joins", node.team.merge.max_false_joins,
+          "How many joins of the whole team may be expected to be false; those that are least sure are not "
+          "made")
+      ->type_name("NUMBER")
+      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->capture_default_str();
+  command
+      .add_option("--output-resolution", node.team.merge.resolution,
+                  "Metres per cell of the merged map; if not given, those of the finest map")
+      ->type_name("METRES")
+      ->check(kMetresPerCell);
+  command.add_flag(
+      "--once", node.once,
+      "End when the maps of all robots that are there are merged; the exit code is that of 'merge'");
+  command
+      .add_option(
+          "--wait", node.wait,
+          "End with an error if no map has come within this time; for ever if not given, 10 with --once, "
+          "which waits so long for further robots too")
+      ->type_name("SECONDS")
+      ->check(kNotNegative);
+  add_common_options(command, options.common);
+}
+
+RosNodeOptions to_node_options(const NodeCommandOptions& options, Console& console) {
+  RosNodeOptions node = options.node;
+  node.patterns = options.patterns;
+  if (options.patterns.empty() && options.robots.empty()) node.patterns = {kUsualPattern};
+  for (const std::string& robot : options.robots) {
+    const std::size_t at = robot.find('=');
+    if (!node.robots.emplace(robot.substr(0, at), robot.substr(at + 1)).second)
+      throw CLI::ValidationError("--robot", "names the robot " + robot.substr(0, at) + " twice");
+  }
+  node.known_poses = known_poses(options, console);
+  node.transforms = transform_topics().at(options.transforms);
+  node.team.merge.match = match_options(options.common, options.search);
+  return node;
+}
+
+}  // namespace gridmerge::cli

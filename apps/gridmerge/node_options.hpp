@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "console.hpp"
+#include "gridmerge/dds/ros_node.hpp"
+#include "options.hpp"
+#include "search_options.hpp"
+
+namespace gridmerge::cli {
+
+/// What the command line of `gridmerge node` says.
+struct NodeCommandOptions {
+  CommonOptions common;
+  std::vector<std::string> patterns;
+  std::vector<std::string> robots;  // NAME=TOPIC
+  std::string init;                 // file of initial poses
+  std::vector<std::string> fix;     // robots
+  std::string transforms = "static";
+  RosNodeOptions node;  // except for what is above and below
+  SearchOptions search;
+};
+
+/// All of them, with checks of what one option alone can get wrong.
+void add_node_options(CLI::App& command, NodeCommandOptions& options);
+
+/// What a node takes. Throws CLI::ValidationError for a robot named twice, and FileError or
+/// std::runtime_error for poses that cannot be used. Warns of angles that look like degrees.
+RosNodeOptions to_node_options(const NodeCommandOptions& options, Console& console);
+
+}  // namespace gridmerge::cli

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gridmerge/merge/known_pose.hpp"
+#include "gridmerge/online/team.hpp"
+
+namespace gridmerge {
+
+/// Where a RosNode publishes the transforms of robots.
+enum class TransformTopic {
+  tf_static,  ///< `/tf_static`: when they change, kept for whoever listens later
+  tf,         ///< `/tf`: ten times a second, stamped with the system's time
+  none,       ///< nowhere
+};
+
+/// What a RosNode hears and publishes.
+struct RosNodeOptions {
+  /// Topics of robots' maps: `*` stands for any characters between two slashes, a level `**` for any levels.
+  std::vector<std::string> patterns;
+  std::map<std::string, std::string> robots;     ///< further topics of maps, by the names of their robots
+  std::map<std::string, KnownPose> known_poses;  ///< what is known of robots' map frames, by their names
+  std::string world_frame = "world";             ///< the frame of the largest merged map
+  std::string name = "gridmerge";                ///< of the node
+  std::string output = "/merged_map";  ///< topic of the largest merged map; further ones get `_2`, ...
+  TransformTopic transforms = TransformTopic::tf_static;  ///< where the robots' transforms go
+  TeamOptions team;                                       ///< how maps are merged
+  bool once = false;  ///< end when all maps that are heard are merged as far as they can be
+  std::optional<double>
+      wait;  ///< so long a first map is waited for [s]; without it for ever, or 10 s with `once`
+  std::function<void(const std::string&)> tell;  ///< called by run() with a line on what happened
+  std::function<void(const std::string&)> warn;  ///< likewise, on what should not have
+};
+
+/// A node of ROS 2 that hears the maps of robots on DDS, merges them as a Team does, and publishes the merged
+/// maps, the transforms of the robots' map frames and diagnostics. It needs no installation of ROS. One at a
+/// time in a process.
+class RosNode {
+ public:
+  /// How run() came to an end.
+  enum class End {
+    stopped,  ///< by stop()
+    merged,   ///< `once`: all maps are one
+    refused,  ///< `once`: not all maps could be merged into one
+  };
+
+  /// Reads the variables by which ROS is set up (ROS_DOMAIN_ID and so on). Throws std::invalid_argument for
+  /// names, topics, patterns, frames and options that cannot be, and for known poses of robots that cannot be
+  /// heard; std::runtime_error for a variable that ROS would not take, and when the network does not let the
+  /// node in.
+  explicit RosNode(RosNodeOptions options);
+  ~RosNode();
+  RosNode(const RosNode&) = delete;
+  RosNode& operator=(const RosNode&) = delete;
+
+  /// Hears and publishes until it ends. Throws std::runtime_error when no map came in within `wait`, saying
+  /// which topics are there that come near.
+  End run();
+
+  /// Ends run() soon, from any thread, also before it begins.
+  void stop();
+
+  /// A line for each robot: its state, where it lies, or why it does not. Not during run().
+  std::string describe() const;
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace gridmerge

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dds/message.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace gridmerge::internal {
+
+namespace {
+
+// What map files may have: the reader of files says so to its users.
+constexpr double kSmallestResolution = 1e-6;
+constexpr double kLargestResolution = 1e3;
+
+constexpr std::int8_t kUnknown = -1;
+constexpr std::int8_t kFree = 0;
+constexpr std::int8_t kOccupied = 100;
+
+// nav2's thresholds: a message means what a file of the same values does.
+Cell cell_of(std::int8_t percentage) {
+  if (percentage < 0) return Cell::unknown;
+  return percentage >= 65 ? Cell::occupied : percentage <= 19 ? Cell::free : Cell::unknown;
+}
+
+float probability_of(std::int8_t percentage) {
+  return percentage < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(percentage / 100.0);
+}
+
+bool is_plain(std::int8_t percentage) {
+  return percentage == kUnknown || percentage == kFree || percentage == kOccupied;
+}
+
+OccupancyGrid read_cells(std::uint32_t width, std::uint32_t height, std::span<const std::int8_t> data) {
+  if (width == 0 || height == 0) throw RefusedMessage(fmt::format("a size of {} x {} cells", width, height));
+  // Of two numbers of 32 bits, so the product does not overflow.
+  const std::uint64_t size = std::uint64_t{width} * height;
+  if (size > kMostCells) throw RefusedMessage(fmt::format("{} x {} cells are above 2^28", width, height));
+  if (data.size() != size)
+    throw RefusedMessage(fmt::format("{} values for {} x {} cells", data.size(), width, height));
+  const auto wrong = std::find_if(data.begin(), data.end(),
+                                  [](std::int8_t value) { return value < kUnknown || value > kOccupied; });
+  if (wrong != data.end())
+    throw RefusedMessage(
+        fmt::format("the cell value {}, which is neither -1 nor a percentage", static_cast<int>(*wrong)));
+  OccupancyGrid grid;
+  grid.width = static_cast<int>(width);
+  grid.height = static_cast<int>(height);
+  grid.cells.resize(data.size());
+  std::transform(data.begin(), data.end(), grid.cells.begin(), cell_of);
+  if (!std::all_of(data.begin(), data.end(), is_plain)) {
+    grid.probability.resize(data.size());
+    std::transform(data.begin(), data.end(), grid.probability.begin(), probability_of);
+  }
+  return grid;
+}
+
+double read_resolution(float resolution) {
+  if (!std::isfinite(resolution)) throw RefusedMessage(fmt::format("a resolution of {} m", resolution));
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), resolution).ptr;
+  double read = 0.0;
+  std::from_chars(text.data(), end, read);
+  if (!(read >= kSmallestResolution && read <= kLargestResolution))
+    throw RefusedMessage(fmt::format("a resolution of {} m", resolution));
+  return read;
+}
+
+double read_yaw(const std::array<double, 4>& orientation) {
+  constexpr double kNormTolerance = 0.01;
+  constexpr double kLevelTolerance = 0.01;  // of x and y: half the tilt [rad]
+  double norm = 0.0;
+  for (const double part : orientation) norm += part * part;
+  norm = std::sqrt(norm);
+  if (!(std::abs(norm - 1.0) <= kNormTolerance))  // a NaN too
+    throw RefusedMessage("an orientation that is no unit quaternion");
+  const auto& [x, y, z, w] = orientation;
+  if (std::hypot(x, y) > kLevelTolerance) throw RefusedMessage("an origin that is not level");
+  return normalize_angle(2.0 * std::atan2(z, w));
+}
+
+}  // namespace
+
+std::string read_frame(std::string_view frame) {
+  if (frame.starts_with('/')) frame.remove_prefix(1);
+  if (frame.empty()) throw RefusedMessage("no frame_id");
+  if (frame.size() > kLongestFrame)
+    throw RefusedMessage(fmt::format("a frame_id of {} characters", frame.size()));
+  if (!std::all_of(frame.begin(), frame.end(), [](char c) { return c > ' ' && c < '\x7f'; }))
+    throw RefusedMessage("a frame_id with other than printable ASCII characters");
+  return std::string(frame);
+}
+
+HeardMap read_map(const MapMessage& message) {
+  HeardMap heard{message.stamp, read_frame(message.frame), {}};
+  // Sizes first: they are cheap to look at.
+  const double resolution = read_resolution(message.resolution);
+  const auto& [x, y, z] = message.position;
+  if (!(std::abs(x) <= kFarthestOrigin && std::abs(y) <= kFarthestOrigin && std::isfinite(z)))
+    throw RefusedMessage(fmt::format("an origin at ({}, {}, {})", x, y, z));
+  const double yaw = read_yaw(message.orientation);
+  heard.grid = read_cells(message.width, message.height, message.data);
+  heard.grid.resolution = resolution;
+  heard.grid.origin = {x, y, yaw};
+  return heard;
+}
+
+HeardPart read_update(const UpdateMessage& message) {
+  HeardPart part{message.stamp, read_frame(message.frame), 0, 0, {}};
+  if (message.x < 0 || message.y < 0)
+    throw RefusedMessage(fmt::format("an update at ({}, {})", message.x, message.y));
+  part.x = message.x;
+  part.y = message.y;
+  part.grid = read_cells(message.width, message.height, message.data);
+  return part;
+}
+
+std::vector<std::int8_t> message_values(const OccupancyGrid& grid) {
+  constexpr std::array<std::int8_t, 3> kValues{kUnknown, kFree, kOccupied};
+  std::vector<std::int8_t> values(grid.cells.size());
+  std::transform(grid.cells.begin(), grid.cells.end(), values.begin(),
+                 [&](Cell cell) { return kValues[static_cast<std::size_t>(cell)]; });
+  return values;
+}
+
+}  // namespace gridmerge::internal
