@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "commands.hpp"
 #include "console.hpp"
 #include "gridmerge/dds/ros_node.hpp"
+#include "gridmerge/io/file_error.hpp"
 #include "interrupt.hpp"
 #include "node_options.hpp"
 
@@ -35,7 +38,13 @@ class StopAtSignal {
 
 int run_node(const NodeCommandOptions& options) {
   Console console(options.common);
-  RosNodeOptions node_options = to_node_options(options, console);
+  RosNodeOptions node_options = to_node_options(options);
+  node_options.known_poses = known_robot_poses(options, console);
+  try {
+    validate(node_options);
+  } catch (const std::invalid_argument& error) {  // the rest was looked at before
+    throw FileError(options.init, error.what());
+  }
   node_options.tell = [&](const std::string& line) {
     if (!options.common.quiet) print(escape_controls(line) + "\n");
   };
@@ -65,7 +74,10 @@ void add_node(CLI::App& app, Action& action) {
       "Example:\n  gridmerge node\n"
       "  gridmerge node --pattern '/fleet/*/map' --fix tb1 --world site\n"
       "  gridmerge node --robot left=/tb1/map --robot right=/tb2/map --once --wait 30");
-  command->callback([options, &action] { action = [options] { return run_node(*options); }; });
+  command->callback([options, &action] {
+    to_node_options(*options);  // what cannot be is wrong usage
+    action = [options] { return run_node(*options); };
+  });
 }
 
 }  // namespace gridmerge::cli

@@ -31,27 +31,6 @@ const std::map<std::string, TransformTopic>& transform_topics() {
   return kTopics;
 }
 
-std::map<std::string, KnownPose> known_poses(const NodeCommandOptions& options, Console& console) {
-  std::map<std::string, KnownPose> known;
-  if (!options.init.empty()) {
-    for (const InitialPose& pose : read_initial_poses(options.init)) {
-      known[pose.name] = KnownPose{pose.T_world_map, pose.sd, pose.sd_theta, false};
-      if (std::abs(pose.theta_as_written) > 2.0 * std::numbers::pi)
-        console.warn(fmt::format("{}: theta of {} is {}, more than a turn: it must be in radians",
-                                 options.init, pose.name, pose.theta_as_written));
-    }
-  }
-  // A single robot holds its own frame; how several lie to each other has to be said.
-  const bool needs_poses = options.fix.size() > 1 || !options.init.empty();
-  for (const std::string& robot : options.fix) {
-    if (needs_poses && !known.contains(robot))
-      throw std::runtime_error(
-          fmt::format("--fix {}: needs a pose in a table that --init names", escape_controls(robot)));
-    known[robot].fixed = true;
-  }
-  return known;
-}
-
 }  // namespace
 
 void add_node_options(CLI::App& command, NodeCommandOptions& options) {
@@ -137,7 +116,7 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
   add_common_options(command, options.common);
 }
 
-RosNodeOptions to_node_options(const NodeCommandOptions& options, Console& console) {
+RosNodeOptions to_node_options(const NodeCommandOptions& options) {
   RosNodeOptions node = options.node;
   node.patterns = options.patterns;
   if (options.patterns.empty() && options.robots.empty()) node.patterns = {kUsualPattern};
@@ -146,10 +125,36 @@ RosNodeOptions to_node_options(const NodeCommandOptions& options, Console& conso
     if (!node.robots.emplace(robot.substr(0, at), robot.substr(at + 1)).second)
       throw CLI::ValidationError("--robot", "names the robot " + robot.substr(0, at) + " twice");
   }
-  node.known_poses = known_poses(options, console);
+  for (const std::string& robot : options.fix) node.known_poses[robot].fixed = true;
   node.transforms = transform_topics().at(options.transforms);
   node.team.merge.match = match_options(options.common, options.search);
+  try {
+    validate(node);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError(error.what());
+  }
   return node;
+}
+
+std::map<std::string, KnownPose> known_robot_poses(const NodeCommandOptions& options, Console& console) {
+  std::map<std::string, KnownPose> known;
+  if (!options.init.empty()) {
+    for (const InitialPose& pose : read_initial_poses(options.init)) {
+      known[pose.name] = KnownPose{pose.T_world_map, pose.sd, pose.sd_theta, false};
+      if (std::abs(pose.theta_as_written) > 2.0 * std::numbers::pi)
+        console.warn(fmt::format("{}: theta of {} is {}, more than a turn: it must be in radians",
+                                 options.init, pose.name, pose.theta_as_written));
+    }
+  }
+  // A single robot holds its own frame; how several lie to each other has to be said.
+  const bool needs_poses = options.fix.size() > 1 || !options.init.empty();
+  for (const std::string& robot : options.fix) {
+    if (needs_poses && !known.contains(robot))
+      throw std::runtime_error(
+          fmt::format("--fix {}: needs a pose in a table that --init names", escape_controls(robot)));
+    known[robot].fixed = true;
+  }
+  return known;
 }
 
 }  // namespace gridmerge::cli

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <optional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -28,8 +28,11 @@ struct NodeCommandOptions {
 /// All of them, with checks of what one option alone can get wrong.
 void add_node_options(CLI::App& command, NodeCommandOptions& options);
 
-/// What a node takes. Throws CLI::ValidationError for a robot named twice, and FileError or
-/// std::runtime_error for poses that cannot be used. Warns of angles that look like degrees.
-RosNodeOptions to_node_options(const NodeCommandOptions& options, Console& console);
+/// What a node takes, without the poses of --init. Throws CLI::ValidationError for what cannot be.
+RosNodeOptions to_node_options(const NodeCommandOptions& options);
+
+/// What --init and --fix say. Throws FileError or std::runtime_error for poses that cannot be used. Warns of
+/// angles that look like degrees.
+std::map<std::string, KnownPose> known_robot_poses(const NodeCommandOptions& options, Console& console);
 
 }  // namespace gridmerge::cli

@@ -36,20 +36,9 @@ constexpr double kWaitOnce = 10.0;                 // `once`: for a first map, a
 constexpr double kRemindAfter = 10.0;              // without `wait`: then it is said what is waited for [s]
 constexpr std::uint64_t kHeadOfMessage = 1 << 16;  // beside the cells
 
-RosNodeOptions checked(RosNodeOptions options) {
-  if (!is_topic_name(options.output))
-    throw std::invalid_argument(
-        fmt::format("'{}' is no whole name of a topic, as /merged_map is", options.output));
-  if (options.name.find('/') != std::string::npos || !is_topic_name("/" + options.name))
-    throw std::invalid_argument(
-        fmt::format("'{}' is no name of a node: letters, digits and '_'", options.name));
-  try {
-    options.world_frame = read_frame(options.world_frame);
-  } catch (const RefusedMessage& error) {
-    throw std::invalid_argument(fmt::format("the world's frame '{}': {}", options.world_frame, error.what()));
-  }
-  if (options.wait && !(*options.wait >= 0.0)) throw std::invalid_argument("a time to wait is 0 s or more");
-  for (const auto& [robot, pose] : options.known_poses) validate(pose);
+RosNodeOptions completed(RosNodeOptions options) {
+  validate(options);
+  options.world_frame = read_frame(options.world_frame);
   const auto ignore = [](const std::string&) {};
   if (!options.tell) options.tell = ignore;
   if (!options.warn) options.warn = ignore;
@@ -67,10 +56,28 @@ RobotSelection select(const RosNodeOptions& options) {
 
 }  // namespace
 
+void validate(const RosNodeOptions& options) {
+  if (!is_topic_name(options.output))
+    throw std::invalid_argument(
+        fmt::format("'{}' is no whole name of a topic, as /merged_map is", options.output));
+  if (options.name.find('/') != std::string::npos || !is_topic_name("/" + options.name))
+    throw std::invalid_argument(
+        fmt::format("'{}' is no name of a node: letters, digits and '_'", options.name));
+  try {
+    read_frame(options.world_frame);
+  } catch (const RefusedMessage& error) {
+    throw std::invalid_argument(fmt::format("the world's frame '{}': {}", options.world_frame, error.what()));
+  }
+  if (options.wait && !(*options.wait >= 0.0)) throw std::invalid_argument("a time to wait is 0 s or more");
+  validate(options.team);
+  for (const auto& [robot, pose] : options.known_poses) validate(pose);
+  select(options);
+}
+
 class RosNode::State {
  public:
   explicit State(RosNodeOptions options)
-      : options_(checked(std::move(options))),
+      : options_(completed(std::move(options))),
         selection_(select(options_)),
         environment_(read_ros_environment(process_environment)),
         participant_(environment_, kMostCells + kHeadOfMessage),

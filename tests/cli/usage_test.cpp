@@ -25,6 +25,21 @@ TEST_P(WrongUsage, IsOneLineAndExitCodeTwo) {
 }
 
 using Words = std::vector<std::string>;
+#ifdef GRIDMERGE_HAS_NODE
+INSTANTIATE_TEST_SUITE_P(
+    Node, WrongUsage,
+    testing::Values(Words{"node", "a"}, Words{"node", "--pattern", "map"},
+                    Words{"node", "--pattern", "/a//b"}, Words{"node", "--pattern", "/*/map/"},
+                    Words{"node", "--robot", "tb1"}, Words{"node", "--robot", "tb1="},
+                    Words{"node", "--robot", "tb1=map"}, Words{"node", "--robot", "a=/m", "--robot", "a=/n"},
+                    Words{"node", "--robot", "a=/m", "--robot", "b=/m"},
+                    Words{"node", "--robot", "a=/m", "--fix", "b"}, Words{"node", "--wait", "-1"},
+                    Words{"node", "--wait", "nan"}, Words{"node", "--tf", "both"},
+                    Words{"node", "--world", ""}, Words{"node", "--world", "the world"},
+                    Words{"node", "--name", "a b"}, Words{"node", "--output", "merged"},
+                    Words{"node", "--accept", "2"}, Words{"node", "--output-resolution", "0"}));
+#endif
+
 INSTANTIATE_TEST_SUITE_P(
     Cli, WrongUsage,
     testing::Values(

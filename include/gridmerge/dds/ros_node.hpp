@@ -38,6 +38,10 @@ struct RosNodeOptions {
   std::function<void(const std::string&)> warn;  ///< likewise, on what should not have
 };
 
+/// Throws std::invalid_argument for names, topics, patterns, frames and options that cannot be, and for known
+/// poses of robots that cannot be heard.
+void validate(const RosNodeOptions& options);
+
 /// A node of ROS 2 that hears the maps of robots on DDS, merges them as a Team does, and publishes the merged
 /// maps, the transforms of the robots' map frames and diagnostics. It needs no installation of ROS. One at a
 /// time in a process.

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// `gridmerge node` as users run it, beside a peer of this process over the loopback interface.
+#include "../cli/program.hpp"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <string>
+
+#include "dds/environment.hpp"
+#include "dds/participant.hpp"
+#include "online/explorers.hpp"
+#include "peer.hpp"
+#include "running_node.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace gridmerge::test {
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class NodeProgram : public testing::Test {
+ protected:
+  RawMap map_of(int robot, const std::string& frame) const {
+    return raw_map(frame, explorers.map(robot, Explorers::kSteps));
+  }
+
+  const std::uint32_t domain = own_domain();
+  const Explorers explorers;
+  // Sets the domain up as the program does; both are alike in this process's environment.
+  const internal::Participant network{internal::read_ros_environment(internal::process_environment), 1 << 20};
+  Peer peer{domain};
+};
+
+TEST_F(NodeProgram, EndsWithASignal) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    RunningProgram program({"node"});
+    ASSERT_TRUE(comes_true([&] { return peer.diagnoses().contains("gridmerge"); }));
+    const Outcome outcome = program.end_with(signal);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.signal;
+    EXPECT_EQ(outcome.out + outcome.err, "");
+  }
+}
+
+TEST_F(NodeProgram, SaysWhatItWaitsFor) {
+  const MapTopic elsewhere = peer.maps("/robot/mapping");
+  const Outcome outcome = run({"node", "--wait", "4"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  EXPECT_TRUE(has(outcome.err,
+                  "gridmerge: no map within 4 s: waiting for a map (nav_msgs/msg/OccupancyGrid) on "
+                  "/*/map in domain " +
+                      std::to_string(domain)))
+      << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "/robot/mapping: is a map, but its name is not one of those")) << outcome.err;
+}
+
+TEST_F(NodeProgram, EndsOnceWithTheExitCodeOfMerge) {
+  const MapTopic a = peer.maps("/a/map");
+  const MapTopic b = peer.maps("/b/map");
+  const MapTopic other = peer.maps("/other/map");
+  a.publish(map_of(0, "a/map"));
+  b.publish(map_of(1, "b/map"));
+  other.publish(map_of(3, "other/map"));
+  const Outcome merged =
+      run({"node", "--once", "--wait", "30", "--robot", "a=/a/map", "--robot", "b=/b/map"});
+  EXPECT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_TRUE(has(merged.out, "a: first map: ")) << merged.out;
+  EXPECT_TRUE(has(merged.out, "b: placed at x ")) << merged.out;
+  const Outcome refused = run({"node", "--once", "--wait", "30", "--quiet"});
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;
+  EXPECT_EQ(count_lines(refused.out), 3u) << refused.out;
+  EXPECT_TRUE(has(refused.out, "other: left out: ")) << refused.out;
+}
+
+TEST_F(NodeProgram, TakesPosesAsMergeDoes) {
+  const TemporaryDirectory directory;
+  const std::string init = directory.write("poses.tsv", "map\tx\ty\ttheta\na\t10\t20\t0\n");
+  const MapTopic a = peer.maps("/a/map");
+  const MapTopic b = peer.maps("/b/map");
+  a.publish(map_of(0, "a/map"));
+  b.publish(map_of(1, "b/map"));
+  const Outcome outcome =
+      run({"node", "--once", "--wait", "30", "--quiet", "--init", init, "--fix", "a", "--world", "site"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(has(outcome.out, "a: placed at x 10.000 m, y 20.000 m, theta 0.0000 rad")) << outcome.out;
+}
+
+TEST_F(NodeProgram, RefusesPosesThatCannotBeUsed) {
+  const TemporaryDirectory directory;
+  const std::string init = directory.write("poses.tsv", "map\tx\ty\ttheta\nb\t1\t2\t0\n");
+  const Outcome stranger = run({"node", "--robot", "a=/a/map", "--init", init});
+  EXPECT_EQ(stranger.exit_code, 1);
+  EXPECT_TRUE(has(stranger.err, init)) << stranger.err;
+  EXPECT_TRUE(has(stranger.err, "the robot b, which is none of those heard")) << stranger.err;
+  const Outcome without_pose = run({"node", "--init", init, "--fix", "a"});
+  EXPECT_EQ(without_pose.exit_code, 1);
+  EXPECT_TRUE(has(without_pose.err, "--fix a: needs a pose in a table that --init names"))
+      << without_pose.err;
+  EXPECT_EQ(run({"node", "--init", directory.file("absent.tsv")}).exit_code, 1);
+}
+
+TEST_F(NodeProgram, NamesAVariableThatRosWouldNotTake) {
+  RunOptions options;
+  options.environment = {"ROS_DOMAIN_ID=233"};
+  const Outcome outcome = run({"node"}, options);
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(has(outcome.err, "gridmerge: ROS_DOMAIN_ID='233'")) << outcome.err;
+}
+
+}  // namespace
+}  // namespace gridmerge::test
