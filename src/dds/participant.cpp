@@ -9,6 +9,22 @@
 #include <string_view>
 #include <utility>
 
+// These two take the place of Cyclone DDS's own, which the dynamic linker finds later than the program's.
+// They deal with descriptions of types that participants ask each other for. ROS 2 needs none: a type is
+// known by its name. And Cyclone DDS 0.10.2 crashes over what nodes of ROS 2 Kilted answer each other, which
+// every participant is sent.
+extern "C" {
+// NOLINTBEGIN(readability-identifier-naming)
+struct ddsi_domaingv;
+struct ddsi_serdata;
+void ddsi_tl_handle_request(ddsi_domaingv* domain, ddsi_serdata* request);
+void ddsi_tl_handle_reply(ddsi_domaingv* domain, ddsi_serdata* reply);
+// NOLINTEND(readability-identifier-naming)
+
+void ddsi_tl_handle_request(ddsi_domaingv* /*domain*/, ddsi_serdata* /*request*/) {}
+void ddsi_tl_handle_reply(ddsi_domaingv* /*domain*/, ddsi_serdata* /*reply*/) {}
+}
+
 namespace gridmerge::internal {
 
 /// Takes what Cyclone DDS logs, from any thread.

@@ -3,8 +3,8 @@
 
     VENV/bin/python make_messages.py FOLDER
 
-FOLDER then holds the packages `tf2_msgs` and `map_msgs` for PYTHONPATH and their libraries for LD_LIBRARY_PATH. ROS's own
-generators write the sources; g++ and Python's headers compile them.
+FOLDER then holds the packages `tf2_msgs` and `map_msgs` for PYTHONPATH and their libraries for LD_LIBRARY_PATH. ROS's
+own generators write the sources; g++ and Python's headers compile them.
 """
 
 from __future__ import annotations
@@ -67,7 +67,18 @@ def generate(package: str, interface: str, output: Path) -> None:
     from rosidl_cli.cli import main
 
     sys.argv = ["rosidl", "generate", "-o", str(output), "-t", "c", "-t", "py"]
-    sys.argv += ["-ts", "fastrtps_c", "-ts", "introspection_c", "-ts", "c", "-I", f"{sys.prefix}/share", package, interface]
+    sys.argv += [
+        "-ts",
+        "fastrtps_c",
+        "-ts",
+        "introspection_c",
+        "-ts",
+        "c",
+        "-I",
+        f"{sys.prefix}/share",
+        package,
+        interface,
+    ]
     code = main()
     if code:
         raise SystemExit(code)
@@ -112,7 +123,17 @@ def build(package: str, generated: Path, folder: Path) -> None:
     (folder / f"lib{package}__rosidl_typesupport_introspection_c.so").symlink_to(f"lib{support}.so")
     module = compile_sources([generated / "py" / f"_{package}_s.ep.rosidl_typesupport_c.c"], generated, flags)
     extension = python / f"{package}_s__rosidl_typesupport_c.so"
-    run("g++", "-shared", "-o", extension, *module, f"-L{folder}", f"-Wl,-rpath,{folder}", f"-l{support}", *libraries)
+    run(
+        "g++",
+        "-shared",
+        "-o",
+        extension,
+        *module,
+        f"-L{folder}",
+        f"-Wl,-rpath,{folder}",
+        f"-l{support}",
+        *libraries,
+    )
 
 
 def main() -> None:

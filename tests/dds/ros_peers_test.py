@@ -23,11 +23,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-os.environ["ROS_LOCALHOST_ONLY"] = "1"
-for variable in ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS", "CYCLONEDDS_URI", "RMW_IMPLEMENTATION"):
-    os.environ.pop(variable, None)
-
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from map_msgs.msg import OccupancyGridUpdate
@@ -156,7 +151,9 @@ class RosPeers(unittest.TestCase):
     def publish_all(self) -> None:
         for robot in (1, 2, 3):
             self.publish(robot)
-            self.wait_until(lambda robot=robot: self.value(f"tb{robot}", "maps") == "1", f"tb{robot} is heard")
+            self.wait_until(
+                lambda robot=robot: self.value(f"tb{robot}", "maps") == "1", f"tb{robot} is heard"
+            )
         for robot in (1, 2, 3):
             self.wait_for(f"tb{robot}", "state", "placed")
 
@@ -166,7 +163,9 @@ class RosPeers(unittest.TestCase):
         transforms = self.collect(TFMessage, "/tf_static")
         self.publish_all()
         self.wait_until(lambda: bool(transforms) and len(transforms[-1].transforms) == 3, "three transforms")
-        self.wait_until(lambda: bool(maps) and maps[-1].info.width * maps[-1].info.height > 600 * 800, "a merged map")
+        self.wait_until(
+            lambda: bool(maps) and maps[-1].info.width * maps[-1].info.height > 600 * 800, "a merged map"
+        )
         merged = maps[-1]
         self.assertEqual(merged.header.frame_id, "world")
         self.assertEqual(merged.header.stamp.sec, 100)
@@ -304,7 +303,19 @@ def publish_for_ever(robot: int) -> None:
     rclpy.spin(node)
 
 
+def keep_to_this_machine() -> None:
+    os.environ["ROS_LOCALHOST_ONLY"] = "1"
+    for variable in (
+        "ROS_AUTOMATIC_DISCOVERY_RANGE",
+        "ROS_STATIC_PEERS",
+        "CYCLONEDDS_URI",
+        "RMW_IMPLEMENTATION",
+    ):
+        os.environ.pop(variable, None)
+
+
 def main() -> None:
+    keep_to_this_machine()
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--gridmerge", help="the program")
     parser.add_argument("--maps", required=True, help="examples/three_robots")

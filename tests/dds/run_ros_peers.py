@@ -14,7 +14,9 @@ SKIPPED = 77
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--environment", type=Path, required=True, help="a virtual environment that ./dev made")
+    parser.add_argument(
+        "--environment", type=Path, required=True, help="a virtual environment that ./dev made"
+    )
     options, arguments = parser.parse_known_args()
     messages = options.environment / "messages"
     if not (options.environment / "stamp").exists():
