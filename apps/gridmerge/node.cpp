@@ -19,9 +19,9 @@ namespace {
 /// Stops the node at the first signal, for as long as this lives.
 class StopAtSignal {
  public:
-  explicit StopAtSignal(RosNode& node)
-      : waiter_([this, &node] {
-          signal_.wait();
+  StopAtSignal(const Interrupt& signal, RosNode& node)
+      : signal_(signal), waiter_([&signal, &node] {
+          signal.wait();
           node.stop();
         }) {}
   ~StopAtSignal() {
@@ -32,7 +32,7 @@ class StopAtSignal {
   StopAtSignal& operator=(const StopAtSignal&) = delete;
 
  private:
-  Interrupt signal_;
+  const Interrupt& signal_;
   std::thread waiter_;
 };
 
@@ -49,10 +49,11 @@ int run_node(const NodeCommandOptions& options) {
     if (!options.common.quiet) print(escape_controls(line) + "\n");
   };
   node_options.warn = [&](const std::string& line) { console.warn(escape_controls(line)); };
+  const Interrupt signal;  // one that comes while the node starts is not lost
   RosNode node(std::move(node_options));
   RosNode::End end = RosNode::End::stopped;
   {
-    const StopAtSignal stop(node);
+    const StopAtSignal stop(signal, node);
     end = node.run();
   }
   if (end == RosNode::End::stopped) return kDone;

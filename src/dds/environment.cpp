@@ -100,6 +100,9 @@ bool has_network() {
 }
 
 RosEnvironment read_ros_environment(const Environment& environment) {
+  const std::string security = value_of(environment, "ROS_SECURITY_ENABLE");
+  if (security == "true")
+    refuse("ROS_SECURITY_ENABLE", security, "this node has no DDS Security, and does not speak openly then");
   RosEnvironment read;
   read.domain = read_domain(environment);
   read.cyclone_uri = value_of(environment, "CYCLONEDDS_URI");

@@ -29,7 +29,8 @@ struct RosEnvironment {
 /// Reads ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS and
 /// CYCLONEDDS_URI as ROS does: one that is empty is not set, and ROS_LOCALHOST_ONLY=1 counts for more than
 /// the two that replace it. Throws std::runtime_error that names the variable for a value that ROS would not
-/// take, and for ROS_AUTOMATIC_DISCOVERY_RANGE=OFF, with which no robot can be found.
+/// take; for ROS_AUTOMATIC_DISCOVERY_RANGE=OFF, with which no robot can be found; and for
+/// ROS_SECURITY_ENABLE=true, since DDS Security is not set up here.
 RosEnvironment read_ros_environment(const Environment& environment);
 
 /// Whether this machine has an interface, up and with an address, that is not a loopback one.

@@ -286,13 +286,16 @@ void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapMe
       if (topic != heard.topic) together += other.heard.cells;
     if (together > kMostCellsTogether) throw RefusedMessage("all maps together have above 2^30 cells");
     const bool restarted = heard.maps > 0 && (robot.session != writer.guid || heard.frame != map.frame);
+    const std::string frame = map.frame;
+    const Stamp stamp = map.stamp;
+    const std::size_t cells = map.grid.cells.size();
+    callbacks_.map(heard.name, std::move(map), restarted);  // may refuse it
     robot.followed = writer.handle;
     robot.session = writer.guid;
-    heard.frame = map.frame;
-    heard.stamp = map.stamp;
-    heard.cells = map.grid.cells.size();
+    heard.frame = frame;
+    heard.stamp = stamp;
+    heard.cells = cells;
     if (heard.maps++ == 0) ++news_;
-    callbacks_.map(heard.name, std::move(map), restarted);
   } catch (const RefusedMessage& error) {
     refuse(robot, error.what());
   }

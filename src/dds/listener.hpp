@@ -45,7 +45,8 @@ struct HeardRobot {
 class MapListener {
  public:
   struct Callbacks {
-    /// A map that may be used. `restarted`: it has nothing to do with what this robot sent before.
+    /// A map that may be used. `restarted`: it has nothing to do with what this robot sent before. May throw
+    /// RefusedMessage.
     std::function<void(const std::string& robot, HeardMap map, bool restarted)> map;
     /// A part of the newest map; returns whether it fits in there.
     std::function<bool(const std::string& robot, HeardPart part)> part;

@@ -13,6 +13,7 @@
 #include "dds/entity.hpp"
 #include "dds/environment.hpp"
 #include "dds/listener.hpp"
+#include "dds/message.hpp"
 #include "dds/names.hpp"
 #include "dds/participant.hpp"
 #include "dds/publisher.hpp"
@@ -167,7 +168,11 @@ void RosNode::State::take_map(const std::string& robot, HeardMap map, bool resta
     options_.tell(fmt::format("{}: first map: {}", robot, content));
   }
   publishers_.emplace(robot, 0);
-  team_.hear(robot, std::move(map.grid));
+  try {
+    team_.hear(robot, std::move(map.grid));
+  } catch (const std::invalid_argument& error) {
+    throw RefusedMessage(error.what());
+  }
 }
 
 RosNode::End RosNode::State::run() {

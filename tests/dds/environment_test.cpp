@@ -108,6 +108,11 @@ TEST(RosEnvironment, NamesRangesThatRosDoesNotHave) {
             0u);
 }
 
+TEST(RosEnvironment, DoesNotSpeakOpenlyWhereSecurityIsAskedFor) {
+  EXPECT_TRUE(has(refusal({{"ROS_SECURITY_ENABLE", "true"}}), "ROS_SECURITY_ENABLE='true'"));
+  EXPECT_EQ(refusal({{"ROS_SECURITY_ENABLE", "false"}}), "taken");
+}
+
 TEST(RosEnvironment, CyclonesOwnSettingsComeLast) {
   const std::string uri = "<CycloneDDS><Domain><General/></Domain></CycloneDDS>";
   const std::string text = configuration({{"CYCLONEDDS_URI", uri}, {"ROS_LOCALHOST_ONLY", "1"}});

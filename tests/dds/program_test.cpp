@@ -37,7 +37,8 @@ class NodeProgram : public testing::Test {
 TEST_F(NodeProgram, EndsWithASignal) {
   for (const int signal : {SIGINT, SIGTERM}) {
     RunningProgram program({"node"});
-    ASSERT_TRUE(comes_true([&] { return peer.diagnoses().contains("gridmerge"); }));
+    Peer listener(domain);
+    ASSERT_TRUE(comes_true([&] { return listener.diagnoses().contains("gridmerge"); }));
     const Outcome outcome = program.end_with(signal);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.signal;
     EXPECT_EQ(outcome.out + outcome.err, "");
