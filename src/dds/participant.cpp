@@ -9,6 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "gridmerge/export.hpp"
+
 // These two take the place of Cyclone DDS's own, which the dynamic linker finds later than the program's.
 // They deal with descriptions of types that participants ask each other for. ROS 2 needs none: a type is
 // known by its name. And Cyclone DDS 0.10.2 crashes over what nodes of ROS 2 Kilted answer each other, which
@@ -17,8 +19,8 @@ extern "C" {
 // NOLINTBEGIN(readability-identifier-naming)
 struct ddsi_domaingv;
 struct ddsi_serdata;
-void ddsi_tl_handle_request(ddsi_domaingv* domain, ddsi_serdata* request);
-void ddsi_tl_handle_reply(ddsi_domaingv* domain, ddsi_serdata* reply);
+GRIDMERGE_EXPORT void ddsi_tl_handle_request(ddsi_domaingv* domain, ddsi_serdata* request);
+GRIDMERGE_EXPORT void ddsi_tl_handle_reply(ddsi_domaingv* domain, ddsi_serdata* reply);
 // NOLINTEND(readability-identifier-naming)
 
 void ddsi_tl_handle_request(ddsi_domaingv* /*domain*/, ddsi_serdata* /*request*/) {}

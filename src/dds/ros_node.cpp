@@ -75,7 +75,7 @@ void validate(const RosNodeOptions& options) {
   select(options);
 }
 
-class RosNode::State {
+class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as public as RosNode
  public:
   explicit State(RosNodeOptions options)
       : options_(completed(std::move(options))),

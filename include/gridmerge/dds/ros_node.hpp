@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gridmerge/export.hpp"
 #include "gridmerge/merge/known_pose.hpp"
 #include "gridmerge/online/team.hpp"
 
@@ -40,12 +41,12 @@ struct RosNodeOptions {
 
 /// Throws std::invalid_argument for names, topics, patterns, frames and options that cannot be, and for known
 /// poses of robots that cannot be heard.
-void validate(const RosNodeOptions& options);
+GRIDMERGE_EXPORT void validate(const RosNodeOptions& options);
 
 /// A node of ROS 2 that hears the maps of robots on DDS, merges them as a Team does, and publishes the merged
 /// maps, the transforms of the robots' map frames and diagnostics. It needs no installation of ROS. One at a
 /// time in a process.
-class RosNode {
+class GRIDMERGE_EXPORT RosNode {
  public:
   /// How run() came to an end.
   enum class End {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <gridmerge/online/team.hpp>
 
 int main() {
-  const gridmerge::Team team;
-  return team.answer()->robots.empty() ? 0 : 1;
+  gridmerge::Team team;
+  team.hear("tb1", gridmerge::make_grid(8, 8, 0.1));
+  return team.wait_until_settled(std::chrono::minutes(1)) && team.answer()->robots.size() == 1 ? 0 : 1;
 }
