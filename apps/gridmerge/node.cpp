@@ -48,6 +48,7 @@ int run_node(const NodeCommandOptions& options) {
   node_options.tell = [&](const std::string& line) {
     if (!options.common.quiet) print(escape_controls(line) + "\n");
   };
+  node_options.detail = [&](const std::string& line) { console.remark(escape_controls(line)); };
   node_options.warn = [&](const std::string& line) { console.warn(escape_controls(line)); };
   const Interrupt signal;  // one that comes while the node starts is not lost
   RosNode node(std::move(node_options));

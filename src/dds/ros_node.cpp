@@ -43,6 +43,7 @@ RosNodeOptions completed(RosNodeOptions options) {
   const auto ignore = [](const std::string&) {};
   if (!options.tell) options.tell = ignore;
   if (!options.warn) options.warn = ignore;
+  if (!options.detail) options.detail = ignore;
   return options;
 }
 
@@ -221,6 +222,9 @@ void RosNode::State::publish() {
   if (is_new) {
     told_answer_ = answer->number;
     for (const TeamEvent& event : answer->events) options_.tell(event.text);
+    options_.detail(fmt::format("answer {}: {:.3f} s, {} merged maps of {} robots{}", answer->number,
+                                answer->seconds, answer->components.size(), answer->robots.size(),
+                                answer->problem.empty() ? "" : "; " + answer->problem));
   }
   if (is_new || !all_sent_) {
     Stamp newest;

@@ -11,8 +11,12 @@
 namespace gridmerge::test {
 namespace {
 
-const std::vector<std::string> kCommands = {"info",   "match", "measure",  "merge",
-                                            "report", "view",  "evaluate", "simulate"};
+const std::vector<std::string> kCommands = {
+    "info", "match", "measure", "merge", "report", "view", "evaluate", "simulate",
+#ifdef GRIDMERGE_HAS_NODE
+    "node",
+#endif
+};
 
 class WrongUsage : public testing::TestWithParam<std::vector<std::string>> {};
 

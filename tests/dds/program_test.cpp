@@ -66,10 +66,11 @@ TEST_F(NodeProgram, EndsOnceWithTheExitCodeOfMerge) {
   b.publish(map_of(1, "b/map"));
   other.publish(map_of(3, "other/map"));
   const Outcome merged =
-      run({"node", "--once", "--wait", "30", "--robot", "a=/a/map", "--robot", "b=/b/map"});
+      run({"node", "--once", "--wait", "30", "--robot", "a=/a/map", "--robot", "b=/b/map", "--verbose"});
   EXPECT_EQ(merged.exit_code, 0) << merged.err;
   EXPECT_TRUE(has(merged.out, "a: first map: ")) << merged.out;
   EXPECT_TRUE(has(merged.out, "b: placed at x ")) << merged.out;
+  EXPECT_TRUE(has(merged.err, "1 merged maps of 2 robots")) << merged.err;
   const Outcome refused = run({"node", "--once", "--wait", "30", "--quiet"});
   EXPECT_EQ(refused.exit_code, 3) << refused.err;
   EXPECT_EQ(count_lines(refused.out), 3u) << refused.out;

@@ -35,8 +35,9 @@ struct RosNodeOptions {
   bool once = false;  ///< end when all maps that are heard are merged as far as they can be
   std::optional<double>
       wait;  ///< so long a first map is waited for [s]; without it for ever, or 10 s with `once`
-  std::function<void(const std::string&)> tell;  ///< called by run() with a line on what happened
-  std::function<void(const std::string&)> warn;  ///< likewise, on what should not have
+  std::function<void(const std::string&)> tell;    ///< called by run() with a line on what happened
+  std::function<void(const std::string&)> warn;    ///< likewise, on what should not have
+  std::function<void(const std::string&)> detail;  ///< likewise, with the figures of each answer
 };
 
 /// Throws std::invalid_argument for names, topics, patterns, frames and options that cannot be, and for known
