@@ -26,6 +26,7 @@ class RecordedMap:
     time: int
     """When its message was recorded [ns since 1970, or whatever the clock had]."""
     grid: OccupancyGrid
+    """The map, whose frame_id is the one that its message names."""
     is_update: bool
     """Whether an update of a part made it so."""
 
@@ -35,9 +36,11 @@ class BagTopic:
     """A topic of a bag."""
 
     name: str
+    """As ROS has it: /tb1/map."""
     type: str
     """Of its messages, as ROS 2 names it: nav_msgs/msg/OccupancyGrid."""
     messages: int
+    """How many there are."""
 
     def __repr__(self) -> str:
         return f"BagTopic({shortened(self.name, 80)}, {shortened(self.type, 80)}, {count(self.messages, 'message')})"

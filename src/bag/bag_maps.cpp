@@ -21,13 +21,13 @@ constexpr std::size_t kMap = 0;  // of the topics that are asked for: the map's,
 
 // What there is instead, as far as a line may hold it.
 std::string list_topics(const std::vector<BagTopic>& topics, bool with_types) {
-  constexpr std::size_t kMost = 20;
+  constexpr std::size_t kMax = 20;
   std::string text;
-  for (std::size_t i = 0; i < std::min(topics.size(), kMost); ++i) {
+  for (std::size_t i = 0; i < std::min(topics.size(), kMax); ++i) {
     text += (i == 0 ? "" : ", ") + topics[i].name;
     if (with_types) text += fmt::format(" ({})", topics[i].type);
   }
-  if (topics.size() > kMost) text += fmt::format(" and {} more", topics.size() - kMost);
+  if (topics.size() > kMax) text += fmt::format(" and {} more", topics.size() - kMax);
   return text;
 }
 

@@ -20,7 +20,7 @@ CdrReader::CdrReader(std::string_view message) {
       break;
     case 6:  // CDR2_BE
     case 7:  // CDR2_LE
-      most_alignment_ = 4;
+      max_alignment_ = 4;
       break;
     default:
       throw ParseError(fmt::format("the message is not in plain CDR (its kind is {})", kind));
@@ -30,7 +30,7 @@ CdrReader::CdrReader(std::string_view message) {
 }
 
 std::string_view CdrReader::take(std::size_t count, std::size_t alignment) {
-  const std::size_t side = std::min(alignment, most_alignment_);
+  const std::size_t side = std::min(alignment, max_alignment_);
   const std::size_t begin = (next_ + side - 1) / side * side;
   if (begin > body_.size() || count > body_.size() - begin) throw ParseError("the message ends early");
   next_ = begin + count;

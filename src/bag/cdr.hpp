@@ -32,7 +32,7 @@ class CdrReader {
 
   std::string_view body_;
   std::size_t next_ = 0;
-  std::size_t most_alignment_ = 8;
+  std::size_t max_alignment_ = 8;
   bool is_little_endian_ = true;
 };
 

@@ -179,8 +179,8 @@ void McapFile::scan() {
             count(chunk->read(
                 static_cast<std::size_t>(std::min<std::uint64_t>(inner.bytes, kMessageHeadBytes))));
           } else if (inner.kind == McapRecord::schema || inner.kind == McapRecord::channel) {
-            constexpr std::uint64_t kMost = std::uint64_t{1} << 16;
-            learn(inner.kind, chunk->read(static_cast<std::size_t>(std::min(inner.bytes, kMost))));
+            constexpr std::uint64_t kMax = std::uint64_t{1} << 16;
+            learn(inner.kind, chunk->read(static_cast<std::size_t>(std::min(inner.bytes, kMax))));
           }
         });
         break;
@@ -210,8 +210,8 @@ void McapFile::for_each_record(std::uint64_t begin, const Use& use) {
 
 // Of a record that names things: what is long in it comes last, and is not of use.
 std::string McapFile::content(std::uint64_t offset, const RecordHead& head) const {
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 20;  // statistics of 2^16 channels take 0.7 MB
-  return file_.read(offset, static_cast<std::size_t>(std::min(head.bytes, kMost)));
+  constexpr std::uint64_t kMax = std::uint64_t{1} << 20;  // statistics of 2^16 channels take 0.7 MB
+  return file_.read(offset, static_cast<std::size_t>(std::min(head.bytes, kMax)));
 }
 
 // The same schema or channel may stand in a file many times.
@@ -227,9 +227,9 @@ void McapFile::learn(McapRecord kind, std::string_view content) {
     const std::uint16_t id = channel.id;
     if (channels_.emplace(id, Channel{std::move(channel), 0}).second) named = bytes;
   }
-  constexpr std::size_t kMost = std::size_t{1} << 26;
+  constexpr std::size_t kMax = std::size_t{1} << 26;
   name_bytes_ += named;
-  if (name_bytes_ > kMost) throw ParseError("the names of its topics are longer than any are");
+  if (name_bytes_ > kMax) throw ParseError("the names of its topics are longer than any are");
 }
 
 std::string_view McapFile::type_of(const McapChannel& channel) const {
@@ -250,12 +250,12 @@ void McapFile::make_topics() {
 }
 
 std::unique_ptr<McapFile::Chunk> McapFile::open_chunk(std::uint64_t offset, std::uint64_t bytes) const {
-  constexpr std::uint64_t kMostHead = 4096, kMostUnpacked = std::uint64_t{4} << 30;
+  constexpr std::uint64_t kMaxHead = 4096, kMaxUnpacked = std::uint64_t{4} << 30;
   const McapChunkHead head =
-      parse_chunk_head(file_.read(offset, static_cast<std::size_t>(std::min(bytes, kMostHead))));
+      parse_chunk_head(file_.read(offset, static_cast<std::size_t>(std::min(bytes, kMaxHead))));
   if (head.packed_bytes > bytes - head.head_bytes)
     throw ParseError("a chunk's records reach beyond the chunk");
-  if (head.unpacked_bytes > kMostUnpacked)
+  if (head.unpacked_bytes > kMaxUnpacked)
     throw ParseError(fmt::format("a chunk claims to unpack to {} bytes", head.unpacked_bytes));
   const std::uint64_t begin = offset + head.head_bytes;
   std::unique_ptr<ByteSource> records = file_part(file_, begin, begin + head.packed_bytes);

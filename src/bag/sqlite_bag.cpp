@@ -147,17 +147,16 @@ void SqliteBag::check_tables() {
 }
 
 void SqliteBag::read_topics() {
-  constexpr std::size_t kMostTopics = std::size_t{1} << 16;
+  constexpr std::size_t kMaxTopics = std::size_t{1} << 16;
   std::map<std::int64_t, std::uint64_t> counts;
   const Statement counting = prepare("SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id");
-  while (step(counting.get()) && counts.size() < kMostTopics)
+  while (step(counting.get()) && counts.size() < kMaxTopics)
     counts[sqlite3_column_int64(counting.get(), 0)] =
         static_cast<std::uint64_t>(sqlite3_column_int64(counting.get(), 1));
   std::map<std::pair<std::string, std::string>, BagTopic> topics;
   const Statement naming = prepare("SELECT id, name, type, serialization_format FROM topics");
   while (step(naming.get())) {
-    if (topics.size() == kMostTopics)
-      throw ParseError(fmt::format("it has more than {} topics", kMostTopics));
+    if (topics.size() == kMaxTopics) throw ParseError(fmt::format("it has more than {} topics", kMaxTopics));
     const std::string name = text_of(naming.get(), 1), type = text_of(naming.get(), 2);
     BagTopic& topic = topics[{name, type}];
     topic.name = name;

@@ -22,12 +22,12 @@ using test::contains;
 using test::pack_lz4;
 using test::pack_zstd;
 
-constexpr std::size_t kMost = std::size_t{1} << 24;
+constexpr std::size_t kMax = std::size_t{1} << 24;
 
 std::string unpacked(const std::string& packed, bool by_zstd) {
   auto source = text_source(packed);
   source = by_zstd ? unpack_zstd(std::move(source)) : unpack_lz4(std::move(source));
-  return read_all(*source, kMost);
+  return read_all(*source, kMax);
 }
 
 std::string packed(const std::string& text, bool by_zstd) {
