@@ -126,7 +126,7 @@ def test_a_robot_that_starts_anew(how: str) -> None:
 
 
 def test_a_publisher_more_or_one_that_is_not_known_yet_is_no_new_start(heard: Heard) -> None:
-    for publishers in ([], [FIRST], [FIRST, SECOND], [], [FIRST]):
+    for publishers in ([], [SECOND], [FIRST, SECOND], [], [SECOND]):
         heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), publishers)
     assert [call[0] for call in heard.account.calls] == ["hear"] * 5
 
