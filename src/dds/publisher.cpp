@@ -150,6 +150,7 @@ void Publisher::publish_diagnoses(const std::vector<Diagnosis>& diagnoses) {
   std::vector<diagnostic_msgs_msg_dds__DiagnosticStatus_> elements;
   for (const Diagnosis& diagnosis : diagnoses) {
     values.emplace_back();
+    values.back().reserve(diagnosis.values.size());
     for (const auto& [key, value] : diagnosis.values) values.back().push_back({text(key), text(value)});
     diagnostic_msgs_msg_dds__DiagnosticStatus_ element{};
     element.level = diagnosis.level;

@@ -179,6 +179,8 @@ void RosNode::State::take_map(const std::string& robot, HeardMap map, bool resta
 RosNode::End RosNode::State::run() {
   began_ = Clock::now();
   news_at_ = began_;
+  options_.tell(fmt::format("hears {} in domain {}, and publishes {}", selection_.describe(),
+                            environment_.domain, options_.output));
   while (!stopped_) {
     wait();
     if (!enough_) listener_.hear();

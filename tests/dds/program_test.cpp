@@ -41,7 +41,9 @@ TEST_F(NodeProgram, EndsWithASignal) {
     ASSERT_TRUE(comes_true([&] { return listener.diagnoses().contains("gridmerge"); }));
     const Outcome outcome = program.end_with(signal);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.signal;
-    EXPECT_EQ(outcome.out + outcome.err, "");
+    EXPECT_EQ(outcome.out, "hears a map (nav_msgs/msg/OccupancyGrid) on /*/map in domain " +
+                               std::to_string(domain) + ", and publishes /merged_map\n");
+    EXPECT_EQ(outcome.err, "");
   }
 }
 
