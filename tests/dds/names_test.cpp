@@ -47,11 +47,13 @@ TEST(TopicPatterns, ThatNoTopicCanMatchAreRefused) {
 
 /// The same by a regular expression.
 RC_GTEST_PROP(TopicPatterns, AgreeWithRegularExpressions, ()) {
-  const auto level = rc::gen::nonEmpty(rc::gen::container<std::string>(rc::gen::element('a', 'b', '*')));
-  const auto name = rc::gen::nonEmpty(rc::gen::container<std::string>(rc::gen::element('a', 'b')));
+  // Short enough for ROS.
+  const auto some = [](auto element) { return rc::gen::resize(8, rc::gen::nonEmpty(element)); };
+  const auto level = some(rc::gen::container<std::string>(rc::gen::element('a', 'b', '*')));
+  const auto name = some(rc::gen::container<std::string>(rc::gen::element('a', 'b')));
   std::string pattern;
   std::string expression;
-  for (std::string part : *rc::gen::nonEmpty(rc::gen::container<std::vector<std::string>>(level))) {
+  for (std::string part : *some(rc::gen::container<std::vector<std::string>>(level))) {
     if (part.find("**") != std::string::npos) part = "**";
     pattern += "/" + part;
     expression += "/";
@@ -62,9 +64,8 @@ RC_GTEST_PROP(TopicPatterns, AgreeWithRegularExpressions, ()) {
     for (const char c : part) expression += c == '*' ? std::string("[^/]*") : std::string(1, c);
   }
   std::string topic;
-  for (const std::string& part : *rc::gen::nonEmpty(rc::gen::container<std::vector<std::string>>(name)))
+  for (const std::string& part : *some(rc::gen::container<std::vector<std::string>>(name)))
     topic += "/" + part;
-  RC_PRE(topic.size() <= kLongestTopic && pattern.size() <= kLongestTopic);
   RC_ASSERT(TopicPattern(pattern).matches(topic) == std::regex_match(topic, std::regex(expression)));
 }
 

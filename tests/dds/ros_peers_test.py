@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import array
+import fcntl
 import math
 import os
 import re
@@ -47,7 +48,6 @@ LONGEST_WAIT = 60.0
 THETA_1_2 = 1.44
 
 options = argparse.Namespace()
-domains = iter(range(1 + os.getpid() % 90, 1000))
 
 
 def read_map(robot: int) -> OccupancyGrid:
@@ -73,6 +73,20 @@ def read_map(robot: int) -> OccupancyGrid:
     return message
 
 
+def free_domain() -> tuple[int, int]:
+    """A domain that no other test on this machine has, and the open file whose lock holds it."""
+    for i in range(100):
+        domain = 1 + (os.getpid() + i) % 100
+        file = os.open(f"/tmp/gridmerge-test-domain-{domain}", os.O_RDWR | os.O_CREAT, 0o666)
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(file)
+        else:
+            return domain, file
+    raise RuntimeError("all domains are taken")
+
+
 class Program:
     """`gridmerge node`, running."""
 
@@ -96,7 +110,8 @@ class Program:
 
 class RosPeers(unittest.TestCase):
     def setUp(self) -> None:
-        self.domain = next(domains)
+        self.domain, lock = free_domain()
+        self.addCleanup(os.close, lock)
         self.context = Context()
         rclpy.init(context=self.context, domain_id=self.domain)
         self.node = rclpy.create_node("peer", context=self.context)

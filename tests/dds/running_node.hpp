@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +13,7 @@
 #include <functional>
 #include <future>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -20,14 +23,28 @@
 
 namespace gridmerge::test {
 
-/// A domain that no other test has at the same time, and its variables: all of it stays on this machine.
+/// A domain that no other test on this machine has while this process runs: each is held by a locked file.
+inline std::uint32_t free_domain() {
+  constexpr int kDomains = 100;  // beyond it their ports are those that the system hands out
+  for (int i = 0; i < kDomains; ++i) {
+    const int domain = 1 + (::getpid() + i) % kDomains;
+    const std::string path = "/tmp/gridmerge-test-domain-" + std::to_string(domain);
+    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (file >= 0 && ::flock(file, LOCK_EX | LOCK_NB) == 0) return static_cast<std::uint32_t>(domain);
+    if (file >= 0) ::close(file);
+  }
+  throw std::runtime_error("all domains are taken");
+}
+
+/// This process's domain, and the variables of ROS that say so: all of it stays on this machine.
 inline std::uint32_t own_domain() {
-  const auto domain = static_cast<std::uint32_t>(1 + ::getpid() % 100);
-  ::setenv("ROS_DOMAIN_ID", std::to_string(domain).c_str(), 1);
+  static const std::uint32_t kDomain = free_domain();
+  ::setenv("ROS_DOMAIN_ID", std::to_string(kDomain).c_str(), 1);
   ::setenv("ROS_LOCALHOST_ONLY", "1", 1);
-  for (const char* name : {"ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS", "CYCLONEDDS_URI"})
+  for (const char* name :
+       {"ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS", "CYCLONEDDS_URI", "ROS_SECURITY_ENABLE"})
     ::unsetenv(name);
-  return domain;
+  return kDomain;
 }
 
 /// Waits until something holds. A minute is far more than it takes anywhere; it ends a test that would never
