@@ -74,7 +74,7 @@ def team_transforms(
     withheld: dict[str, str] = {}
     for status in answer.robots:
         frame = frames.get(status.name)
-        if status.state != "placed" or status.component is None or frame is None:
+        if status.component is None or frame is None:
             continue
         sharing = sorted(name for name, other in frames.items() if other == frame)
         if len(sharing) > 1:
