@@ -100,7 +100,8 @@ class TeamAnswer:
 
     def __repr__(self) -> str:
         state = "settled" if self.settled else "not settled"
-        return f"TeamAnswer({self.number}: {count(len(self.robots), 'robot')}, {count(len(self.components), 'component')}, {state})"
+        robots, components = count(len(self.robots), "robot"), count(len(self.components), "component")
+        return f"TeamAnswer({self.number}: {robots}, {components}, {state})"
 
 
 class Team:
