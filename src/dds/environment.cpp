@@ -19,7 +19,7 @@ namespace gridmerge::internal {
 namespace {
 
 constexpr std::uint32_t kLargestDomain = 232;  // its ports would lie above 65535
-constexpr int kMostLocalParticipants = 32;     // as ROS's other middleware looks for on one machine
+constexpr int kMaxLocalParticipants = 32;      // as ROS's other middleware looks for on one machine
 
 /// What is set and not empty.
 std::string value_of(const Environment& environment, const char* name) {
@@ -135,7 +135,7 @@ std::string cyclone_configuration(const RosEnvironment& environment, std::uint64
     discovery += fmt::format(
         "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex>"
         "<SPDPInterval>1s</SPDPInterval><Peers>",
-        kMostLocalParticipants);
+        kMaxLocalParticipants);
     for (const std::string& peer : peers)
       fmt::format_to(std::back_inserter(discovery), "<Peer Address=\"{}\"/>", peer);
     discovery += "</Peers>";

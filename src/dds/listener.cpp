@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view kUpdates = "_updates";
 constexpr std::int32_t kPartsKept = 64;
 // Of the writers that are not heard; beyond it they are forgotten.
-constexpr std::size_t kMostOverLimit = 4096;
+constexpr std::size_t kMaxOverLimit = 4096;
 
 bool is_type(const RemoteWriter& writer, const TopicType& type) {
   return writer.type == type.descriptor->m_typename;
@@ -148,7 +148,7 @@ void MapListener::discover() {
     const Robot& robot = entry.second;
     return robot.heard.maps == 0 && robot.heard.publishers == 0 && robot.part_publishers == 0;
   });
-  while (robots_.size() < kMostRobots && !over_limit_.empty()) {
+  while (robots_.size() < kMaxRobots && !over_limit_.empty()) {
     const RemoteWriter writer = over_limit_.begin()->second;
     over_limit_.erase(over_limit_.begin());
     come(writer);
@@ -178,11 +178,11 @@ bool MapListener::offer(const RemoteWriter& writer) {
   if (!name) return false;
   auto robot = robots_.find(topic);
   if (robot == robots_.end()) {
-    if (robots_.size() >= kMostRobots) {
-      if (over_limit_.size() < kMostOverLimit) over_limit_.emplace(writer.handle, writer);
+    if (robots_.size() >= kMaxRobots) {
+      if (over_limit_.size() < kMaxOverLimit) over_limit_.emplace(writer.handle, writer);
       if (!warned_of_limit_)
         callbacks_.warn(
-            fmt::format("{} and perhaps others are not heard: there are {} robots", topic, kMostRobots));
+            fmt::format("{} and perhaps others are not heard: there are {} robots", topic, kMaxRobots));
       warned_of_limit_ = true;
       return true;
     }
@@ -219,7 +219,7 @@ void MapListener::go(dds_instance_handle_t handle) {
 }
 
 void MapListener::add_near(const RemoteWriter& writer, std::string why) {
-  if (near_.size() < kMostNear) near_.emplace(writer.handle, std::pair(writer.topic, std::move(why)));
+  if (near_.size() < kMaxNear) near_.emplace(writer.handle, std::pair(writer.topic, std::move(why)));
 }
 
 std::vector<WriterEvent> MapListener::take_events() {
@@ -284,7 +284,7 @@ void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapMe
     std::size_t together = map.grid.cells.size();
     for (const auto& [topic, other] : robots_)
       if (topic != heard.topic) together += other.heard.cells;
-    if (together > kMostCellsTogether) throw RefusedMessage("all maps together have above 2^30 cells");
+    if (together > kMaxCellsTogether) throw RefusedMessage("all maps together have above 2^30 cells");
     const bool restarted = heard.maps > 0 && (robot.session != writer.guid || heard.frame != map.frame);
     const std::string frame = map.frame;
     const Stamp stamp = map.stamp;

@@ -21,9 +21,9 @@
 namespace gridmerge::internal {
 
 /// So many robots are heard; who comes later is told of, and heard when another goes that never sent a map.
-inline constexpr std::size_t kMostRobots = 256;
+inline constexpr std::size_t kMaxRobots = 256;
 /// The newest maps of all robots may have so many cells together.
-inline constexpr std::size_t kMostCellsTogether = std::size_t{1} << 30;
+inline constexpr std::size_t kMaxCellsTogether = std::size_t{1} << 30;
 
 /// What was heard of a robot.
 struct HeardRobot {
@@ -63,16 +63,16 @@ class MapListener {
 
   /// By topic.
   std::vector<HeardRobot> robots() const;
-  /// Writers that are not heard because there are kMostRobots others.
+  /// Writers that are not heard because there are kMaxRobots others.
   std::size_t over_limit() const { return over_limit_.size(); }
   /// GUIDs of all readers, 16 bytes each.
   std::vector<dds_guid_t> readers() const;
   /// Counts up with every robot that is discovered and every first map of one.
   std::uint64_t news() const { return news_; }
-  /// Topics that might be meant and cannot be used, each with why, at most kMostNear.
+  /// Topics that might be meant and cannot be used, each with why, at most kMaxNear.
   std::vector<std::string> near_misses() const;
 
-  static constexpr std::size_t kMostNear = 64;
+  static constexpr std::size_t kMaxNear = 64;
 
  private:
   /// Readers of one topic, one for each kind of writers: a reader that asks for more than a writer offers

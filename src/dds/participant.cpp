@@ -57,7 +57,7 @@ class Participant::Log {
       return;
     }
     const std::lock_guard lock(mutex_);
-    if (lines_.size() < kMostLogLines) lines_.emplace_back(text);
+    if (lines_.size() < kMaxLogLines) lines_.emplace_back(text);
   }
 
   std::mutex mutex_;

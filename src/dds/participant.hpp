@@ -27,12 +27,12 @@ class Participant {
   dds_entity_t get() const { return participant_.get(); }
   const dds_guid_t& guid() const { return guid_; }
 
-  /// What Cyclone DDS warned of since it was last asked, at most kMostLogLines of it.
+  /// What Cyclone DDS warned of since it was last asked, at most kMaxLogLines of it.
   std::vector<std::string> take_log();
   /// Messages of peers that were no such messages at all.
   std::uint64_t undecodable() const;
 
-  static constexpr std::size_t kMostLogLines = 32;
+  static constexpr std::size_t kMaxLogLines = 32;
 
  private:
   class Log;

@@ -82,7 +82,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
       : options_(completed(std::move(options))),
         selection_(select(options_)),
         environment_(read_ros_environment(process_environment)),
-        participant_(environment_, kMostCells + kHeadOfMessage),
+        participant_(environment_, kMaxCells + kHeadOfMessage),
         waitset_(dds_create_waitset(participant_.get()), "a wait set"),
         wake_(dds_create_guardcondition(participant_.get()), "a guard condition"),
         publisher_(participant_, options_),

@@ -77,12 +77,12 @@ double decimal_of(float value) {
 
 Yaw yaw_of(const Quaternion& rotation) {
   constexpr double kUnit = 1e-3;
-  constexpr double kLeastUpright = 1.0 - 4e-7;  // cosine of a twentieth of a degree
+  constexpr double kMinUpright = 1.0 - 4e-7;  // cosine of a twentieth of a degree
   const auto [x, y, z, w] = rotation;
   if (x == 0.0 && y == 0.0 && z == 0.0 && w == 0.0) return {Rotation::missing, 0.0};
   const double squared = x * x + y * y + z * z + w * w;  // infinite where a part is very large
   if (!(std::abs(std::sqrt(squared) - 1.0) <= kUnit)) return {Rotation::not_unit, 0.0};
-  if (1.0 - 2.0 * (x * x + y * y) / squared < kLeastUpright) return {Rotation::tilted, 0.0};
+  if (1.0 - 2.0 * (x * x + y * y) / squared < kMinUpright) return {Rotation::tilted, 0.0};
   return {Rotation::about_z, normalize_angle(2.0 * std::atan2(z, w))};
 }
 

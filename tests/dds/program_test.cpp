@@ -28,7 +28,7 @@ class NodeProgram : public testing::Test {
   }
 
   const std::uint32_t domain = own_domain();
-  const Explorers explorers;
+  const Explorers explorers{};
   // Sets the domain up as the program does; both are alike in this process's environment.
   const internal::Participant network{internal::read_ros_environment(internal::process_environment), 1 << 20};
   Peer peer{domain};
