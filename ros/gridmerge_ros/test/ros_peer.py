@@ -28,7 +28,7 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 VOLATILE = QoSProfile(depth=1)
 UNRELIABLE = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 # What ends a test that would never end.
-LONGEST_WAIT = 60.0
+LONGEST_WAIT = 180.0
 
 
 def map_message(
