@@ -139,7 +139,7 @@ class Team:
         options = _core.TeamOptions()
         options.threads = _arguments.threads(threads)
         options.accept = _arguments.share("accept", accept)
-        options.max_false_joins = _arguments.at_least_0("max_false_joins", max_false_joins)
+        options.max_false_joins = _arguments.not_negative("max_false_joins", max_false_joins)
         options.output_resolution = to_output_resolution(output_resolution)
         options.search_again = _arguments.share("search_again", search_again)
         options.confirmations = _arguments.whole("confirmations", confirmations, 1, 1000)
