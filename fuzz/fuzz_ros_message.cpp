@@ -47,8 +47,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace gridmerge;
   using namespace gridmerge::internal;
   Input input(data, size);
-  MapMessage message;
-  UpdateMessage update;
+  MapSample message;
+  UpdateSample update;
   message.frame = update.frame = input.take_text();
   message.resolution = input.take<float>();
   message.width = update.width = input.take<std::uint16_t>();

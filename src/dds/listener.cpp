@@ -37,8 +37,8 @@ std::span<const std::int8_t> values_of(const Sequence& sequence) {
   return {reinterpret_cast<const std::int8_t*>(sequence._buffer), sequence._length};
 }
 
-MapMessage view_of(const nav_msgs_msg_dds__OccupancyGrid_& sample) {
-  MapMessage message;
+MapSample view_of(const nav_msgs_msg_dds__OccupancyGrid_& sample) {
+  MapSample message;
   message.stamp = {sample.header.stamp.sec, sample.header.stamp.nanosec};
   message.frame = text_of(sample.header.frame_id);
   message.resolution = sample.info.resolution;
@@ -52,8 +52,8 @@ MapMessage view_of(const nav_msgs_msg_dds__OccupancyGrid_& sample) {
   return message;
 }
 
-UpdateMessage view_of(const map_msgs_msg_dds__OccupancyGridUpdate_& sample) {
-  UpdateMessage message;
+UpdateSample view_of(const map_msgs_msg_dds__OccupancyGridUpdate_& sample) {
+  UpdateSample message;
   message.stamp = {sample.header.stamp.sec, sample.header.stamp.nanosec};
   message.frame = text_of(sample.header.frame_id);
   message.x = sample.x;
@@ -272,7 +272,7 @@ void MapListener::hear_parts(Robot& robot) {
   }
 }
 
-void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapMessage& message) {
+void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapSample& message) {
   HeardRobot& heard = robot.heard;
   if (robot.followed && *robot.followed != writer.handle) {
     if (heard.unheard++ == 0)
@@ -301,7 +301,7 @@ void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapMe
   }
 }
 
-void MapListener::take_part(Robot& robot, const RemoteWriter& writer, const UpdateMessage& message) {
+void MapListener::take_part(Robot& robot, const RemoteWriter& writer, const UpdateSample& message) {
   const Known* map = robot.followed ? find(*robot.followed) : nullptr;
   try {
     if (map == nullptr) throw RefusedMessage("an update without a map before it");

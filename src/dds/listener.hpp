@@ -101,8 +101,8 @@ class MapListener {
   void add_near(const RemoteWriter& writer, std::string why);
   void hear_maps(Robot& robot);
   void hear_parts(Robot& robot);
-  void take_map(Robot& robot, const RemoteWriter& writer, const MapMessage& message);
-  void take_part(Robot& robot, const RemoteWriter& writer, const UpdateMessage& message);
+  void take_map(Robot& robot, const RemoteWriter& writer, const MapSample& message);
+  void take_part(Robot& robot, const RemoteWriter& writer, const UpdateSample& message);
   void refuse(Robot& robot, const std::string& why);
   const Known* find(dds_instance_handle_t handle);
   std::vector<WriterEvent> take_events();

@@ -94,7 +94,7 @@ std::string read_frame(std::string_view frame) {
   return std::string(frame);
 }
 
-HeardMap read_map(const MapMessage& message) {
+HeardMap read_map(const MapSample& message) {
   HeardMap heard{message.stamp, read_frame(message.frame), {}};
   // Sizes first: they are cheap to look at.
   const double resolution = read_resolution(message.resolution);
@@ -108,7 +108,7 @@ HeardMap read_map(const MapMessage& message) {
   return heard;
 }
 
-HeardPart read_update(const UpdateMessage& message) {
+HeardPart read_update(const UpdateSample& message) {
   HeardPart part{message.stamp, read_frame(message.frame), 0, 0, {}};
   if (message.x < 0 || message.y < 0)
     throw RefusedMessage(fmt::format("an update at ({}, {})", message.x, message.y));

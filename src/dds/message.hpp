@@ -24,7 +24,7 @@ struct Stamp {
 };
 
 /// A `nav_msgs/OccupancyGrid` as it came from a peer: nothing in it is checked, and it owns nothing.
-struct MapMessage {
+struct MapSample {
   Stamp stamp;
   std::string_view frame;
   float resolution = 0.0F;  // [m/cell]
@@ -36,7 +36,7 @@ struct MapMessage {
 };
 
 /// A `map_msgs/OccupancyGridUpdate` as it came from a peer, likewise.
-struct UpdateMessage {
+struct UpdateSample {
   Stamp stamp;
   std::string_view frame;
   std::int32_t x = 0;  // column of the whole map where the part begins
@@ -79,10 +79,10 @@ inline constexpr std::size_t kLongestFrame = 255;
 /// for sizes that are 0, above kMaxCells or not those of the data; for a resolution that no map file may
 /// have; for an origin that is not finite, too far off or not level; for cells outside -1 to 100; and for a
 /// frame that TF could not name. O(cells).
-HeardMap read_map(const MapMessage& message);
+HeardMap read_map(const MapSample& message);
 
 /// Throws RefusedMessage likewise. Whether it fits its map is not asked. O(cells).
-HeardPart read_update(const UpdateMessage& message);
+HeardPart read_update(const UpdateSample& message);
 
 /// The values of a message: -1 unknown, 0 free, 100 occupied. O(cells).
 std::vector<std::int8_t> message_values(const OccupancyGrid& grid);

@@ -38,7 +38,7 @@ class MessageTest : public testing::Test {
   }
 
   std::vector<std::int8_t> values{-1, 0, 100, 0, -1, 0};
-  MapMessage message;
+  MapSample message;
 };
 
 TEST_F(MessageTest, BecomesAMap) {
@@ -151,9 +151,9 @@ TEST_F(MessageTest, IsRefusedForFrames) {
   EXPECT_EQ(read_map(message).frame, "tb1/map");
 }
 
-TEST(UpdateMessage, BecomesAPart) {
+TEST(UpdateSample, BecomesAPart) {
   const std::vector<std::int8_t> values{0, 100};
-  UpdateMessage message;
+  UpdateSample message;
   message.frame = "map";
   message.x = 5;
   message.y = 7;
@@ -177,7 +177,7 @@ RC_GTEST_PROP(Messages, AreRefusedOrValid, ()) {
   const std::string frame = *rc::gen::string<std::string>();
   const auto number =
       rc::gen::oneOf(rc::gen::arbitrary<double>(), rc::gen::element(0.0, 1.0, kNaN, kInfinity));
-  MapMessage message;
+  MapSample message;
   message.frame = frame;
   message.resolution = static_cast<float>(*number);
   message.width = *rc::gen::oneOf(rc::gen::inRange<std::uint32_t>(0, 5), rc::gen::arbitrary<std::uint32_t>());
