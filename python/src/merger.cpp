@@ -31,17 +31,11 @@ class MapMerger {
     return *id;
   }
 
-  void update(std::size_t id, const Map& map) {
-    replace(id, map, &Merger::update);
-  }
+  void update(std::size_t id, const Map& map) { replace(id, map, &Merger::update); }
 
-  void grow(std::size_t id, const Map& map) {
-    replace(id, map, &Merger::grow);
-  }
+  void grow(std::size_t id, const Map& map) { replace(id, map, &Merger::grow); }
 
-  void search_again(std::size_t id) {
-    merger_.search_again(id);
-  }
+  void search_again(std::size_t id) { merger_.search_again(id); }
 
   void remove(std::size_t id) {
     merger_.remove(id);
