@@ -50,7 +50,7 @@ from ._merger import Merger
 from ._message import OccupancyGridMessage
 from ._random_walk import RandomWalkMatch, Trace, Walk, match_by_random_walk, plot_walk
 from ._simulate import BUILDING_KINDS, SimulatedMap, SimulatedPair, Simulation, simulate
-from ._team import RobotStatus, Team, TeamAnswer, TeamComponent, TeamEvent
+from ._team import RobotState, RobotStatus, Team, TeamAnswer, TeamComponent, TeamEvent, TeamEventKind
 from ._transform import PoseLike, Transform
 
 __version__ = version("gridmerge")
@@ -89,6 +89,7 @@ __all__ = [
     "RandomWalkMatch",
     "Reason",
     "RecordedMap",
+    "RobotState",
     "RobotStatus",
     "SetCase",
     "SetCounts",
@@ -99,6 +100,7 @@ __all__ = [
     "TeamAnswer",
     "TeamComponent",
     "TeamEvent",
+    "TeamEventKind",
     "TimeSummary",
     "Trace",
     "Transform",
