@@ -125,9 +125,13 @@ void TeamSolver::set_map(const std::string& name, std::shared_ptr<const Occupanc
     return;
   }
   if (are_equal(*robot.map, *map)) return;
-  const bool other_frame = change_between(*robot.map, *map).other_frame;
+  const MapChange change = change_between(*robot.map, *map);
+  const bool other_frame = change.other_frame;
   const double searched_from = options_.search_again * (is_placed(name) ? 1.0 : kSooner);
-  const bool searches = other_frame || change_between(*robot.searched, *map).share >= searched_from;
+  // Mostly the map before is the one that was searched last.
+  const double unsearched =
+      robot.searched == robot.map ? change.share : change_between(*robot.searched, *map).share;
+  const bool searches = other_frame || unsearched >= searched_from;
   const MapExtent extent = extent_of(*map);
   if (other_frame) {
     merger_.update(*robot.id, *map);
