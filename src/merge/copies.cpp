@@ -109,14 +109,13 @@ void add_copies(const std::vector<Copy>& copies, const std::vector<const Occupan
       std::erase_if(result.left_out, [&](const LeftOut& one) { return one.map == copy.original; });
       const PlacedMap placed{grids[copy.original], {}};
       component = &result.components.emplace_back();
-      component->members.push_back({copy.original, {}, 1.0, {}});
+      component->members.push_back({copy.original, {}, 1.0, PoseDeviation{}});  // it holds the frame
       component->fused = fuse({placed}, resolution > 0.0 ? resolution : finest_resolution({placed}));
       original = &component->members.front();
     }
     Member member = *original;
     member.map = copy.map;
     member.T_component_map = original->T_component_map * copy.T_original_map;
-    member.sd = original->sd.value_or(PoseDeviation{});
     component->members.push_back(member);
   }
   for (Component& component : result.components) {

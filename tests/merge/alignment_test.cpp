@@ -98,6 +98,21 @@ TEST(FindDeviations, OfAKnownPoseAreThoseThatAreSaid) {
   EXPECT_NEAR(deviations[1]->theta, 0.05, 1e-6);
 }
 
+TEST(FindDeviations, AreKnownWhereOnePoseIsAMillionTimesSurerThanAnother) {
+  const Blank blank;
+  for (const double sure : {1e-6, 1e3}) {
+    const double unsure = sure == 1e3 ? 1e-6 : 1e3;
+    std::vector<AlignedMap> maps(3, {&blank.prepared, {}, blank.extent, {}});
+    maps[0].known_pose = KnownPose{{}, 0.0, 0.0, true};
+    maps[1].known_pose = KnownPose{{}, sure, 1e-6, false};
+    maps[2].known_pose = KnownPose{{}, unsure, 1e-6, false};
+    const auto deviations = find_deviations(maps, {}, 0);
+    ASSERT_TRUE(deviations[1] && deviations[2]) << sure;
+    EXPECT_NEAR(deviations[1]->position / (sure * std::sqrt(2.0)), 1.0, 1e-6);
+    EXPECT_NEAR(deviations[2]->position / (unsure * std::sqrt(2.0)), 1.0, 1e-6);
+  }
+}
+
 TEST(Align, DrawsTheWallsOfTheMapsToEachOther) {
   const OccupancyGrid building = test::draw_building(1);
   const PreparedMap prepared(building);

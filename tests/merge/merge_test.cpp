@@ -455,6 +455,20 @@ OccupancyGrid saved_again(const OccupancyGrid& map) {
   return copy;
 }
 
+TEST(Merge, AMapThatIsJoinedToItsCopyAloneHoldsTheFrame) {
+  OccupancyGrid map = make_grid(4, 4, 0.1, {});
+  for (std::size_t i = 0; i < map.cells.size(); ++i) map.cells[i] = i % 3 == 0 ? Cell::occupied : Cell::free;
+  const std::vector<OccupancyGrid> maps{map, saved_again(map)};
+  const MergeResult result = merge(maps);
+  ASSERT_EQ(result.components.size(), 1U);
+  ASSERT_EQ(result.components[0].members.size(), 2U);
+  for (const Member& member : result.components[0].members) {
+    ASSERT_TRUE(member.sd) << member.map;
+    EXPECT_EQ(member.sd->position, 0.0);
+    EXPECT_EQ(member.probability, 1.0);
+  }
+}
+
 TEST(Merge, AMapGivenTwiceCountsOnce) {
   Team team;
   const MergeResult once = merge(team.maps);
