@@ -195,6 +195,14 @@ class Team:
         """The newest."""
         return _to_answer(self._core.answer())
 
+    def take_events(self) -> tuple[TeamEvent, ...]:
+        """What has changed since this was called last, oldest first: the events of every answer, those too that nobody
+        asked for.
+
+        Of more than 1000 the newest are kept.
+        """
+        return tuple(_to_event(event) for event in self._core.take_events())
+
     def wait_until_settled(self, seconds: float = 60.0) -> bool:
         """Waits until all that was heard is settled, or for so long [s]; says whether it is. Ctrl-C ends it."""
         until = time.monotonic() + _arguments.not_negative("seconds", seconds)
@@ -204,6 +212,10 @@ class Team:
                 return True
             if left <= 0.0:
                 return False
+
+
+def _to_event(event: _core.TeamEvent) -> TeamEvent:
+    return TeamEvent(cast(TeamEventKind, event.kind), event.robot, event.text)
 
 
 def _to_answer(answer: _core.TeamAnswer) -> TeamAnswer:
@@ -227,9 +239,7 @@ def _to_answer(answer: _core.TeamAnswer) -> TeamAnswer:
             )
             for robot in answer.robots
         ),
-        events=tuple(
-            TeamEvent(cast(TeamEventKind, event.kind), event.robot, event.text) for event in answer.events
-        ),
+        events=tuple(_to_event(event) for event in answer.events),
         seconds=answer.seconds,
         settled=answer.settled,
         problem=answer.problem or None,

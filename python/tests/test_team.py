@@ -41,6 +41,9 @@ def test_the_end_is_that_of_merge(explored: gridmerge.Simulation, team: gridmerg
         time.sleep(0.05)
     assert team.wait_until_settled(600.0)
     answer = team.answer()
+    joined = {event.robot for event in team.take_events() if event.kind == "joined"}
+    assert joined >= {robot.name for robot in answer.robots if robot.state == "placed"}
+    assert team.take_events() == ()
     merged = gridmerge.merge(grids_at(explored, 3), names=["tb0", "tb1", "tb2"])
     assert [sorted(member.name for member in one.members) for one in merged.components] == [
         list(one.robots) for one in answer.components

@@ -223,7 +223,7 @@ void RosNode::State::publish() {
   const bool is_new = answer->number != told_answer_;
   if (is_new) {
     told_answer_ = answer->number;
-    for (const TeamEvent& event : answer->events) options_.tell(event.text);
+    for (const TeamEvent& event : team_.take_events()) options_.tell(event.text);
     options_.detail(fmt::format("answer {}: {:.3f} s, {} merged maps of {} robots{}", answer->number,
                                 answer->seconds, answer->components.size(), answer->robots.size(),
                                 answer->problem.empty() ? "" : "; " + answer->problem));

@@ -50,7 +50,17 @@ TEST(Team, SettlesOnWhatMergeSaysHoweverFastMapsCome) {
   EXPECT_EQ(answer->components[0].robots, (std::vector<std::string>{"anna", "bert", "carl"}));
   EXPECT_EQ(merged.components[0].members.size(), 3u);
   const std::lock_guard lock(mutex);
-  for (std::size_t i = 0; i < answers.size(); ++i) EXPECT_EQ(answers[i]->number, i + 1);
+  std::vector<std::string> told;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    EXPECT_EQ(answers[i]->number, i + 1);
+    for (const TeamEvent& event : answers[i]->events) told.push_back(event.text);
+  }
+  // Whoever asks at the end alone is told what all answers told.
+  std::vector<std::string> taken;
+  for (const TeamEvent& event : team.take_events()) taken.push_back(event.text);
+  EXPECT_GE(taken.size(), 3u);
+  EXPECT_EQ(taken, told);
+  EXPECT_TRUE(team.take_events().empty());
   EXPECT_EQ(answers.back(), answer);
 }
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from time import monotonic
 from typing import Any
 
-from gridmerge import Team, TeamAnswer
+from gridmerge import Team
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
@@ -16,7 +16,6 @@ from rclpy.timer import Timer
 
 from gridmerge_ros.initial_poses import AXES, is_initial_pose, parameter_names, read_known_pose
 from gridmerge_ros.names import Selection, check_topic
-from gridmerge_ros.news import news_between
 from gridmerge_ros.parameters import PARAMETERS, Settings, read_settings
 from gridmerge_ros.publishers import Publishers
 from gridmerge_ros.robots import KnownPose, Robots
@@ -26,7 +25,6 @@ from gridmerge_ros.subscriptions import HEARS_UPDATES, MapSubscriptions
 _ANSWERS_EVERY = 0.1  # so often the team is asked for news [s]
 _DIAGNOSES_EVERY = 1.0  # [s]
 _EVENTS_KEPT = 5
-_NOTHING = TeamAnswer(number=0, components=(), robots=(), events=(), seconds=0.0, settled=True)
 
 
 class GridmergeNode(LifecycleNode):  # type: ignore[misc]
@@ -160,7 +158,7 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
         self._forget_answers()
 
     def _forget_answers(self) -> None:
-        self._told_answer = _NOTHING
+        self._told_answer = 0
         self._sent_answer = 0
         self._next_maps = 0.0
         self._transforms = TeamTransforms((), {})
@@ -183,12 +181,12 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
         assert self._team is not None and self._settings is not None and self._robots is not None
         assert self._publishers_of_team is not None
         answer = self._team.answer()
-        if answer.number != self._told_answer.number:
-            for line in news_between(self._told_answer, answer):
+        if answer.number != self._told_answer:
+            for event in self._team.take_events():
                 self._events += 1
-                self._last_events.append(line)
-                self._tell(line)
-            self._told_answer = answer
+                self._last_events.append(event.text)
+                self._tell(event.text)
+            self._told_answer = answer.number
         if answer.number == self._sent_answer or monotonic() < self._next_maps:
             return
         self._sent_answer = answer.number
