@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <set>
 #include <string_view>
 
+#include "dds/loan.hpp"
 #include "dds/names.hpp"
 #include "ros_messages.h"
 
@@ -64,31 +66,11 @@ UpdateSample view_of(const map_msgs_msg_dds__OccupancyGridUpdate_& sample) {
   return message;
 }
 
-/// A sample that is read where Cyclone DDS keeps it.
-class Loan {
- public:
-  explicit Loan(dds_entity_t reader) : reader_(reader) {
-    count_ = require_dds(dds_take(reader_, &sample_, &info_, 1, 1), "what was received");
-  }
-  ~Loan() {
-    if (count_ > 0) dds_return_loan(reader_, &sample_, count_);
-  }
-  Loan(const Loan&) = delete;
-  Loan& operator=(const Loan&) = delete;
-
-  bool is_there() const { return count_ > 0; }
-  const dds_sample_info_t& info() const { return info_; }
-  template <typename Sample>
-  const Sample& as() const {
-    return *static_cast<const Sample*>(sample_);
-  }
-
- private:
-  dds_entity_t reader_;
-  void* sample_ = nullptr;
-  dds_sample_info_t info_{};
-  std::int32_t count_ = 0;
-};
+std::string hexadecimal(std::string_view bytes) {
+  std::string digits;
+  for (const char byte : bytes) digits += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+  return digits;
+}
 
 }  // namespace
 
@@ -110,6 +92,14 @@ void MapListener::hear() {
     hear_maps(robot);
     hear_parts(robot);
   }
+}
+
+void MapListener::hear_age(const RobotAge& age) {
+  const auto robot = robots_.find(age.topic);
+  if (robot == robots_.end()) return;
+  HeardRobot& heard = robot->second.heard;
+  if (heard.maps == 0 || heard.publisher != age.publisher || heard.frame != age.frame) return;
+  heard.heard_first = std::min(heard.heard_first, age.heard_first);
 }
 
 std::vector<HeardRobot> MapListener::robots() const {
@@ -285,13 +275,16 @@ void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapSa
     for (const auto& [topic, other] : robots_)
       if (topic != heard.topic) together += other.heard.cells;
     if (together > kMaxCellsTogether) throw RefusedMessage("all maps together have above 2^30 cells");
-    const bool restarted = heard.maps > 0 && (robot.session != writer.guid || heard.frame != map.frame);
+    const TeamTime now = std::chrono::system_clock::now();
+    const std::string publisher = hexadecimal(writer.guid);
+    const bool restarted = heard.maps > 0 && (heard.publisher != publisher || heard.frame != map.frame);
     const std::string frame = map.frame;
     const Stamp stamp = map.stamp;
     const std::size_t cells = map.grid.cells.size();
     callbacks_.map(heard.name, std::move(map), restarted);  // may refuse it
     robot.followed = writer.handle;
-    robot.session = writer.guid;
+    if (heard.maps == 0 || restarted) heard.heard_first = now;
+    heard.publisher = publisher;
     heard.frame = frame;
     heard.stamp = stamp;
     heard.cells = cells;

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "dds/ages.hpp"
 #include "dds/discovery.hpp"
 #include "dds/entity.hpp"
 #include "dds/message.hpp"
@@ -38,6 +39,9 @@ struct HeardRobot {
   std::string last_refusal;    // why
   std::size_t publishers = 0;  // of the map that are there now
   std::uint64_t unheard = 0;   // messages of publishers beside the one that is heard
+  std::string
+      publisher;  // the number of the one that is heard, in hexadecimal digits; empty before the first map
+  TeamTime heard_first;  // since when this frame is heard, by the oldest account
 };
 
 /// Hears the maps of robots and their updates. One publisher of a topic is heard: the first that sent a map.
@@ -60,6 +64,10 @@ class MapListener {
 
   /// Takes what has come in since it was last called.
   void hear();
+
+  /// Takes over an older account of a robot that is heard. One of another frame, or of the future, tells
+  /// nothing.
+  void hear_age(const RobotAge& age);
 
   /// By topic.
   std::vector<HeardRobot> robots() const;
@@ -84,7 +92,6 @@ class MapListener {
     Readers maps;
     Readers parts;
     std::optional<dds_instance_handle_t> followed;  // the writer whose maps count
-    std::string session;                            // the guid of the writer that was followed last
     std::size_t part_publishers = 0;
   };
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dds/ages.hpp"
 #include "dds/entity.hpp"
 #include "dds/environment.hpp"
 #include "dds/listener.hpp"
@@ -87,10 +88,11 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
         wake_(dds_create_guardcondition(participant_.get()), "a guard condition"),
         publisher_(participant_, options_),
         listener_(participant_, waitset_.get(), selection_, callbacks()),
+        ages_(participant_),
         team_(options_.team, [this](const std::shared_ptr<const TeamAnswer>&) { wake(); }) {
     require_dds(dds_waitset_attach(waitset_.get(), wake_.get(), 0), "waiting for answers");
     for (const auto& [robot, pose] : options_.known_poses) team_.set_known_pose(robot, pose);
-    publisher_.publish_node(listener_.readers());
+    publish_node();
   }
 
   End run();
@@ -105,9 +107,11 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
  private:
   MapListener::Callbacks callbacks();
   void take_map(const std::string& robot, HeardMap map, bool restarted);
+  void hear_ages();
   void wait();
   void tell_changes();
   void publish();
+  void publish_node();
   void check_wait();
   std::optional<End> check_once();
   bool is_complete() const;
@@ -128,6 +132,8 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   DdsEntity wake_;
   Publisher publisher_;
   MapListener listener_;
+  AgeListener ages_;
+  std::map<std::string, TeamTime> told_ages_;  // to the team, of each robot
   std::atomic<bool> stopped_{false};
   Clock::time_point began_ = Clock::now();
   Clock::time_point news_at_ = began_;
@@ -184,6 +190,7 @@ RosNode::End RosNode::State::run() {
   while (!stopped_) {
     wait();
     if (!enough_) listener_.hear();
+    hear_ages();
     tell_changes();
     publish();
     check_wait();
@@ -193,6 +200,17 @@ RosNode::End RosNode::State::run() {
     }
   }
   return End::stopped;
+}
+
+void RosNode::State::hear_ages() {
+  for (const RobotAge& age : ages_.take()) listener_.hear_age(age);
+  for (const HeardRobot& robot : listener_.robots()) {
+    if (robot.maps == 0) continue;
+    TeamTime& told = told_ages_[robot.name];
+    if (told == robot.heard_first) continue;
+    told = robot.heard_first;
+    team_.hear_age(robot.name, told);
+  }
 }
 
 void RosNode::State::wait() {
@@ -241,12 +259,18 @@ void RosNode::State::publish() {
         options_.warn(fmt::format("{}: no transform is published: {}", robot, why));
     withheld_ = transforms.withheld;
   }
-  publisher_.publish_node(listener_.readers());
+  publish_node();
   if (is_new || Clock::now() >= next_diagnoses_) {
     publisher_.publish_diagnoses(diagnose(
         *answer, robots, transforms, {options_.name, participant_.undecodable(), listener_.over_limit()}));
     next_diagnoses_ = Clock::now() + kDiagnosesEvery;
   }
+}
+
+void RosNode::State::publish_node() {
+  std::vector<dds_guid_t> readers = listener_.readers();
+  require_dds(dds_get_guid(ages_.reader(), &readers.emplace_back()), "a reader's number");
+  publisher_.publish_node(readers);
 }
 
 void RosNode::State::check_wait() {

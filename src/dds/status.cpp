@@ -46,7 +46,7 @@ Diagnosis diagnose_robot(const RobotStatus& status, const HeardRobot& heard,
     diagnosis.message += "; no transform: " + withheld->second;
   }
   auto& values = diagnosis.values;
-  values = {{"state", name_of(status.state)}, {"topic", heard.topic}, {"frame", heard.frame}};
+  values = {{"state", name_of(status.state)}, {kTopicKey, heard.topic}, {kFrameKey, heard.frame}};
   if (status.state == RobotState::placed && status.component) {
     values.emplace_back("component", std::to_string(*status.component + 1));
     values.emplace_back("x", decimal(status.T_world_map.x));
@@ -56,6 +56,10 @@ Diagnosis diagnose_robot(const RobotStatus& status, const HeardRobot& heard,
   }
   values.emplace_back("maps", std::to_string(heard.maps));
   values.emplace_back("updates", std::to_string(heard.parts));
+  if (heard.maps > 0) {
+    values.emplace_back(kPublisherKey, heard.publisher);
+    values.emplace_back(kHeardFirstKey, format_time(heard.heard_first));
+  }
   values.emplace_back("publishers", std::to_string(heard.publishers));
   values.emplace_back("messages of other publishers", std::to_string(heard.unheard));
   values.emplace_back("refused", std::to_string(heard.refused));

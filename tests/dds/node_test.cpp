@@ -230,6 +230,34 @@ TEST_F(NodeTest, TakesUpdatesOfItsPublisher) {
   EXPECT_TRUE(diagnosed("b", "updates", "1"));
 }
 
+TEST_F(NodeTest, BelievesNoAgeOfAnotherFrame) {
+  start();
+  merge_two();
+  const std::map<std::string, std::string> told = diagnosis("b").values;
+  for (const std::string key : {"topic", "frame", "publisher", "heard first"}) {
+    ASSERT_TRUE(told.contains(key)) << key;
+    std::map<std::string, std::string> wrong = told;
+    wrong["heard first"] = "1.000000000";
+    wrong[key] = key == "heard first" ? "1e9" : wrong[key] + "0";
+    for (int i = 0; i < 3; ++i) peer->publish_diagnosis(wrong);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_TRUE(diagnosed("b", "heard first", told.at("heard first")));
+  std::map<std::string, std::string> right = told;
+  right["heard first"] = "1.000000000";
+  EXPECT_TRUE(comes_true([&] {
+    peer->publish_diagnosis(right);
+    const auto& all = peer->diagnoses();
+    const auto b = all.find("gridmerge: b");
+    return b != all.end() && b->second.values.at("heard first") == "1.000000000";
+  }));
+  // Its frame is the world's now.
+  EXPECT_TRUE(comes_true([&] {
+    const auto& transforms = peer->transforms();
+    return transforms.contains("b/map") && transforms.at("b/map").T_parent_child == SE2{};
+  }));
+}
+
 TEST_F(NodeTest, NeverHearsMergedMaps) {
   options.patterns = {"/**"};
   options.once = true;

@@ -80,6 +80,21 @@ void Peer::publish_update(const std::string& topic, const RawUpdate& update) {
   require_dds(dds_write(writer.get(), &sample), "writing an update");
 }
 
+void Peer::publish_diagnosis(const std::map<std::string, std::string>& values) {
+  DdsEntity& writer = updates_["/diagnostics"];
+  if (!writer) writer = make_writer(participant_.get(), kDiagnosticType, "rt/diagnostics", {true, false, 1});
+  std::vector<diagnostic_msgs_msg_dds__KeyValue_> pairs;
+  for (const auto& [key, value] : values) pairs.push_back({text(key), text(value)});
+  std::vector<diagnostic_msgs_msg_dds__DiagnosticStatus_> statuses(1);
+  const std::string nothing;
+  statuses[0].name = statuses[0].message = statuses[0].hardware_id = text(nothing);
+  refer(statuses[0].values, pairs);
+  diagnostic_msgs_msg_dds__DiagnosticArray_ sample{};
+  sample.header.frame_id = text(nothing);
+  refer(sample.status, statuses);
+  require_dds(dds_write(writer.get(), &sample), "writing a diagnosis");
+}
+
 dds_entity_t Peer::reader_of(const std::string& topic, const TopicType& type, const TopicQos& qos) {
   DdsEntity& reader = readers_[topic];
   if (!reader) reader = make_reader(participant_.get(), type, "rt" + topic, qos);

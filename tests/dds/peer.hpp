@@ -79,6 +79,9 @@ class Peer {
 
   void publish_update(const std::string& topic, const RawUpdate& update);
 
+  /// A diagnosis of a robot with these values.
+  void publish_diagnosis(const std::map<std::string, std::string>& values);
+
   /// The newest map that was received on a topic since it was asked for first; a late subscriber then.
   std::optional<RawMap> take_map(const std::string& topic);
   /// All transforms that were received, by child.

@@ -92,6 +92,47 @@ TEST_F(NodeProgram, TakesPosesAsMergeDoes) {
   EXPECT_TRUE(has(outcome.out, "a: placed at x 10.000 m, y 20.000 m, theta 0.0000 rad")) << outcome.out;
 }
 
+TEST_F(NodeProgram, AgreesWithOthersOnWhoseFrameIsTheWorlds) {
+  // `a` is there for who comes later; `b` is heard when it publishes again.
+  const MapTopic a = peer.maps("/a/map");
+  const MapTopic b = peer.maps("/b/map", false);
+  Peer listener(domain);
+  const auto hears = [&](const std::string& node, const std::string& robot) {
+    const auto& all = listener.diagnoses();
+    const auto found = all.find(node + ": " + robot);
+    return found != all.end() && found->second.values.contains("heard first");
+  };
+  const auto takes_frame_of_b = [&](const std::string& world) {
+    b.publish(map_of(1, "b/map"));
+    const auto& transforms = listener.transforms("/tf");
+    const auto found = transforms.find("b/map");
+    return found != transforms.end() && found->second.parent == world &&
+           found->second.T_parent_child == SE2{};
+  };
+  const auto node = [](const std::string& name) {
+    return RunningProgram({"node", "--tf", "dynamic", "--name", name, "--output", "/" + name + "_map",
+                           "--world", name + "_world"});
+  };
+
+  RunningProgram first = node("first");
+  ASSERT_TRUE(comes_true([&] {
+    b.publish(map_of(1, "b/map"));
+    return hears("first", "b");
+  }));
+  a.publish(map_of(0, "a/map"));
+  EXPECT_TRUE(comes_true([&] { return takes_frame_of_b("first_world"); }));
+  RunningProgram second = node("second");
+  ASSERT_TRUE(comes_true([&] { return hears("second", "a") && !hears("second", "b"); }));
+  EXPECT_TRUE(comes_true([&] { return takes_frame_of_b("second_world"); }));
+  // What was agreed on outlives who said it first.
+  EXPECT_EQ(first.end_with(SIGTERM).exit_code, 0);
+  RunningProgram third = node("third");
+  ASSERT_TRUE(comes_true([&] { return hears("third", "a") && !hears("third", "b"); }));
+  EXPECT_TRUE(comes_true([&] { return takes_frame_of_b("third_world"); }));
+  EXPECT_EQ(second.end_with(SIGTERM).exit_code, 0);
+  EXPECT_EQ(third.end_with(SIGTERM).exit_code, 0);
+}
+
 TEST_F(NodeProgram, RefusesPosesThatCannotBeUsed) {
   const TemporaryDirectory directory;
   const std::string init = directory.write("poses.tsv", "map\tx\ty\ttheta\nb\t1\t2\t0\n");

@@ -207,7 +207,7 @@ class RosPeers(unittest.TestCase):
             published = dict(self.node.get_publisher_names_and_types_by_node("gridmerge", "/"))
             self.assertEqual(set(published), set(HASHES))
             subscribed = dict(self.node.get_subscriber_names_and_types_by_node("gridmerge", "/"))
-            self.assertEqual(set(subscribed), {"/tb1/map", "/tb2/map", "/tb3/map"})
+            self.assertEqual(set(subscribed), {"/tb1/map", "/tb2/map", "/tb3/map", "/diagnostics"})
         with self.subTest("updates are part of a map"):
             update = OccupancyGridUpdate(x=1, y=1, width=2, height=1, data=array.array("b", [100, 100]))
             update.header.frame_id = "tb3/map"

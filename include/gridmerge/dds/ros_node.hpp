@@ -45,8 +45,8 @@ struct RosNodeOptions {
 GRIDMERGE_EXPORT void validate(const RosNodeOptions& options);
 
 /// A node of ROS 2 that hears the maps of robots on DDS, merges them as a Team does, and publishes the merged
-/// maps, the transforms of the robots' map frames and diagnostics. It needs no installation of ROS. One at a
-/// time in a process.
+/// maps, the transforms of the robots' map frames and diagnostics. Nodes of one domain agree on whose frame
+/// is the world's. It needs no installation of ROS. One at a time in a process.
 class GRIDMERGE_EXPORT RosNode {
  public:
   /// How run() came to an end.
