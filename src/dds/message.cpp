@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <cmath>
-#include <limits>
+
+#include "gridmerge/grid/message_values.hpp"
 
 namespace gridmerge::internal {
 
@@ -20,21 +21,9 @@ constexpr std::int8_t kUnknown = -1;
 constexpr std::int8_t kFree = 0;
 constexpr std::int8_t kOccupied = 100;
 
-// nav2's thresholds: a message means what a file of the same values does.
-Cell cell_of(std::int8_t percentage) {
-  if (percentage < 0) return Cell::unknown;
-  return percentage >= 65 ? Cell::occupied : percentage <= 19 ? Cell::free : Cell::unknown;
-}
-
-float probability_of(std::int8_t percentage) {
-  return percentage < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(percentage / 100.0);
-}
-
-bool is_plain(std::int8_t percentage) {
-  return percentage == kUnknown || percentage == kFree || percentage == kOccupied;
-}
-
-OccupancyGrid read_cells(std::uint32_t width, std::uint32_t height, std::span<const std::int8_t> data) {
+/// A message means what a map file of the same values does.
+OccupancyGrid read_cells(std::uint32_t width, std::uint32_t height, double resolution, const SE2& origin,
+                         std::span<const std::int8_t> data) {
   if (width == 0 || height == 0) throw RefusedMessage(fmt::format("a size of {} x {} cells", width, height));
   // Of two numbers of 32 bits, so the product does not overflow.
   const std::uint64_t size = std::uint64_t{width} * height;
@@ -46,24 +35,12 @@ OccupancyGrid read_cells(std::uint32_t width, std::uint32_t height, std::span<co
   if (wrong != data.end())
     throw RefusedMessage(
         fmt::format("the cell value {}, which is neither -1 nor a percentage", static_cast<int>(*wrong)));
-  OccupancyGrid grid;
-  grid.width = static_cast<int>(width);
-  grid.height = static_cast<int>(height);
-  grid.cells.resize(data.size());
-  std::transform(data.begin(), data.end(), grid.cells.begin(), cell_of);
-  if (!std::all_of(data.begin(), data.end(), is_plain)) {
-    grid.probability.resize(data.size());
-    std::transform(data.begin(), data.end(), grid.probability.begin(), probability_of);
-  }
-  return grid;
+  return grid_of_percentages(static_cast<int>(width), static_cast<int>(height), resolution, origin, data);
 }
 
 double read_resolution(float resolution) {
   if (!std::isfinite(resolution)) throw RefusedMessage(fmt::format("a resolution of {} m", resolution));
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), resolution).ptr;
-  double read = 0.0;
-  std::from_chars(text.data(), end, read);
+  const double read = decimal_of(resolution);
   if (!(read >= kSmallestResolution && read <= kLargestResolution))
     throw RefusedMessage(fmt::format("a resolution of {} m", resolution));
   return read;
@@ -102,9 +79,7 @@ HeardMap read_map(const MapSample& message) {
   if (!(std::abs(x) <= kFarthestOrigin && std::abs(y) <= kFarthestOrigin && std::isfinite(z)))
     throw RefusedMessage(fmt::format("an origin at ({}, {}, {})", x, y, z));
   const double yaw = read_yaw(message.orientation);
-  heard.grid = read_cells(message.width, message.height, message.data);
-  heard.grid.resolution = resolution;
-  heard.grid.origin = {x, y, yaw};
+  heard.grid = read_cells(message.width, message.height, resolution, {x, y, yaw}, message.data);
   return heard;
 }
 
@@ -114,7 +89,7 @@ HeardPart read_update(const UpdateSample& message) {
     throw RefusedMessage(fmt::format("an update at ({}, {})", message.x, message.y));
   part.x = message.x;
   part.y = message.y;
-  part.grid = read_cells(message.width, message.height, message.data);
+  part.grid = read_cells(message.width, message.height, 1.0, {}, message.data);
   return part;
 }
 
