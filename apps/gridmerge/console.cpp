@@ -92,7 +92,7 @@ void Console::progress(const std::string& phase, double share) {
   share = std::clamp(share, 0.0, 1.0);
   draw(phase, [&] {
     const std::string done(static_cast<std::size_t>(share * kBarWidth), '#');
-    const std::string bar = fmt::format(" [{:<{}}] {:3.0f} %", done, kBarWidth, 100.0 * share);
+    std::string bar = fmt::format(" [{:<{}}] {:3.0f} %", done, kBarWidth, 100.0 * share);
     if (share == 0.0) return bar;
     const std::chrono::duration<double> taken = Clock::now() - phase_began_;
     return bar + ", " + describe_time_left(taken * (1.0 - share) / share);

@@ -191,7 +191,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   beast::tcp_stream stream_;
   std::list<Connection*>::iterator place_;
   State state_ = State::reading_head;
-  beast::flat_buffer buffer_{2 * kMaxHead};
+  beast::flat_buffer buffer_{std::size_t{2} * kMaxHead};
   http::request_parser<http::string_body> parser_;
   std::shared_ptr<const std::string> body_;
   http::response<http::span_body<const char>> message_;

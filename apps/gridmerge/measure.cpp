@@ -60,6 +60,7 @@ constexpr std::array kClasses{DistanceClass{"occupied", Cell::occupied}, Distanc
 template <typename Choices>
 std::vector<std::string> names_of(const Choices& choices) {
   std::vector<std::string> names;
+  names.reserve(choices.size());
   for (const auto& choice : choices) names.emplace_back(choice.name);
   return names;
 }

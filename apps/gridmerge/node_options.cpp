@@ -26,9 +26,9 @@ const CLI::Validator kNamedTopic(
     "");
 
 const std::map<std::string, TransformTopic>& transform_topics() {
-  static const std::map<std::string, TransformTopic> kTopics{
+  static const std::map<std::string, TransformTopic> topics{
       {"static", TransformTopic::tf_static}, {"dynamic", TransformTopic::tf}, {"none", TransformTopic::none}};
-  return kTopics;
+  return topics;
 }
 
 }  // namespace

@@ -27,8 +27,8 @@ std::uint32_t add_to_crc(std::uint32_t crc, const char* bytes, std::size_t count
 /// The records of a chunk, one after another.
 class McapFile::Chunk {
  public:
-  Chunk(const McapChunkHead& head, std::unique_ptr<ByteSource> records)
-      : head_(head), records_(std::move(records)) {}
+  Chunk(McapChunkHead head, std::unique_ptr<ByteSource> records)
+      : head_(std::move(head)), records_(std::move(records)) {}
 
   /// How many bytes of the unpacked records were read.
   std::uint64_t position() const { return position_; }

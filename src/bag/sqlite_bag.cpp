@@ -78,9 +78,9 @@ auto SqliteBag::working(const Work& work) {
   return blaming(shown_, work);
 }
 
-SqliteBag::SqliteBag(const std::filesystem::path& path, const std::filesystem::path& shown,
+SqliteBag::SqliteBag(const std::filesystem::path& path, std::filesystem::path shown,
                      std::size_t max_message_bytes)
-    : shown_(shown), max_message_bytes_(max_message_bytes) {
+    : shown_(std::move(shown)), max_message_bytes_(max_message_bytes) {
   working([&] {
     open(path);
     check_tables();

@@ -24,8 +24,7 @@ class SqliteBag : public BagStorage {
  public:
   /// Messages of more than `max_message_bytes` are refused before memory is taken for them. Errors name the
   /// file `shown`. O(messages).
-  SqliteBag(const std::filesystem::path& path, const std::filesystem::path& shown,
-            std::size_t max_message_bytes);
+  SqliteBag(const std::filesystem::path& path, std::filesystem::path shown, std::size_t max_message_bytes);
   ~SqliteBag() override;
 
   const std::vector<BagTopic>& topics() const override { return topics_; }

@@ -53,6 +53,7 @@ struct TopicQos {
   bool transient_local = false;
   std::int32_t depth = 1;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): the 0 is one that the compiler puts there
   friend auto operator<=>(const TopicQos&, const TopicQos&) = default;
 };
 

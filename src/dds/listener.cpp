@@ -305,7 +305,7 @@ void MapListener::take_part(Robot& robot, const RemoteWriter& writer, const Upda
       throw RefusedMessage(
           fmt::format("an update in the frame {}, of a map in {}", part.frame, robot.heard.frame));
     if (part.stamp < robot.heard.stamp) return;  // the map has it already
-    if (!callbacks_.part(robot.heard.name, std::move(part)))
+    if (!callbacks_.part(robot.heard.name, part))
       throw RefusedMessage("an update that reaches beyond its map");
     ++robot.heard.parts;
   } catch (const RefusedMessage& error) {
@@ -313,7 +313,7 @@ void MapListener::take_part(Robot& robot, const RemoteWriter& writer, const Upda
   }
 }
 
-void MapListener::refuse(Robot& robot, const std::string& why) {
+void MapListener::refuse(Robot& robot, const std::string& why) const {
   HeardRobot& heard = robot.heard;
   if (heard.refused++ == 0) callbacks_.warn(fmt::format("{}: a message is refused: {}", heard.topic, why));
   heard.last_refusal = why;

@@ -53,7 +53,7 @@ class MapListener {
     /// RefusedMessage.
     std::function<void(const std::string& robot, HeardMap map, bool restarted)> map;
     /// A part of the newest map; returns whether it fits in there.
-    std::function<bool(const std::string& robot, HeardPart part)> part;
+    std::function<bool(const std::string& robot, const HeardPart& part)> part;
     /// For people, when something is seen for the first time: of a topic or of a message.
     std::function<void(const std::string& text)> warn;
   };
@@ -110,7 +110,7 @@ class MapListener {
   void hear_parts(Robot& robot);
   void take_map(Robot& robot, const RemoteWriter& writer, const MapSample& message);
   void take_part(Robot& robot, const RemoteWriter& writer, const UpdateSample& message);
-  void refuse(Robot& robot, const std::string& why);
+  void refuse(Robot& robot, const std::string& why) const;
   const Known* find(dds_instance_handle_t handle);
   std::vector<WriterEvent> take_events();
 

@@ -20,6 +20,7 @@ struct Stamp {
   std::int32_t seconds = 0;
   std::uint32_t nanoseconds = 0;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): the 0 is one that the compiler puts there
   friend auto operator<=>(const Stamp&, const Stamp&) = default;
 };
 

@@ -175,6 +175,7 @@ void Publisher::publish_node(const std::vector<dds_guid_t>& readers) {
     return gid_of(guid);
   };
   std::vector<rmw_dds_common_msg_dds__Gid_> reader_gids;
+  reader_gids.reserve(readers.size());
   for (const dds_guid_t& guid : readers) reader_gids.push_back(gid_of(guid));
   std::vector<rmw_dds_common_msg_dds__Gid_> writer_gids;
   if (transforms_) writer_gids.push_back(gid_of_entity(transforms_));

@@ -152,7 +152,7 @@ MapListener::Callbacks RosNode::State::callbacks() {
   return {[this](const std::string& robot, HeardMap map, bool restarted) {
             take_map(robot, std::move(map), restarted);
           },
-          [this](const std::string& robot, HeardPart part) {
+          [this](const std::string& robot, const HeardPart& part) {
             return team_.hear_part(robot, part.x, part.y, part.grid);
           },
           options_.warn};

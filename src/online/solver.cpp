@@ -50,7 +50,7 @@ TeamSolver::TeamSolver(const TeamOptions& options)
 }
 
 void TeamSolver::take(News news) {
-  for (auto& [name, one] : news) add_news(pending_[name], std::move(one));
+  for (auto& entry : news) add_news(pending_[entry.first], std::move(entry.second));
 }
 
 TeamAnswer TeamSolver::solve(Effort effort) {
