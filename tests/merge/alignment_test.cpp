@@ -98,7 +98,7 @@ TEST(FindDeviations, OfAKnownPoseAreThoseThatAreSaid) {
   EXPECT_NEAR(deviations[1]->theta, 0.05, 1e-6);
 }
 
-TEST(FindDeviations, AreKnownWhereOnePoseIsAMillionTimesSurerThanAnother) {
+TEST(FindDeviations, AreKnownWhereOnePoseIsABillionTimesSurerThanAnother) {
   const Blank blank;
   for (const double sure : {1e-6, 1e3}) {
     const double unsure = sure == 1e3 ? 1e-6 : 1e3;
