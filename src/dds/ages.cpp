@@ -20,10 +20,6 @@ constexpr std::int32_t kMessagesKept = 64;    // of all programs that diagnose t
 constexpr std::size_t kDigitsOfFraction = 9;  // nanoseconds
 constexpr std::size_t kMaxDigits = 10;        // of the seconds: up to the year 2286
 
-std::string_view text_of(const char* text) {
-  return text == nullptr ? std::string_view() : std::string_view(text);
-}
-
 /// A number of digits alone.
 std::optional<std::int64_t> read_digits(std::string_view text) {
   std::int64_t number = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dds/discovery.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <optional>
 #include <string_view>
@@ -12,8 +14,8 @@ namespace gridmerge::internal {
 
 namespace {
 
-std::string bytes_of(const dds_guid_t& guid) {
-  return {reinterpret_cast<const char*>(guid.v), sizeof guid.v};
+std::string digits_of(const dds_guid_t& guid) {
+  return fmt::format("{:02x}", fmt::join(guid.v, ""));
 }
 
 std::string user_data_of(const dds_qos_t* qos) {
@@ -51,7 +53,7 @@ bool in_partition(const dds_qos_t* qos) {
 }  // namespace
 
 Discovery::Discovery(dds_entity_t participant, const dds_guid_t& own)
-    : own_(bytes_of(own)),
+    : own_(digits_of(own)),
       reader_(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
               "a reader of who publishes what") {}
 
@@ -76,9 +78,9 @@ std::vector<WriterEvent> Discovery::take() {
       }
       const auto& endpoint = *static_cast<const dds_builtintopic_endpoint_t*>(samples[at]);
       const std::optional<std::string> topic = ros_topic(endpoint.topic_name);
-      event.writer.participant = bytes_of(endpoint.participant_key);
+      event.writer.participant = digits_of(endpoint.participant_key);
       if (!topic || event.writer.participant == own_) continue;
-      event.writer.guid = bytes_of(endpoint.key);
+      event.writer.guid = digits_of(endpoint.key);
       event.writer.topic = *topic;
       event.writer.type = endpoint.type_name;
       event.writer.qos = qos_of(endpoint.qos);

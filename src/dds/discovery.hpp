@@ -14,7 +14,7 @@ namespace gridmerge::internal {
 /// A writer of another participant, on a topic of ROS's.
 struct RemoteWriter {
   dds_instance_handle_t handle = 0;  // what samples are marked with
-  std::string guid;           // of the writer, 16 bytes: the same after an outage, another after a restart
+  std::string guid;           // in 32 hexadecimal digits: the same after an outage, another after a restart
   std::string participant;    // likewise
   std::string topic;          // in ROS
   std::string type;           // in DDS

@@ -30,10 +30,6 @@ TopicQos reader_qos(const RemoteWriter& writer, std::int32_t depth) {
   return {writer.qos.reliable, writer.qos.transient_local, depth};
 }
 
-std::string_view text_of(const char* text) {
-  return text == nullptr ? std::string_view() : std::string_view(text);
-}
-
 template <typename Sequence>
 std::span<const std::int8_t> values_of(const Sequence& sequence) {
   return {reinterpret_cast<const std::int8_t*>(sequence._buffer), sequence._length};
@@ -64,12 +60,6 @@ UpdateSample view_of(const map_msgs_msg_dds__OccupancyGridUpdate_& sample) {
   message.height = sample.height;
   message.data = values_of(sample.data);
   return message;
-}
-
-std::string hexadecimal(std::string_view bytes) {
-  std::string digits;
-  for (const char byte : bytes) digits += fmt::format("{:02x}", static_cast<unsigned char>(byte));
-  return digits;
 }
 
 }  // namespace
@@ -276,15 +266,14 @@ void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapSa
       if (topic != heard.topic) together += other.heard.cells;
     if (together > kMaxCellsTogether) throw RefusedMessage("all maps together have above 2^30 cells");
     const TeamTime now = std::chrono::system_clock::now();
-    const std::string publisher = hexadecimal(writer.guid);
-    const bool restarted = heard.maps > 0 && (heard.publisher != publisher || heard.frame != map.frame);
+    const bool restarted = heard.maps > 0 && (heard.publisher != writer.guid || heard.frame != map.frame);
     const std::string frame = map.frame;
     const Stamp stamp = map.stamp;
     const std::size_t cells = map.grid.cells.size();
     callbacks_.map(heard.name, std::move(map), restarted);  // may refuse it
     robot.followed = writer.handle;
     if (heard.maps == 0 || restarted) heard.heard_first = now;
-    heard.publisher = publisher;
+    heard.publisher = writer.guid;
     heard.frame = frame;
     heard.stamp = stamp;
     heard.cells = cells;

@@ -39,9 +39,8 @@ struct HeardRobot {
   std::string last_refusal;    // why
   std::size_t publishers = 0;  // of the map that are there now
   std::uint64_t unheard = 0;   // messages of publishers beside the one that is heard
-  std::string
-      publisher;  // the number of the one that is heard, in hexadecimal digits; empty before the first map
-  TeamTime heard_first;  // since when this frame is heard, by the oldest account
+  std::string publisher;       // RemoteWriter::guid of the one that is heard; empty before the first map
+  TeamTime heard_first;        // since when this frame is heard, by the oldest account
 };
 
 /// Hears the maps of robots and their updates. One publisher of a topic is heard: the first that sent a map.

@@ -4,10 +4,16 @@
 #include <dds/dds.h>
 
 #include <cstdint>
+#include <string_view>
 
 #include "dds/entity.hpp"
 
 namespace gridmerge::internal {
+
+/// A text of a sample; empty for none.
+inline std::string_view text_of(const char* text) {
+  return text == nullptr ? std::string_view() : std::string_view(text);
+}
 
 /// A sample that is read where Cyclone DDS keeps it.
 class Loan {
