@@ -8,12 +8,12 @@
 #include "office.hpp"
 #include "search/exhaustive.hpp"
 #include "similarity/evidence.hpp"
-#include "similarity/wall_map.hpp"
+#include "similarity/likelihood_field.hpp"
 
 namespace {
 
 using gridmerge::OccupancyGrid;
-using gridmerge::internal::WallMap;
+using gridmerge::internal::LikelihoodField;
 
 /// One office twice, the second time turned and shifted.
 struct Pair {
@@ -25,16 +25,18 @@ struct Pair {
   OccupancyGrid moving;
 };
 
-void bm_make_wall_map(benchmark::State& state) {
+void bm_make_likelihood_field(benchmark::State& state) {
   const OccupancyGrid grid = gridmerge::bench::make_office(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(gridmerge::internal::make_wall_map(grid, grid.resolution));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(gridmerge::internal::make_likelihood_field(grid, grid.resolution));
 }
-BENCHMARK(bm_make_wall_map)->Arg(400)->Arg(1000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(bm_make_likelihood_field)->Arg(400)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
 void bm_wall_evidence(benchmark::State& state) {
   const Pair pair(400);
-  const WallMap fixed = gridmerge::internal::make_wall_map(pair.fixed, pair.fixed.resolution);
-  const WallMap moving = gridmerge::internal::make_wall_map(pair.moving, pair.moving.resolution);
+  const LikelihoodField fixed = gridmerge::internal::make_likelihood_field(pair.fixed, pair.fixed.resolution);
+  const LikelihoodField moving =
+      gridmerge::internal::make_likelihood_field(pair.moving, pair.moving.resolution);
   const gridmerge::internal::WallEvidence evidence(fixed, moving, static_cast<std::size_t>(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(evidence({5.0, 3.0, 0.3}));
 }
@@ -42,8 +44,9 @@ BENCHMARK(bm_wall_evidence)->Arg(150)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
 void bm_search_all_poses(benchmark::State& state) {
   const Pair pair(static_cast<int>(state.range(0)));
-  const WallMap fixed = gridmerge::internal::make_wall_map(pair.fixed, pair.fixed.resolution);
-  const WallMap moving = gridmerge::internal::make_wall_map(pair.moving, pair.moving.resolution);
+  const LikelihoodField fixed = gridmerge::internal::make_likelihood_field(pair.fixed, pair.fixed.resolution);
+  const LikelihoodField moving =
+      gridmerge::internal::make_likelihood_field(pair.moving, pair.moving.resolution);
   for (auto _ : state) {
     gridmerge::internal::with_threads(
         1, [&] { benchmark::DoNotOptimize(gridmerge::internal::search_all_poses(fixed, moving)); });

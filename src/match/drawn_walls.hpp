@@ -7,7 +7,7 @@
 
 #include "gridmerge/match/prepared_map.hpp"
 #include "internal_export.hpp"
-#include "similarity/wall_map.hpp"
+#include "similarity/likelihood_field.hpp"
 
 namespace gridmerge::internal {
 
@@ -15,11 +15,11 @@ namespace gridmerge::internal {
 class GRIDMERGE_INTERNAL_EXPORT DrawnWalls {
  public:
   /// In cells of `cell` metres; drawn when first asked for, O(cells) then. Lives as long as the map.
-  static const WallMap& of(const PreparedMap& map, double cell);
+  static const LikelihoodField& of(const PreparedMap& map, double cell);
 
  private:
   std::mutex drawing_;
-  std::map<double, std::unique_ptr<const WallMap>> by_cell_;
+  std::map<double, std::unique_ptr<const LikelihoodField>> by_cell_;
 };
 
 }  // namespace gridmerge::internal

@@ -58,12 +58,12 @@ ComparedMaps::ComparedMaps(const PreparedMap& fixed_map, const PreparedMap& movi
       fixed_walls(DrawnWalls::of(fixed_map, cell)),
       moving_walls(DrawnWalls::of(moving_map, cell)) {}
 
-SE2 to_map_frames(const SE2& T_cells, const WallMap& fixed, const WallMap& moving) {
+SE2 to_map_frames(const SE2& T_cells, const LikelihoodField& fixed, const LikelihoodField& moving) {
   const SE2 T_metres{T_cells.x * fixed.cell, T_cells.y * fixed.cell, T_cells.theta};
   return fixed.T_map_grid * T_metres * inverse(moving.T_map_grid);
 }
 
-SE2 to_cells(const SE2& T_fixed_moving, const WallMap& fixed, const WallMap& moving) {
+SE2 to_cells(const SE2& T_fixed_moving, const LikelihoodField& fixed, const LikelihoodField& moving) {
   const SE2 T_metres = inverse(fixed.T_map_grid) * T_fixed_moving * moving.T_map_grid;
   return {T_metres.x / fixed.cell, T_metres.y / fixed.cell, T_metres.theta};
 }
@@ -129,7 +129,7 @@ PoseJudge::PoseJudge(const ComparedMaps& maps)
       patches_(maps.moving_walls) {}
 
 PoseFigures PoseJudge::figures(const SE2& T_cells) const {
-  const WallMap &fixed = maps_.fixed_walls, &moving = maps_.moving_walls;
+  const LikelihoodField &fixed = maps_.fixed_walls, &moving = maps_.moving_walls;
   const double cell = maps_.cell;
   const Evidence walls = walls_(T_cells);
   const AgreementCounts common = cells_.count(to_map_frames(T_cells, fixed, moving));

@@ -62,11 +62,11 @@ PreparedMap::PreparedMap(const OccupancyGrid& grid) : drawn_(std::make_unique<Dr
 
 PreparedMap::~PreparedMap() = default;
 
-const WallMap& DrawnWalls::of(const PreparedMap& map, double cell) {
+const LikelihoodField& DrawnWalls::of(const PreparedMap& map, double cell) {
   DrawnWalls& drawn = *map.drawn_;
   const std::lock_guard lock(drawn.drawing_);
-  std::unique_ptr<const WallMap>& walls = drawn.by_cell_[cell];
-  if (!walls) walls = std::make_unique<const WallMap>(make_wall_map(map.known_, cell));
+  std::unique_ptr<const LikelihoodField>& walls = drawn.by_cell_[cell];
+  if (!walls) walls = std::make_unique<const LikelihoodField>(make_likelihood_field(map.known_, cell));
   return *walls;
 }
 

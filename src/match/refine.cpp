@@ -89,7 +89,7 @@ SE2 PoseMetric::moved(const SE2& pose, double dx, double dy, double turn) const 
   return {before.x + dx - after.x, before.y + dy - after.y, turned.theta};
 }
 
-PoseMetric make_pose_metric(const WallMap& moving) {
+PoseMetric make_pose_metric(const LikelihoodField& moving) {
   PoseMetric metric;
   if (moving.walls.empty()) return metric;
   for (const WallPoint& wall : moving.walls) {
@@ -122,7 +122,7 @@ ScoredPose climb(const WallEvidence& evidence, const PoseMetric& metric, const S
   return best;
 }
 
-std::vector<ScoredPose> refine(const WallEvidence& all_points, const WallMap& moving,
+std::vector<ScoredPose> refine(const WallEvidence& all_points, const LikelihoodField& moving,
                                const std::vector<PoseCandidate>& candidates, const RefineOptions& options,
                                const std::function<void(double)>& progress) {
   const double coarse = options.coarse_cell;

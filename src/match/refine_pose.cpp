@@ -62,7 +62,7 @@ Hypothesis best_around(const Hypothesis& start, const SE2& T_start_cells, const 
   return best;
 }
 
-/// Gives the pose the probability and the lead that it would have among the hypotheses of a full search,
+/// Gives the pose the probability and the margin that it would have among the hypotheses of a full search,
 /// those aside that are the same pose. No probability if nothing speaks for it.
 void weigh_among_all(Hypothesis& pose, const ComparedMaps& maps) {
   const PoseMetric metric = make_pose_metric(maps.moving_walls);
@@ -81,8 +81,8 @@ void weigh_among_all(Hypothesis& pose, const ComparedMaps& maps) {
 
 double displacement(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_a, const SE2& T_b) {
   const double cell = working_cell(fixed, moving);
-  const WallMap& fixed_walls = DrawnWalls::of(fixed, cell);
-  const WallMap& moving_walls = DrawnWalls::of(moving, cell);
+  const LikelihoodField& fixed_walls = DrawnWalls::of(fixed, cell);
+  const LikelihoodField& moving_walls = DrawnWalls::of(moving, cell);
   return cell * make_pose_metric(moving_walls)
                     .displacement(to_cells(T_a, fixed_walls, moving_walls),
                                   to_cells(T_b, fixed_walls, moving_walls));

@@ -34,13 +34,13 @@ double how_held(const PoseFigures& f) {
 }
 constexpr double kSlides = -2.0;  // of it: less than an eighth
 
-/// Of bent maps few walls can meet, even at the right pose. There a lead tells that no pose of unrelated maps
-/// has: as far as the errors are those of bent maps, since of crisp ones of a symmetric floor the wrong half
-/// leads as well.
+/// Of bent maps few walls can meet, even at the right pose. There a margin of the score tells that no pose of
+/// unrelated maps has: as far as the errors are those of bent maps, since of crisp ones of a symmetric floor
+/// the wrong half leads as well.
 double far_ahead_though_bent(const PoseFigures& f) {
   constexpr double kFar = 30.0, kAllOfIt = 20.0;  // sqrt(nats)
   constexpr double kCrisp = 0.1, kBent = 0.25;    // [m]
-  const double ahead = std::clamp((f.lead - kFar) / kAllOfIt, 0.0, 1.0);
+  const double ahead = std::clamp((f.score_margin - kFar) / kAllOfIt, 0.0, 1.0);
   const double bent =
       std::clamp(std::log(std::max(f.sigma, kCrisp) / kCrisp) / std::log(kBent / kCrisp), 0.0, 1.0);
   return ahead * bent;
@@ -74,7 +74,7 @@ std::span<const VerdictTerm> verdict_terms() {
       VerdictTerm{"stands out", "stands_out", TermKind::rivals, 0.0, 6.0,
                   [](const F& f) { return f.stands_out; }},
       VerdictTerm{"far ahead, bent",
-                  "(lead - 30) / 20 within [0, 1], times ln(sigma / 0.1 m) / ln(2.5) within [0, 1]",
+                  "(score_margin - 30) / 20 within [0, 1], times ln(sigma / 0.1 m) / ln(2.5) within [0, 1]",
                   TermKind::excuse, 0.0, 1.0, far_ahead_though_bent},
       VerdictTerm{"met locally", "-ln(1.05 - walls_met_locally)", kQuality, 0.0, 2.5,
                   [](const F& f) { return missing(f.walls_met_locally, 0.05); }},
@@ -141,7 +141,7 @@ void compare_rivals(std::span<PoseFigures> hypotheses,
       if (other.score >= kRivalScore * one.score)
         one.next_acceptance_index = std::max(one.next_acceptance_index, other.acceptance_index);
     }
-    one.lead = one.score > 0.0 ? (one.score - next_score) / std::sqrt(one.score) : 0.0;
+    one.score_margin = one.score > 0.0 ? (one.score - next_score) / std::sqrt(one.score) : 0.0;
     one.stands_out = -std::log(others);
   }
 }

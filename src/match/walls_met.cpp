@@ -72,7 +72,7 @@ constexpr auto kWorth = [] {
 
 /// Calls `meet(wall, place)` for every wall that falls where the map has seen, and returns how many do not.
 template <typename Meet>
-std::size_t look_up(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls,
+std::size_t look_up(const LikelihoodField& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls,
                     Meet meet) {
   const ManyPointsTransform T_points(T_map_walls);
   std::size_t unseen = 0;
@@ -87,7 +87,8 @@ std::size_t look_up(const WallMap& map, const std::vector<WallPoint>& walls, con
   return unseen;
 }
 
-Meetings count_meetings(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls) {
+Meetings count_meetings(const LikelihoodField& map, const std::vector<WallPoint>& walls,
+                        const SE2& T_map_walls) {
   const auto& is_contrary = contrary_facings()[steps_of_turn(T_map_walls.theta)];
   Meetings meetings;
   look_up(map, walls, T_map_walls, [&](const WallPoint& wall, const Place& place) {
@@ -102,7 +103,7 @@ Meetings count_meetings(const WallMap& map, const std::vector<WallPoint>& walls,
 }
 
 /// What a patch climbs on: 1 for a wall on another one, less with their distance.
-double worth_of(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls) {
+double worth_of(const LikelihoodField& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls) {
   const auto& is_contrary = contrary_facings()[steps_of_turn(T_map_walls.theta)];
   double worth = 0.0;
   const std::size_t unseen = look_up(map, walls, T_map_walls, [&](const WallPoint& wall, const Place& place) {
@@ -113,7 +114,7 @@ double worth_of(const WallMap& map, const std::vector<WallPoint>& walls, const S
 
 /// The fixed map's walls by the moving map's patches, without those that lie in none: the moving map cannot
 /// have seen them.
-std::vector<std::vector<WallPoint>> cut(const WallMap& fixed, const WallPatches& moving,
+std::vector<std::vector<WallPoint>> cut(const LikelihoodField& fixed, const WallPatches& moving,
                                         const SE2& T_fixed_moving) {
   std::vector<std::vector<WallPoint>> walls(moving.size());
   const ManyPointsTransform T_moving_fixed(inverse(T_fixed_moving));
@@ -133,7 +134,8 @@ struct Patch {
 
 class PatchMatcher {
  public:
-  PatchMatcher(const WallMap& fixed, const WallMap& moving, const SE2& T_fixed_moving, double side)
+  PatchMatcher(const LikelihoodField& fixed, const LikelihoodField& moving, const SE2& T_fixed_moving,
+               double side)
       : fixed_(fixed), moving_(moving), start_(T_fixed_moving), side_(side) {}
 
   Meetings rigidly(const Patch& patch) const { return at(patch, start_); }
@@ -175,8 +177,8 @@ class PatchMatcher {
     });
   }
 
-  const WallMap& fixed_;
-  const WallMap& moving_;
+  const LikelihoodField& fixed_;
+  const LikelihoodField& moving_;
   SE2 start_;
   double side_;
 };
@@ -193,7 +195,7 @@ double share(double part, double whole) {
 
 }  // namespace
 
-WallPatches::WallPatches(const WallMap& map)
+WallPatches::WallPatches(const LikelihoodField& map)
     : map_(map),
       side_(std::max(kPatchSide / map.cell, kMinPatchSide)),
       columns_(static_cast<std::size_t>(map.width / side_) + 1),
@@ -216,7 +218,8 @@ Point2 WallPatches::centre(std::size_t patch) const {
           (static_cast<double>(patch / columns_) + 0.5) * side_};
 }
 
-WallsMet measure_walls_met(const WallMap& fixed, const WallPatches& moving, const SE2& T_fixed_moving_cells) {
+WallsMet measure_walls_met(const LikelihoodField& fixed, const WallPatches& moving,
+                           const SE2& T_fixed_moving_cells) {
   const std::vector<std::vector<WallPoint>> fixed_walls = cut(fixed, moving, T_fixed_moving_cells);
   const PatchMatcher matcher(fixed, moving.map(), T_fixed_moving_cells, moving.side());
   std::vector<Meetings> rigidly(moving.size()), locally(moving.size());

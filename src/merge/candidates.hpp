@@ -8,7 +8,7 @@
 
 namespace gridmerge::internal {
 
-/// How many hypotheses of a pair are kept for the arrangement.
+/// How many hypotheses of a pair are kept for the consistent set.
 inline constexpr std::size_t kKeptHypotheses = 12;
 
 /// The hypotheses of a match, with the odds that their probabilities give them. Those that are less likely

@@ -71,7 +71,7 @@ class SpokenOf {
 
 }  // namespace
 
-JoinWeights::JoinWeights(const ArrangementProblem& problem)
+JoinWeights::JoinWeights(const JoinProblem& problem)
     : problem_(problem), pair_index_(problem.maps.size() * problem.maps.size()) {
   for (std::size_t i = 0; i < problem.pairs.size(); ++i) {
     const PairCandidates& pair = problem.pairs[i];

@@ -47,11 +47,12 @@ struct WeighedJoin {
   double probability = 0.0;  ///< against lying otherwise, and apart
 };
 
-/// What the candidates of all pairs say of groups of maps: see arrange() for what an arrangement is worth.
+/// What the candidates of all pairs say of groups of maps: see find_consistent_set() for what a consistent
+/// set is worth.
 class JoinWeights {
  public:
   /// `problem` must outlive this. O(k^2).
-  explicit JoinWeights(const ArrangementProblem& problem);
+  explicit JoinWeights(const JoinProblem& problem);
 
   /// Whether the map's pose is the truth, whatever pairs say.
   bool is_fixed(std::size_t map) const {
@@ -111,7 +112,7 @@ class JoinWeights {
   std::vector<SE2> proposals(const NodeGroup& a, const NodeGroup& b) const;
   std::vector<Edge> edges_of(const NodeGroup& group) const;
 
-  const ArrangementProblem& problem_;
+  const JoinProblem& problem_;
   std::vector<std::vector<Mark>> marks_;                // by pair, one a candidate
   std::vector<std::optional<std::size_t>> pair_index_;  // by map * maps + map
 };

@@ -69,17 +69,17 @@ Join inverted(Join join) {
   return join;
 }
 
-std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const ArrangementProblem& problem,
-                                    const Arrangement& arrangement) {
+std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const JoinProblem& problem,
+                                    const ConsistentSet& consistent_set) {
   const auto first_input = [&](const NodeGroup& group) {
     return *std::min_element(group.begin(), group.end(), [&](const PlacedNode& x, const PlacedNode& y) {
       return index[x.map] < index[y.map];
     });
   };
   std::vector<OpenWay> ways;
-  for (const OpenJoin& open : find_open_joins(problem, arrangement, kMinOpenProbability)) {
-    PlacedNode fixed = first_input(arrangement.groups[open.a]);
-    PlacedNode moving = first_input(arrangement.groups[open.b]);
+  for (const OpenJoin& open : find_open_joins(problem, consistent_set, kMinOpenProbability)) {
+    PlacedNode fixed = first_input(consistent_set.groups[open.a]);
+    PlacedNode moving = first_input(consistent_set.groups[open.b]);
     SE2 T = inverse(fixed.T_group_map) * open.T_a_b * moving.T_group_map;
     if (index[moving.map] < index[fixed.map]) {
       std::swap(fixed, moving);

@@ -13,7 +13,7 @@ struct MapExtent {
   double side = 0.0;    ///< of the known cells, the longer one [m]
 };
 
-/// How far apart a pair's candidate and the poses of an arrangement may put the maps and still agree [m]:
+/// How far apart a pair's candidate and the poses of a consistent set may put the maps and still agree [m]:
 /// bent maps do not close a cycle exactly.
 GRIDMERGE_INTERNAL_EXPORT double agreement_tolerance(const MapExtent& a, const MapExtent& b);
 

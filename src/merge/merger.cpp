@@ -14,9 +14,9 @@
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/prepared_map.hpp"
 #include "match/pair_pose.hpp"
-#include "merge/arrangement.hpp"
 #include "merge/candidates.hpp"
 #include "merge/component.hpp"
+#include "merge/consistent_set.hpp"
 #include "merge/copies.hpp"
 #include "merge/coverage.hpp"
 #include "merge/group_match.hpp"
@@ -114,11 +114,11 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
       const std::vector<MapId> all = in_canonical_order();
       const std::vector<Copy> copies = find_copies(all);
       const std::vector<MapId> maps = those_that_count(all, copies);
-      const auto [problem, arrangement, again] = arrange_all(maps, most_thorough);
-      result.expected_false_joins = expected_false_joins(arrangement);
-      result.joins = make_joins(maps, problem, arrangement, again);
-      result.open_ways = make_open_ways(places_of(maps), problem, arrangement);
-      add_components(maps, problem, arrangement, result);
+      const auto [problem, consistent_set, again] = find_consistent_set_of(maps, most_thorough);
+      result.expected_false_joins = expected_false_joins(consistent_set);
+      result.joins = make_joins(maps, problem, consistent_set, again);
+      result.open_ways = make_open_ways(places_of(maps), problem, consistent_set);
+      add_components(maps, problem, consistent_set, result);
       std::vector<const OccupancyGrid*> grids;
       for (const auto& [id, input] : inputs_) grids.push_back(input->grid.get());
       add_copies(copies, grids, options_.resolution, result);
@@ -131,8 +131,8 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
   using Pair = PairMatches::Pair;
 
   struct Solution {
-    ArrangementProblem problem;
-    Arrangement arrangement;
+    JoinProblem problem;
+    ConsistentSet consistent_set;
     std::set<Pair> again;  // pairs that were looked at a second time: the lower id and the higher one
   };
 
@@ -140,13 +140,13 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
   /// component gain little by one more join. What a pair's match is depends on the maps alone, not on when
   /// they came.
   /// At most so many pairs are looked at again now: is_complete_ says whether that was all.
-  Solution arrange_all(const std::vector<MapId>& maps, std::size_t most_thorough) {
+  Solution find_consistent_set_of(const std::vector<MapId>& maps, std::size_t most_thorough) {
     is_complete_ = true;
     const bool looks_twice = options_.match.search == SearchMethod::exhaustive;
     look(quick_, all_pairs(maps), looks_twice ? SearchMethod::quick : options_.match.search);
-    Solution solution = arrange(maps, {});
+    Solution solution = find_consistent_set(maps, {});
     if (!looks_twice) return solution;
-    const std::vector<Pair> apart = pairs_apart(maps, solution.arrangement);
+    const std::vector<Pair> apart = pairs_apart(maps, solution.consistent_set);
     std::vector<Pair> due = due_for_a_second_look(apart);
     is_complete_ = due.size() <= most_thorough;
     due.resize(std::min(due.size(), most_thorough));
@@ -155,7 +155,7 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     for (const Pair& pair : apart) {
       if (thorough_.holds(pair.first, pair.second)) again.insert(std::minmax(pair.first, pair.second));
     }
-    if (!again.empty()) solution = arrange(maps, std::move(again));
+    if (!again.empty()) solution = find_consistent_set(maps, std::move(again));
     return is_complete_ && !apart.empty() ? hear_groups(maps, std::move(solution)) : solution;
   }
 
@@ -177,25 +177,25 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
   Solution hear_groups(const std::vector<MapId>& maps, Solution solution) {
     const MergeInputs inputs = inputs_of(maps);
     while (true) {
-      ArrangementProblem problem = groups_.heard(solution.problem, solution.arrangement, inputs);
-      Arrangement arrangement =
-          arrange_within(problem, options_.match.accept_probability, options_.max_false_joins);
-      if (count_alone(arrangement) >= count_alone(solution.arrangement)) return solution;
+      JoinProblem problem = groups_.heard(solution.problem, solution.consistent_set, inputs);
+      ConsistentSet consistent_set =
+          find_consistent_set_within(problem, options_.match.accept_probability, options_.max_false_joins);
+      if (count_alone(consistent_set) >= count_alone(solution.consistent_set)) return solution;
       solution.problem = std::move(problem);
-      solution.arrangement = std::move(arrangement);
+      solution.consistent_set = std::move(consistent_set);
     }
   }
 
-  static std::ptrdiff_t count_alone(const Arrangement& arrangement) {
-    return std::count_if(arrangement.groups.begin(), arrangement.groups.end(),
+  static std::ptrdiff_t count_alone(const ConsistentSet& consistent_set) {
+    return std::count_if(consistent_set.groups.begin(), consistent_set.groups.end(),
                          [](const NodeGroup& group) { return group.size() == 1; });
   }
 
   /// With the second look at the pairs in `again`.
-  Solution arrange(const std::vector<MapId>& maps, std::set<Pair> again) const {
+  Solution find_consistent_set(const std::vector<MapId>& maps, std::set<Pair> again) const {
     Solution solution{make_problem(maps, again), {}, std::move(again)};
-    solution.arrangement =
-        arrange_within(solution.problem, options_.match.accept_probability, options_.max_false_joins);
+    solution.consistent_set = find_consistent_set_within(solution.problem, options_.match.accept_probability,
+                                                         options_.max_false_joins);
     return solution;
   }
 
@@ -248,10 +248,10 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
   }
 
   /// The pairs of maps that lie in no common group.
-  static std::vector<Pair> pairs_apart(const std::vector<MapId>& maps, const Arrangement& arrangement) {
+  static std::vector<Pair> pairs_apart(const std::vector<MapId>& maps, const ConsistentSet& consistent_set) {
     std::vector<std::size_t> group_of(maps.size());
-    for (std::size_t i = 0; i < arrangement.groups.size(); ++i) {
-      for (const PlacedNode& node : arrangement.groups[i]) group_of[node.map] = i;
+    for (std::size_t i = 0; i < consistent_set.groups.size(); ++i) {
+      for (const PlacedNode& node : consistent_set.groups[i]) group_of[node.map] = i;
     }
     std::vector<Pair> pairs;
     for (std::size_t a = 0; a < maps.size(); ++a) {
@@ -279,8 +279,8 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     return known == known_poses_.end() ? std::nullopt : std::optional(known->second);
   }
 
-  ArrangementProblem make_problem(const std::vector<MapId>& maps, const std::set<Pair>& again) const {
-    ArrangementProblem problem;
+  JoinProblem make_problem(const std::vector<MapId>& maps, const std::set<Pair>& again) const {
+    JoinProblem problem;
     for (const MapId id : maps) {
       problem.coverage.push_back(&inputs_.at(id)->coverage);
       problem.maps.push_back(inputs_.at(id)->coverage.extent());
@@ -300,12 +300,12 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
   }
 
   /// In the order in which the maps were added.
-  std::vector<Join> make_joins(const std::vector<MapId>& maps, const ArrangementProblem& problem,
-                               const Arrangement& arrangement, const std::set<Pair>& again) const {
+  std::vector<Join> make_joins(const std::vector<MapId>& maps, const JoinProblem& problem,
+                               const ConsistentSet& consistent_set, const std::set<Pair>& again) const {
     std::map<std::size_t, std::size_t> used;  // candidate by pair
-    for (const UsedCandidate& one : arrangement.used) used[one.pair] = one.candidate;
+    for (const UsedCandidate& one : consistent_set.used) used[one.pair] = one.candidate;
     std::vector<bool> is_placed(maps.size());
-    for (const NodeGroup& group : arrangement.groups) {
+    for (const NodeGroup& group : consistent_set.groups) {
       for (const PlacedNode& node : group) is_placed[node.map] = group.size() > 1;
     }
     const std::vector<std::size_t> index = places_of(maps);
@@ -348,14 +348,15 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     return inputs;
   }
 
-  void add_components(const std::vector<MapId>& maps, const ArrangementProblem& problem,
-                      const Arrangement& arrangement, MergeResult& result) const {
+  void add_components(const std::vector<MapId>& maps, const JoinProblem& problem,
+                      const ConsistentSet& consistent_set, MergeResult& result) const {
     const MergeInputs inputs = inputs_of(maps);
-    for (const NodeGroup& group : arrangement.groups) {
+    for (const NodeGroup& group : consistent_set.groups) {
       if (group.size() == 1) {
         result.left_out.push_back(left_out(inputs.index[group.front().map], result.joins));
       } else {
-        result.components.push_back(make_component(group, problem, arrangement, inputs, options_.resolution));
+        result.components.push_back(
+            make_component(group, problem, consistent_set, inputs, options_.resolution));
       }
     }
     std::sort(result.left_out.begin(), result.left_out.end(),

@@ -27,7 +27,7 @@ struct PairCandidates {
 };
 
 /// All that is known of k maps.
-struct ArrangementProblem {
+struct JoinProblem {
   std::vector<MapExtent> maps;
   std::vector<PairCandidates> pairs;  ///< at most one a pair of maps
   /// Where each map knows anything; without it no two maps are thought to have anything in common, and every
@@ -46,9 +46,9 @@ struct PlacedNode {
 /// Maps that lie together. The frame is that of the first.
 using NodeGroup = std::vector<PlacedNode>;
 
-/// A candidate that the arrangement agrees with.
+/// A candidate that the consistent set agrees with.
 struct UsedCandidate {
-  std::size_t pair = 0;       ///< index into ArrangementProblem::pairs
+  std::size_t pair = 0;       ///< index into JoinProblem::pairs
   std::size_t candidate = 0;  ///< index into its candidates
 };
 

@@ -17,7 +17,7 @@ constexpr double kUnrelated = 2.0;          // standard deviations that an unrel
 
 }  // namespace
 
-WallError::WallError(const WallMap& fixed, const Point2& fixed_middle, const WallMap& moving,
+WallError::WallError(const LikelihoodField& fixed, const Point2& fixed_middle, const LikelihoodField& moving,
                      const Point2& moving_middle, double sd)
     : fixed_(fixed),
       T_grid_fixed_(inverse(fixed.T_map_grid) * SE2{fixed_middle.x, fixed_middle.y, 0.0}),

@@ -21,7 +21,7 @@ constexpr double kMinMet = 0.08;
 static_assert(kMaxSearchSamples * kMaxCorrelated < 32767);
 
 /// The evidence of a wall in each coarse cell of the fixed map.
-EvidenceImage make_evidence_image(const WallMap& fixed, const SearchFrame& frame,
+EvidenceImage make_evidence_image(const LikelihoodField& fixed, const SearchFrame& frame,
                                   const ExhaustiveSearchOptions& options) {
   const auto table = evidence_table({options.sigma, options.outliers}, fixed.background);
   std::vector<float> sums(static_cast<std::size_t>(frame.fixed_width) * frame.fixed_height, 0.0F);
@@ -90,7 +90,7 @@ class PeakFinder {
 
 }  // namespace
 
-std::vector<PoseCandidate> search_all_poses(const WallMap& fixed, const WallMap& moving,
+std::vector<PoseCandidate> search_all_poses(const LikelihoodField& fixed, const LikelihoodField& moving,
                                             const ExhaustiveSearchOptions& options) {
   check_search(fixed, moving, options, kMaxSearchSamples);
   const SearchFrame frame = make_search_frame(fixed, moving, options.coarse_factor, options.rotations);

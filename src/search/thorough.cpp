@@ -36,7 +36,7 @@ using BySector = std::array<float, kSectors>;
 
 /// The evidence of a wall of each sector in each coarse cell of the fixed map: means over its cells and over
 /// the facings of the sector.
-EvidenceImage make_evidence(const WallMap& fixed, const SearchFrame& frame,
+EvidenceImage make_evidence(const LikelihoodField& fixed, const SearchFrame& frame,
                             const ThoroughSearchOptions& options) {
   const auto table = evidence_table({options.sigma, options.outliers}, fixed.background);
   std::vector<BySector> nats(static_cast<std::size_t>(kFacingCodes) * kDistanceBins, BySector{});
@@ -82,7 +82,7 @@ EvidenceImage make_evidence(const WallMap& fixed, const SearchFrame& frame,
 
 /// How much of each coarse cell the fixed map has seen, kMaxCorrelated for all of it, as means of 2 x 2 cells
 /// in the planes of pool_pairs().
-EvidenceImage make_seen_pairs(const WallMap& fixed, const SearchFrame& frame, int factor) {
+EvidenceImage make_seen_pairs(const LikelihoodField& fixed, const SearchFrame& frame, int factor) {
   std::vector<int> counts(static_cast<std::size_t>(frame.fixed_width) * frame.fixed_height, 0);
   for (int y = 0; y < fixed.height; ++y) {
     const Place* const row = fixed.places.data() + fixed.index(0, y);
@@ -248,7 +248,7 @@ class PeakFinder {
 
 }  // namespace
 
-std::vector<PoseCandidate> search_thoroughly(const WallMap& fixed, const WallMap& moving,
+std::vector<PoseCandidate> search_thoroughly(const LikelihoodField& fixed, const LikelihoodField& moving,
                                              const ThoroughSearchOptions& options) {
   check_search(fixed, moving, options, kMaxThoroughSamples);
   std::vector<WallPoint> walls = draw_evenly(moving.walls, options.samples);

@@ -39,7 +39,7 @@ inline constexpr double kMinSeenSamples = 25.0;
 /// PoseCandidate::score is in 256ths of a standard deviation. The same bits on every machine and for any
 /// number of threads. Throws std::invalid_argument for options that make no sense. Runs in the calling TBB
 /// arena. O(rotations * samples * translations).
-std::vector<PoseCandidate> search_thoroughly(const WallMap& fixed, const WallMap& moving,
+std::vector<PoseCandidate> search_thoroughly(const LikelihoodField& fixed, const LikelihoodField& moving,
                                              const ThoroughSearchOptions& options = {});
 
 }  // namespace gridmerge::internal

@@ -213,7 +213,7 @@ std::vector<WallPoint> draw_evenly(const std::vector<WallPoint>& points, std::si
   return drawn;
 }
 
-WallEvidence::LookUp::LookUp(const WallMap& map)
+WallEvidence::LookUp::LookUp(const LikelihoodField& map)
     : walls(map.walls),
       row_of_tiles(tiles_along(map.width, kTileColumns)),
       last_x(static_cast<float>(map.width - 1)),
@@ -243,7 +243,8 @@ WallEvidence::Points::Points(const std::vector<WallPoint>& walls, std::size_t ma
   weight = drawn.empty() ? 0.0F : static_cast<float>(walls.size()) / static_cast<float>(drawn.size());
 }
 
-WallEvidence::WallEvidence(const WallMap& fixed, const WallMap& moving, std::size_t max_points)
+WallEvidence::WallEvidence(const LikelihoodField& fixed, const LikelihoodField& moving,
+                           std::size_t max_points)
     : fixed_(std::make_shared<LookUp>(fixed)),
       moving_(std::make_shared<LookUp>(moving)),
       fixed_walls_(fixed.walls, max_points),

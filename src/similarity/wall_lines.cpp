@@ -38,7 +38,8 @@ int turn_between(int a, int b, int full_turn) {
 
 /// The moving map's walls that lie on walls of the fixed one which face the same side [cells, fixed grid
 /// frame].
-std::vector<MetPoint> find_met_walls(const WallMap& fixed, const WallMap& moving, const SE2& T) {
+std::vector<MetPoint> find_met_walls(const LikelihoodField& fixed, const LikelihoodField& moving,
+                                     const SE2& T) {
   const int turn = steps_of_turn(T.theta);
   const ManyPointsTransform T_points(T);
   std::vector<MetPoint> met;
@@ -146,7 +147,7 @@ double count_lines(std::vector<MetPoint> points, double diagonal) {
 
 }  // namespace
 
-WallSupport measure_wall_support(const WallMap& fixed, const WallMap& moving,
+WallSupport measure_wall_support(const LikelihoodField& fixed, const LikelihoodField& moving,
                                  const SE2& T_fixed_moving_cells) {
   const std::vector<MetPoint> points = find_met_walls(fixed, moving, T_fixed_moving_cells);
   return {count_lines(points, std::hypot(fixed.width, fixed.height)), static_cast<double>(points.size()),

@@ -127,10 +127,10 @@ TEST(Align, DrawsTheWallsOfTheMapsToEachOther) {
 }
 
 TEST(WallError, ItsDerivativesAreThoseOfItsResiduals) {
-  const WallMap fixed = make_wall_map(test::draw_building(1), 0.1);
+  const LikelihoodField fixed = make_likelihood_field(test::draw_building(1), 0.1);
   OccupancyGrid elsewhere = test::draw_building(1);
   elsewhere.origin = {3.0, -1.0, 0.7};
-  const WallMap moving = make_wall_map(elsewhere, 0.1);
+  const LikelihoodField moving = make_likelihood_field(elsewhere, 0.1);
   const Point2 fixed_middle{1.0, 2.0}, moving_middle{-3.0, 0.5};
   const WallError error(fixed, fixed_middle, moving, moving_middle, 2.0);
   const auto count = static_cast<std::size_t>(error.num_residuals());

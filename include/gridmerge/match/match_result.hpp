@@ -40,7 +40,7 @@ struct PoseFigures {
 
   /// See pose_figures().
   double score = 0.0;
-  double lead = 0.0;
+  double score_margin = 0.0;
   double stands_out = 0.0;
   double wall_score = 0.0;
   double seen_walls = 0.0;

@@ -55,7 +55,7 @@ struct WallPoint {
 
 /// A map as the engine compares it: where its walls are and which way they face, and for every place how far
 /// the nearest one is. The grid frame has its origin in the lower-left corner and is measured in cells.
-struct WallMap {
+struct LikelihoodField {
   double cell = 1.0;             ///< side of a cell [m]
   int width = 0;                 ///< columns
   int height = 0;                ///< rows
@@ -81,6 +81,6 @@ struct WallMap {
 /// centroid of the occupied cells inside its cell. Places known to the map or next to a known one count as
 /// seen, so that a wall at the rim of what a robot saw may still be met. Distances: chamfer (3, 4) (Borgefors
 /// 1986), within 8 % of the Euclidean. O(grid cells + cells).
-WallMap make_wall_map(const OccupancyGrid& grid, double cell);
+LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell);
 
 }  // namespace gridmerge::internal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "merge/arrangement.hpp"
+#include "merge/consistent_set.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -60,7 +60,7 @@ class World {
     });
   }
 
-  ArrangementProblem problem;
+  JoinProblem problem;
 
  private:
   std::mt19937 random_;
@@ -71,53 +71,53 @@ class World {
 const SE2 kWrong{12.0, 7.0, 2.0};
 const SE2 kOtherWrong{-9.0, 15.0, -1.0};
 
-std::set<std::pair<std::size_t, std::size_t>> used_pairs(const ArrangementProblem& problem,
-                                                         const Arrangement& arrangement) {
+std::set<std::pair<std::size_t, std::size_t>> used_pairs(const JoinProblem& problem,
+                                                         const ConsistentSet& consistent_set) {
   std::set<std::pair<std::size_t, std::size_t>> used;
-  for (const UsedCandidate& candidate : arrangement.used)
+  for (const UsedCandidate& candidate : consistent_set.used)
     used.emplace(problem.pairs[candidate.pair].fixed, problem.pairs[candidate.pair].moving);
   return used;
 }
 
-TEST(Arrange, NoMapsAreNoGroups) {
-  EXPECT_TRUE(arrange({}, kAccept).groups.empty());
+TEST(ConsistentSet, NoMapsAreNoGroups) {
+  EXPECT_TRUE(find_consistent_set({}, kAccept).groups.empty());
 }
 
-TEST(Arrange, OneMapIsAGroupByItself) {
-  const Arrangement arrangement = arrange(World(1).problem, kAccept);
-  ASSERT_EQ(arrangement.groups.size(), 1u);
-  EXPECT_EQ(arrangement.groups[0].size(), 1u);
-  EXPECT_EQ(arrangement.groups[0][0].probability, 1.0);
+TEST(ConsistentSet, OneMapIsAGroupByItself) {
+  const ConsistentSet consistent_set = find_consistent_set(World(1).problem, kAccept);
+  ASSERT_EQ(consistent_set.groups.size(), 1u);
+  EXPECT_EQ(consistent_set.groups[0].size(), 1u);
+  EXPECT_EQ(consistent_set.groups[0][0].probability, 1.0);
 }
 
 /// Of many maps, two that only their own pair speaks of: the surest of many matches is often only that.
-TEST(Arrange, APairAmongManyMapsIsLessSureThanByItself) {
+TEST(ConsistentSet, APairAmongManyMapsIsLessSureThanByItself) {
   World two(2), many(3);
   two.say(0, 1, 6.0);
   many.say(0, 1, 6.0);
-  const double of_two = arrange(two.problem, kAccept).groups[0][1].probability;
-  const double of_many = arrange(many.problem, kAccept).groups[0][1].probability;
+  const double of_two = find_consistent_set(two.problem, kAccept).groups[0][1].probability;
+  const double of_many = find_consistent_set(many.problem, kAccept).groups[0][1].probability;
   EXPECT_GT(of_two, 0.997);
   EXPECT_LT(of_many, 0.99);
   EXPECT_GT(of_many, 0.97);
 }
 
-TEST(Arrange, TwoMapsAreJoinedAsSurelyAsTheirPairIs) {
+TEST(ConsistentSet, TwoMapsAreJoinedAsSurelyAsTheirPairIs) {
   for (const double probability : {0.5, 0.79, 0.81, 0.99}) {
     World world(2);
     world.say(0, 1, std::log(probability / (1.0 - probability)));
-    const Arrangement arrangement = arrange(world.problem, kAccept);
-    ASSERT_EQ(arrangement.groups.size(), probability < kAccept ? 2u : 1u) << probability;
+    const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+    ASSERT_EQ(consistent_set.groups.size(), probability < kAccept ? 2u : 1u) << probability;
     if (probability < kAccept) continue;
-    EXPECT_NEAR(arrangement.groups[0][1].probability, probability, 1e-6);
-    world.expect_true(arrangement.groups[0]);
+    EXPECT_NEAR(consistent_set.groups[0][1].probability, probability, 1e-6);
+    world.expect_true(consistent_set.groups[0]);
   }
 }
 
-TEST(Arrange, TheFirstMapIsDoubtedAsTheOthersAre) {
+TEST(ConsistentSet, TheFirstMapIsDoubtedAsTheOthersAre) {
   World two(2);
   two.say(0, 1, 2.0);
-  const Arrangement pair = arrange(two.problem, kAccept);
+  const ConsistentSet pair = find_consistent_set(two.problem, kAccept);
   ASSERT_EQ(pair.groups.size(), 1u);
   EXPECT_NEAR(pair.groups[0][0].probability, pair.groups[0][1].probability, 1e-12);
   EXPECT_LT(pair.groups[0][0].probability, 0.9);
@@ -126,16 +126,16 @@ TEST(Arrange, TheFirstMapIsDoubtedAsTheOthersAre) {
   World three(3);
   three.say(0, 1, 4.0);
   three.say(1, 2, 9.0);
-  const Arrangement chain = arrange(three.problem, kAccept);
+  const ConsistentSet chain = find_consistent_set(three.problem, kAccept);
   ASSERT_EQ(chain.groups.size(), 1u);
   EXPECT_LT(chain.groups[0][0].probability, chain.groups[0][2].probability);
 }
 
-TEST(Arrange, OfTwoPosesThatAreAsLikelyNoneIsBelieved) {
+TEST(ConsistentSet, OfTwoPosesThatAreAsLikelyNoneIsBelieved) {
   World world(2);
   world.say(0, 1, 4.0);
   world.say(0, 1, 4.0, kWrong);
-  EXPECT_EQ(arrange(world.problem, kAccept).groups.size(), 2u);
+  EXPECT_EQ(find_consistent_set(world.problem, kAccept).groups.size(), 2u);
 }
 
 TEST(FindOpenJoins, AreTheRivalsBetweenWhichNothingDecides) {
@@ -143,8 +143,8 @@ TEST(FindOpenJoins, AreTheRivalsBetweenWhichNothingDecides) {
   world.say(0, 1, 4.0);
   world.say(0, 1, 4.0, kWrong);
   world.say(0, 1, -3.0, {500.0, 0.0, 1.0});  // 1 in 20
-  const Arrangement arrangement = arrange(world.problem, kAccept);
-  const std::vector<OpenJoin> open = find_open_joins(world.problem, arrangement, 0.1);
+  const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+  const std::vector<OpenJoin> open = find_open_joins(world.problem, consistent_set, 0.1);
   ASSERT_EQ(open.size(), 2u);
   for (const OpenJoin& join : open) {
     EXPECT_EQ(join.a, 0u);
@@ -153,9 +153,9 @@ TEST(FindOpenJoins, AreTheRivalsBetweenWhichNothingDecides) {
     EXPECT_LT(join.probability, 0.5);
   }
   EXPECT_NE(open[0].T_a_b, open[1].T_a_b);
-  EXPECT_EQ(find_open_joins(world.problem, arrangement, 0.01).size(), 3u);
-  EXPECT_TRUE(find_open_joins(world.problem, arrangement, 0.6).empty());
-  EXPECT_THROW(find_open_joins(world.problem, arrangement, -0.1), std::invalid_argument);
+  EXPECT_EQ(find_open_joins(world.problem, consistent_set, 0.01).size(), 3u);
+  EXPECT_TRUE(find_open_joins(world.problem, consistent_set, 0.6).empty());
+  EXPECT_THROW(find_open_joins(world.problem, consistent_set, -0.1), std::invalid_argument);
 }
 
 TEST(FindOpenJoins, OfAGroupHearAllItsMaps) {
@@ -168,9 +168,9 @@ TEST(FindOpenJoins, OfAGroupHearAllItsMaps) {
     world.say(map, 3, 0.0);
     world.say(map, 3, 0.0, kWrong);
   }
-  const Arrangement arrangement = arrange(world.problem, kAccept);
-  ASSERT_EQ(arrangement.groups.size(), 2u);
-  const std::vector<OpenJoin> open = find_open_joins(world.problem, arrangement, 0.1);
+  const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+  ASSERT_EQ(consistent_set.groups.size(), 2u);
+  const std::vector<OpenJoin> open = find_open_joins(world.problem, consistent_set, 0.1);
   ASSERT_GE(open.size(), 2u);
   double sum = 0.0;
   for (const OpenJoin& join : open) {
@@ -187,80 +187,80 @@ TEST(FindOpenJoins, OfOneGroupAreNone) {
   world.say(0, 1, 5.0);
   world.say(1, 2, 5.0);
   world.say(0, 2, 5.0);
-  EXPECT_TRUE(find_open_joins(world.problem, arrange(world.problem, kAccept), 0.0).empty());
+  EXPECT_TRUE(find_open_joins(world.problem, find_consistent_set(world.problem, kAccept), 0.0).empty());
 }
 
-TEST(Arrange, AThirdMapDecidesBetweenPosesThatAreAsLikely) {
+TEST(ConsistentSet, AThirdMapDecidesBetweenPosesThatAreAsLikely) {
   World world(3);
   world.say(0, 1, 2.0, kWrong);
   world.say(0, 1, 2.0);
   world.say(0, 2, 4.0);
   world.say(1, 2, 4.0);
-  const Arrangement arrangement = arrange(world.problem, kAccept);
-  ASSERT_EQ(arrangement.groups.size(), 1u);
-  world.expect_true(arrangement.groups[0]);
-  EXPECT_EQ(arrangement.used.size(), 3u);
-  EXPECT_EQ(arrangement.used[0].candidate, 1u);
+  const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+  ASSERT_EQ(consistent_set.groups.size(), 1u);
+  world.expect_true(consistent_set.groups[0]);
+  EXPECT_EQ(consistent_set.used.size(), 3u);
+  EXPECT_EQ(consistent_set.used[0].candidate, 1u);
 }
 
-TEST(Arrange, AWeakPairThatAgreesWithACycleIsUsed) {
+TEST(ConsistentSet, AWeakPairThatAgreesWithACycleIsUsed) {
   World world(3);
   world.say(0, 1, 4.0);
   world.say(1, 2, 4.0);
   world.say(0, 2, -2.0);
-  const Arrangement arrangement = arrange(world.problem, kAccept);
-  ASSERT_EQ(arrangement.groups.size(), 1u);
-  EXPECT_TRUE(used_pairs(world.problem, arrangement).contains({0, 2}));
+  const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+  ASSERT_EQ(consistent_set.groups.size(), 1u);
+  EXPECT_TRUE(used_pairs(world.problem, consistent_set).contains({0, 2}));
 }
 
-TEST(Arrange, TwoWeakPairsThatAgreeAreEnoughTogether) {
+TEST(ConsistentSet, TwoWeakPairsThatAgreeAreEnoughTogether) {
   World world(3);
   world.say(0, 1, 4.0);
   world.say(0, 2, 0.0);
   world.say(1, 2, 0.0);
-  EXPECT_EQ(arrange(world.problem, kAccept).groups.size(), 1u);
+  EXPECT_EQ(find_consistent_set(world.problem, kAccept).groups.size(), 1u);
   world.pair(1, 2).candidates[0].T_fixed_moving = world.T(1, 2) * kWrong;  // they agree no more
-  EXPECT_EQ(arrange(world.problem, kAccept).groups.size(), 2u);
+  EXPECT_EQ(find_consistent_set(world.problem, kAccept).groups.size(), 2u);
 }
 
-TEST(Arrange, AWrongJoinStrongerThanEveryRightOneIsNotUsed) {
+TEST(ConsistentSet, AWrongJoinStrongerThanEveryRightOneIsNotUsed) {
   for (std::size_t wrong = 1; wrong < 5; ++wrong) {
     World world(5);
     world.say_all(3.0);
     world.pair(0, wrong).candidates = {{world.T(0, wrong) * kWrong, 6.0, 0.1}};
-    const Arrangement arrangement = arrange(world.problem, kAccept);
-    ASSERT_EQ(arrangement.groups.size(), 1u) << wrong;
-    world.expect_true(arrangement.groups[0]);
-    EXPECT_EQ(arrangement.used.size(), 9u);
-    EXPECT_FALSE(used_pairs(world.problem, arrangement).contains({0, wrong}));
+    const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+    ASSERT_EQ(consistent_set.groups.size(), 1u) << wrong;
+    world.expect_true(consistent_set.groups[0]);
+    EXPECT_EQ(consistent_set.used.size(), 9u);
+    EXPECT_FALSE(used_pairs(world.problem, consistent_set).contains({0, wrong}));
   }
 }
 
-TEST(Arrange, TwoWrongJoinsThatAgreeWithEachOtherAreNotUsed) {
+TEST(ConsistentSet, TwoWrongJoinsThatAgreeWithEachOtherAreNotUsed) {
   World world(6);
   world.say_all(3.0);
   // Both say that map 5 lies where it does not, in the same place.
   world.pair(0, 5).candidates = {{world.T(0, 5) * kWrong, 4.0, 0.1}};
   world.pair(1, 5).candidates = {{world.T(1, 5) * kWrong, 4.0, 0.1}};
-  const Arrangement arrangement = arrange(world.problem, kAccept);
-  ASSERT_EQ(arrangement.groups.size(), 1u);
-  world.expect_true(arrangement.groups[0]);
-  EXPECT_FALSE(used_pairs(world.problem, arrangement).contains({0, 5}));
-  EXPECT_FALSE(used_pairs(world.problem, arrangement).contains({1, 5}));
+  const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+  ASSERT_EQ(consistent_set.groups.size(), 1u);
+  world.expect_true(consistent_set.groups[0]);
+  EXPECT_FALSE(used_pairs(world.problem, consistent_set).contains({0, 5}));
+  EXPECT_FALSE(used_pairs(world.problem, consistent_set).contains({1, 5}));
 }
 
-TEST(Arrange, WhatIsContradictedAsMuchAsItIsSaidIsLeftOut) {
+TEST(ConsistentSet, WhatIsContradictedAsMuchAsItIsSaidIsLeftOut) {
   World world(5);
   world.say_all(3.0);
   for (const std::size_t map : {0u, 1u})
     world.pair(map, 4).candidates = {{world.T(map, 4) * kWrong, 3.0, 0.1}};
-  const Arrangement arrangement = arrange(world.problem, kAccept);
-  ASSERT_EQ(arrangement.groups.size(), 2u);
-  EXPECT_EQ(arrangement.groups[0].size(), 4u);
-  EXPECT_EQ(arrangement.groups[1][0].map, 4u);
+  const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+  ASSERT_EQ(consistent_set.groups.size(), 2u);
+  EXPECT_EQ(consistent_set.groups[0].size(), 4u);
+  EXPECT_EQ(consistent_set.groups[1][0].map, 4u);
 }
 
-TEST(Arrange, MapsOfTwoPlacesAreTwoGroups) {
+TEST(ConsistentSet, MapsOfTwoPlacesAreTwoGroups) {
   World world(6);
   for (const std::size_t side : {0u, 1u}) {
     world.say(side, side + 2, 4.0);
@@ -269,27 +269,27 @@ TEST(Arrange, MapsOfTwoPlacesAreTwoGroups) {
   }
   world.say(0, 1, -1.0, kWrong);
   world.say(2, 3, -1.0, kOtherWrong);
-  const Arrangement arrangement = arrange(world.problem, kAccept);
-  ASSERT_EQ(arrangement.groups.size(), 2u);
-  for (const NodeGroup& group : arrangement.groups) {
+  const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+  ASSERT_EQ(consistent_set.groups.size(), 2u);
+  for (const NodeGroup& group : consistent_set.groups) {
     EXPECT_EQ(group.size(), 3u);
     world.expect_true(group);
   }
 }
 
-TEST(Arrange, PosesInACycleShareItsError) {
+TEST(ConsistentSet, PosesInACycleShareItsError) {
   World world(3);
   world.say(0, 1, 4.0);
   world.say(1, 2, 4.0);
   world.say(0, 2, 4.0, {0.9, 0.0, 0.0});
-  const Arrangement arrangement = arrange(world.problem, kAccept);
-  ASSERT_EQ(arrangement.groups.size(), 1u);
-  EXPECT_NEAR(displacement(world.problem.maps[2], arrangement.groups[0][2].T_group_map, world.T(0, 2)), 0.6,
-              0.05);
+  const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+  ASSERT_EQ(consistent_set.groups.size(), 1u);
+  EXPECT_NEAR(displacement(world.problem.maps[2], consistent_set.groups[0][2].T_group_map, world.T(0, 2)),
+              0.6, 0.05);
 }
 
 // Whatever pairs say, the order of the maps must not matter.
-RC_GTEST_PROP(Arrange, OrderOfTheMapsPlaysNoPart, ()) {
+RC_GTEST_PROP(ConsistentSet, OrderOfTheMapsPlaysNoPart, ()) {
   const auto size = static_cast<std::size_t>(*rc::gen::inRange(2, 8));
   World world(size, *rc::gen::arbitrary<unsigned>());
   std::mt19937 random(*rc::gen::arbitrary<unsigned>());
@@ -303,7 +303,7 @@ RC_GTEST_PROP(Arrange, OrderOfTheMapsPlaysNoPart, ()) {
   std::vector<std::size_t> place(size);  // of each map, in the other order
   std::iota(place.begin(), place.end(), 0);
   std::shuffle(place.begin(), place.end(), random);
-  ArrangementProblem other;
+  JoinProblem other;
   other.maps = world.problem.maps;  // all are alike
   for (const PairCandidates& pair : world.problem.pairs) {
     PairCandidates moved{place[pair.fixed], place[pair.moving], pair.candidates};
@@ -316,7 +316,8 @@ RC_GTEST_PROP(Arrange, OrderOfTheMapsPlaysNoPart, ()) {
   }
   std::shuffle(other.pairs.begin(), other.pairs.end(), random);
 
-  const Arrangement one = arrange(world.problem, kAccept), two = arrange(other, kAccept);
+  const ConsistentSet one = find_consistent_set(world.problem, kAccept),
+                      two = find_consistent_set(other, kAccept);
   RC_ASSERT(one.groups.size() == two.groups.size());
   RC_ASSERT(one.used.size() == two.used.size());
   for (const NodeGroup& group : one.groups) {
@@ -339,8 +340,8 @@ RC_GTEST_PROP(Arrange, OrderOfTheMapsPlaysNoPart, ()) {
 }
 
 /// Three pairs of maps, each with one candidate of its own odds.
-ArrangementProblem three_pairs() {
-  ArrangementProblem problem;
+JoinProblem three_pairs() {
+  JoinProblem problem;
   problem.maps.assign(6, MapExtent{{0.0, 0.0}, 5.0, 20.0});
   for (std::size_t i = 0; i < 3; ++i)
     problem.pairs.push_back(
@@ -349,28 +350,30 @@ ArrangementProblem three_pairs() {
 }
 
 TEST(ArrangeWithin, MakesAsManyJoinsAsTheBudgetOfFalseOnesAllows) {
-  const ArrangementProblem problem = three_pairs();  // doubts of 0.18, 0.056 and 0.022
-  const auto joins = [&](double budget) { return 6 - arrange_within(problem, 0.8, budget).groups.size(); };
+  const JoinProblem problem = three_pairs();  // doubts of 0.18, 0.056 and 0.022
+  const auto joins = [&](double budget) {
+    return 6 - find_consistent_set_within(problem, 0.8, budget).groups.size();
+  };
   EXPECT_EQ(joins(1.0), 3U);
   EXPECT_EQ(joins(0.1), 2U);
   EXPECT_EQ(joins(0.03), 1U);
   EXPECT_EQ(joins(0.0), 0U);
   for (const double budget : {1.0, 0.1, 0.03, 0.001, 0.0})
-    EXPECT_LE(expected_false_joins(arrange_within(problem, 0.8, budget)), budget);
+    EXPECT_LE(expected_false_joins(find_consistent_set_within(problem, 0.8, budget)), budget);
 }
 
 /// No pair is as sure as a small budget asks for, but all of them together are.
 TEST(ArrangeWithin, KeepsWhatManyPairsAreSureOfTogether) {
   World world(6);
   world.say_all(4.5);
-  const Arrangement arrangement = arrange_within(world.problem, kAccept, 0.01);
-  ASSERT_EQ(arrangement.groups.size(), 1U);
-  world.expect_true(arrangement.groups[0]);
+  const ConsistentSet consistent_set = find_consistent_set_within(world.problem, kAccept, 0.01);
+  ASSERT_EQ(consistent_set.groups.size(), 1U);
+  world.expect_true(consistent_set.groups[0]);
 }
 
 TEST(ArrangeWithin, RefusesABudgetThatIsNone) {
-  EXPECT_THROW(arrange_within({}, 0.8, -0.1), std::invalid_argument);
-  EXPECT_THROW(arrange_within({}, 0.8, std::nan("")), std::invalid_argument);
+  EXPECT_THROW(find_consistent_set_within({}, 0.8, -0.1), std::invalid_argument);
+  EXPECT_THROW(find_consistent_set_within({}, 0.8, std::nan("")), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "similarity/wall_map.hpp"
+#include "similarity/likelihood_field.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -152,7 +152,7 @@ std::uint8_t find_side(const BoxSums& free_cells, int x, int y) {
 }
 
 /// Marks the walls of small things. `at` has the index of each cell's wall, or -1.
-void mark_things(WallMap& map, const std::vector<int>& at) {
+void mark_things(LikelihoodField& map, const std::vector<int>& at) {
   const double largest = kLargestThing / map.cell;
   std::vector<std::uint8_t> visited(map.walls.size(), 0);
   std::vector<int> thing;
@@ -190,10 +190,10 @@ int steps_of_turn(double theta) {
   return (whole + (steps - whole >= 0.5 ? 1 : 0)) % kDirections;
 }
 
-WallMap make_wall_map(const OccupancyGrid& grid, double cell) {
+LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell) {
   const double scale = grid.resolution / cell;
 
-  WallMap map;
+  LikelihoodField map;
   map.cell = cell;
   map.width = static_cast<int>(std::ceil(grid.width * scale)) + 2 * kMargin;
   map.height = static_cast<int>(std::ceil(grid.height * scale)) + 2 * kMargin;

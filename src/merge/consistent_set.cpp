@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "merge/arrangement.hpp"
+#include "merge/consistent_set.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ constexpr double kMinGain = 0.1;
 /// Weighs groups against each other, and keeps what it has found until the groups change.
 class Arranger {
  public:
-  Arranger(const ArrangementProblem& problem, double accept_probability, double keep_probability)
+  Arranger(const JoinProblem& problem, double accept_probability, double keep_probability)
       : weights_(problem), accept_(accept_probability), keep_(keep_probability) {
     NodeGroup fixed;
     for (std::size_t map = 0; map < problem.maps.size(); ++map) {
@@ -37,7 +37,8 @@ class Arranger {
 
   NodeGroups settle() {
     join_all();
-    // Every move gains, so this ends; the bound is for arrangements that are worth the same within rounding.
+    // Every move gains, so this ends; the bound is for consistent sets that are worth the same within
+    // rounding.
     for (std::size_t moves = 0; moves < 4 * groups_.size() + 64 && move_one(); ++moves) join_all();
     while (cut_one()) {
     }
@@ -220,7 +221,7 @@ class Arranger {
   std::set<Key> sure_;  // groups that need no cut
 };
 
-void validate(const ArrangementProblem& problem, double accept_probability) {
+void validate(const JoinProblem& problem, double accept_probability) {
   const std::size_t maps = problem.maps.size();
   if (!(accept_probability >= 0.0 && accept_probability <= 1.0))
     throw std::invalid_argument("accept_probability must lie in [0, 1]");
@@ -242,15 +243,16 @@ NodeGroup in_order(NodeGroup group) {
   return group;
 }
 
-Arrangement arrange(const ArrangementProblem& problem, double accept_probability, double keep_probability) {
+ConsistentSet find_consistent_set(const JoinProblem& problem, double accept_probability,
+                                  double keep_probability) {
   validate(problem, accept_probability);
-  Arrangement arrangement;
+  ConsistentSet consistent_set;
   for (NodeGroup& group : Arranger(problem, accept_probability, keep_probability).settle())
-    arrangement.groups.push_back(in_order(std::move(group)));
-  std::sort(arrangement.groups.begin(), arrangement.groups.end(),
+    consistent_set.groups.push_back(in_order(std::move(group)));
+  std::sort(consistent_set.groups.begin(), consistent_set.groups.end(),
             [](const NodeGroup& a, const NodeGroup& b) { return a.front().map < b.front().map; });
   const JoinWeights weights(problem);
-  for (NodeGroup& group : arrangement.groups) {
+  for (NodeGroup& group : consistent_set.groups) {
     if (group.size() > 1) {
       for (std::size_t i = 0; i < group.size(); ++i) {
         if (weights.is_fixed(group[i].map)) continue;
@@ -258,24 +260,24 @@ Arrangement arrange(const ArrangementProblem& problem, double accept_probability
         group[i].probability = weights.probability_of_lying_so(rest, alone);
       }
     }
-    for (const UsedCandidate& used : weights.used_in(group)) arrangement.used.push_back(used);
+    for (const UsedCandidate& used : weights.used_in(group)) consistent_set.used.push_back(used);
   }
-  std::sort(arrangement.used.begin(), arrangement.used.end(),
+  std::sort(consistent_set.used.begin(), consistent_set.used.end(),
             [](const UsedCandidate& a, const UsedCandidate& b) { return a.pair < b.pair; });
-  return arrangement;
+  return consistent_set;
 }
 
 }  // namespace
 
-Arrangement arrange(const ArrangementProblem& problem, double accept_probability) {
-  return arrange(problem, accept_probability, accept_probability);
+ConsistentSet find_consistent_set(const JoinProblem& problem, double accept_probability) {
+  return find_consistent_set(problem, accept_probability, accept_probability);
 }
 
-std::vector<OpenJoin> find_open_joins(const ArrangementProblem& problem, const Arrangement& arrangement,
+std::vector<OpenJoin> find_open_joins(const JoinProblem& problem, const ConsistentSet& consistent_set,
                                       double least_probability) {
   validate(problem, least_probability);
   const JoinWeights weights(problem);
-  const std::vector<NodeGroup>& groups = arrangement.groups;
+  const std::vector<NodeGroup>& groups = consistent_set.groups;
   std::vector<std::vector<OpenJoin>> of_first(groups.size());
   parallel_for(groups.size(), [&](std::size_t a) {
     for (std::size_t b = a + 1; b < groups.size(); ++b) {
@@ -291,9 +293,9 @@ std::vector<OpenJoin> find_open_joins(const ArrangementProblem& problem, const A
   return open;
 }
 
-double expected_false_joins(const Arrangement& arrangement) {
+double expected_false_joins(const ConsistentSet& consistent_set) {
   double expected = 0.0;
-  for (const NodeGroup& group : arrangement.groups) {
+  for (const NodeGroup& group : consistent_set.groups) {
     double doubt = 0.0;
     for (const PlacedNode& node : group) doubt += 1.0 - node.probability;  // 0 where it is fixed or alone
     // Every map is doubted given the others: two maps doubt one join twice.
@@ -302,23 +304,23 @@ double expected_false_joins(const Arrangement& arrangement) {
   return expected;
 }
 
-Arrangement arrange_within(const ArrangementProblem& problem, double accept_probability,
-                           double max_false_joins) {
+ConsistentSet find_consistent_set_within(const JoinProblem& problem, double accept_probability,
+                                         double max_false_joins) {
   if (!(max_false_joins >= 0.0) || !std::isfinite(max_false_joins))
     throw std::invalid_argument("max_false_joins must be a number from 0 on");
-  Arrangement arrangement = arrange(problem, accept_probability);
+  ConsistentSet consistent_set = find_consistent_set(problem, accept_probability);
   constexpr double kMinStep = 0.2;    // of the doubt that is still allowed, so that this ends
   constexpr double kMinDoubt = 1e-9;  // from there on nothing is surer
   double keep = accept_probability;
-  while (expected_false_joins(arrangement) > max_false_joins && 1.0 - keep > kMinDoubt) {
+  while (expected_false_joins(consistent_set) > max_false_joins && 1.0 - keep > kMinDoubt) {
     double least = 1.0;
-    for (const NodeGroup& group : arrangement.groups) {
+    for (const NodeGroup& group : consistent_set.groups) {
       for (const PlacedNode& node : group) least = std::min(least, node.probability);
     }
     keep = std::min(1.0, std::max(std::nextafter(least, 2.0), keep + kMinStep * (1.0 - keep)));
-    arrangement = arrange(problem, accept_probability, keep);
+    consistent_set = find_consistent_set(problem, accept_probability, keep);
   }
-  return arrangement;
+  return consistent_set;
 }
 
 }  // namespace gridmerge::internal

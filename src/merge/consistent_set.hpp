@@ -9,20 +9,20 @@
 
 namespace gridmerge::internal {
 
-struct Arrangement {
+struct ConsistentSet {
   std::vector<NodeGroup> groups;    ///< every map is in one; ascending by first map, maps ascending
   std::vector<UsedCandidate> used;  ///< ascending by pair, at most one a pair
 };
 
 /// A way to join two groups that was not taken, though it may be the true one.
 struct OpenJoin {
-  std::size_t a = 0;  ///< index into Arrangement::groups, less than `b`
+  std::size_t a = 0;  ///< index into ConsistentSet::groups, less than `b`
   std::size_t b = 0;
   SE2 T_a_b;                 ///< between the groups' frames
   double probability = 0.0;  ///< against lying otherwise, and apart
 };
 
-/// The arrangement of all maps that the candidates speak for most, as far as it can be believed.
+/// The consistent set of all maps that the candidates speak for most, as far as it can be believed.
 ///
 /// To lie together so is worth to two groups of maps what the pairs across them say of it: the log odds of a
 /// candidate that agrees, and what it is worth that a pose which others chose is among the pair's few
@@ -43,25 +43,25 @@ struct OpenJoin {
 /// that of. Runs in the calling TBB arena. O(k^2) joins are weighed a round, k rounds; a join of groups of a
 /// and b maps with c candidates a pair is weighed in O((a b c)^2), but only 50 poses of it in full. Throws
 /// std::invalid_argument for indices, numbers of maps or a probability that make no sense.
-Arrangement arrange(const ArrangementProblem& problem, double accept_probability);
+ConsistentSet find_consistent_set(const JoinProblem& problem, double accept_probability);
 
-/// The ways to join two groups of an arrangement of the problem that have at least this probability, most
+/// The ways to join two groups of a consistent set of the problem that have at least this probability, most
 /// probable first: rivals among which nothing decides, and ways that are not sure enough. Runs in the calling
-/// TBB arena. O(groups^2) joins are weighed, as in a round of arrange(). Throws std::invalid_argument as
-/// arrange().
-std::vector<OpenJoin> find_open_joins(const ArrangementProblem& problem, const Arrangement& arrangement,
+/// TBB arena. O(groups^2) joins are weighed, as in a round of find_consistent_set(). Throws
+/// std::invalid_argument as find_consistent_set().
+std::vector<OpenJoin> find_open_joins(const JoinProblem& problem, const ConsistentSet& consistent_set,
                                       double least_probability);
 
-/// How many joins of an arrangement are expected to be false: of each group of n maps, n - 1 times the mean
+/// How many joins of a consistent set are expected to be false: of each group of n maps, n - 1 times the mean
 /// doubt in a member that is not fixed. O(maps).
-double expected_false_joins(const Arrangement& arrangement);
+double expected_false_joins(const ConsistentSet& consistent_set);
 
-/// arrange() with as many joins as a budget of false ones allows: as long as more are expected, the groups
-/// are cut from a higher probability on, that of the least sure member. Joined are they from
+/// find_consistent_set() with as many joins as a budget of false ones allows: as long as more are expected,
+/// the groups are cut from a higher probability on, that of the least sure member. Joined are they from
 /// `accept_probability` on: what two maps alone say is seldom as sure as what many say in the end. O(joins)
-/// times arrange(). Throws std::invalid_argument as arrange(), and for a budget that is negative or not
-/// finite.
-Arrangement arrange_within(const ArrangementProblem& problem, double accept_probability,
-                           double max_false_joins);
+/// times find_consistent_set(). Throws std::invalid_argument as find_consistent_set(), and for a budget that
+/// is negative or not finite.
+ConsistentSet find_consistent_set_within(const JoinProblem& problem, double accept_probability,
+                                         double max_false_joins);
 
 }  // namespace gridmerge::internal

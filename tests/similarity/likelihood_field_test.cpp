@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "similarity/wall_map.hpp"
+#include "similarity/likelihood_field.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,14 +15,14 @@ namespace gridmerge {
 using namespace internal;
 namespace {
 
-/// Centre of a cell of the wall map, in the map frame.
-Point2 centre_of(const WallMap& map, int x, int y) {
+/// Centre of a cell of the likelihood field, in the map frame.
+Point2 centre_of(const LikelihoodField& map, int x, int y) {
   return map.T_map_grid * Point2{(x + 0.5) * map.cell, (y + 0.5) * map.cell};
 }
 
-TEST(WallMap, DistancesAreWithinEightPercentOfTheEuclideanOnes) {
+TEST(LikelihoodField, DistancesAreWithinEightPercentOfTheEuclideanOnes) {
   const OccupancyGrid grid = test::random_grid(3, 40, 30);
-  const WallMap map = make_wall_map(grid, grid.resolution);
+  const LikelihoodField map = make_likelihood_field(grid, grid.resolution);
   for (int y = 1; y + 1 < map.height; ++y) {
     for (int x = 1; x + 1 < map.width; ++x) {
       const int bin = map.places[static_cast<std::size_t>(y) * map.width + x].distance;
@@ -45,8 +45,8 @@ TEST(WallMap, DistancesAreWithinEightPercentOfTheEuclideanOnes) {
   }
 }
 
-TEST(WallMap, APlaceIsThatOfItsCellAndNothingIsSeenOutside) {
-  const WallMap map = make_wall_map(test::random_grid(3, 12, 7), 0.1);
+TEST(LikelihoodField, APlaceIsThatOfItsCellAndNothingIsSeenOutside) {
+  const LikelihoodField map = make_likelihood_field(test::random_grid(3, 12, 7), 0.1);
   ASSERT_NE(map.width, map.height);
   for (int y = 0; y < map.height; ++y) {
     for (int x = 0; x < map.width; ++x) {
@@ -59,7 +59,7 @@ TEST(WallMap, APlaceIsThatOfItsCellAndNothingIsSeenOutside) {
     }
   }
   // As if all of it were seen, so that what is outside does not look like the rim.
-  WallMap seen = map;
+  LikelihoodField seen = map;
   for (Place& place : seen.places) place = {0, 0};
   const double width = map.width, height = map.height, nan = std::numeric_limits<double>::quiet_NaN();
   for (const Point2& outside : {Point2{-1e-9, 1.0}, Point2{1.0, -1e-9}, Point2{width, 1.0},
@@ -67,11 +67,11 @@ TEST(WallMap, APlaceIsThatOfItsCellAndNothingIsSeenOutside) {
     EXPECT_EQ(seen.place_at(outside).distance, kUnseen) << outside.x << " " << outside.y;
 }
 
-TEST(WallMap, WallsKeepTheirPlaceInTheMapFrame) {
+TEST(LikelihoodField, WallsKeepTheirPlaceInTheMapFrame) {
   OccupancyGrid grid = make_grid(30, 20, 0.05, {3.0, -2.0, 0.7}, Cell::free);
   grid.at(21, 13) = Cell::occupied;
   for (const double cell : {0.05, 0.1, 0.17}) {
-    const WallMap map = make_wall_map(grid, cell);
+    const LikelihoodField map = make_likelihood_field(grid, cell);
     ASSERT_EQ(map.walls.size(), 1U) << cell;
     const Point2 found =
         map.T_map_grid * Point2{map.walls[0].position.x * cell, map.walls[0].position.y * cell};
@@ -80,11 +80,11 @@ TEST(WallMap, WallsKeepTheirPlaceInTheMapFrame) {
   }
 }
 
-TEST(WallMap, OnlyKnownPlacesAndTheirSurroundingsAreSeen) {
+TEST(LikelihoodField, OnlyKnownPlacesAndTheirSurroundingsAreSeen) {
   OccupancyGrid grid = make_grid(30, 30, 0.1);
   grid.at(10, 10) = Cell::free;
   grid.at(20, 20) = Cell::occupied;
-  const WallMap map = make_wall_map(grid, 0.1);
+  const LikelihoodField map = make_likelihood_field(grid, 0.1);
   int seen = 0;
   for (int y = 0; y < map.height; ++y) {
     for (int x = 0; x < map.width; ++x) {
@@ -99,20 +99,20 @@ TEST(WallMap, OnlyKnownPlacesAndTheirSurroundingsAreSeen) {
   EXPECT_EQ(seen, 2 * 13);  // two discs of radius 2 cells
 }
 
-TEST(WallMap, BackgroundIsADistributionWithoutZeros) {
+TEST(LikelihoodField, BackgroundIsADistributionWithoutZeros) {
   for (const OccupancyGrid& grid :
        {test::random_grid(1, 30, 40), make_grid(1, 1, 0.1), make_grid(5, 5, 1.0, {}, Cell::free)}) {
-    const WallMap map = make_wall_map(grid, grid.resolution);
+    const LikelihoodField map = make_likelihood_field(grid, grid.resolution);
     EXPECT_NEAR(std::accumulate(map.background.begin(), map.background.end(), 0.0), 1.0, 1e-12);
     for (const double share : map.background) EXPECT_GT(share, 0.0);
   }
 }
 
-TEST(WallMap, CoarserCellsHoldTheCentroidOfTheirWalls) {
+TEST(LikelihoodField, CoarserCellsHoldTheCentroidOfTheirWalls) {
   OccupancyGrid grid = make_grid(8, 8, 0.1, {}, Cell::free);
   grid.at(4, 4) = Cell::occupied;
   grid.at(5, 4) = Cell::occupied;
-  const WallMap map = make_wall_map(grid, 0.4);
+  const LikelihoodField map = make_likelihood_field(grid, 0.4);
   ASSERT_EQ(map.walls.size(), 1U);
   const Point2 found = map.T_map_grid * Point2{map.walls[0].position.x * 0.4, map.walls[0].position.y * 0.4};
   EXPECT_NEAR(found.x, 0.5, 1e-6);
@@ -124,13 +124,13 @@ double angle_of(std::uint8_t facing) {
   return 2.0 * std::numbers::pi * facing / kDirections;
 }
 
-TEST(WallMap, WallsFaceTheirFreeSide) {
+TEST(LikelihoodField, WallsFaceTheirFreeSide) {
   OccupancyGrid grid = make_grid(30, 30, 0.1);
   for (int row = 0; row < 30; ++row) {
     for (int column = 0; column < 15; ++column) grid.at(column, row) = Cell::free;
     grid.at(15, row) = Cell::occupied;
   }
-  const WallMap map = make_wall_map(grid, 0.1);
+  const LikelihoodField map = make_likelihood_field(grid, 0.1);
   ASSERT_EQ(map.walls.size(), 30U);
   EXPECT_NEAR(angle_of(map.walls[15].facing), std::numbers::pi, 1e-9);
   // The places around take it over.
@@ -141,35 +141,35 @@ TEST(WallMap, WallsFaceTheirFreeSide) {
   }
 }
 
-TEST(WallMap, AThinWallWithFloorOnBothSidesHasAnAxis) {
+TEST(LikelihoodField, AThinWallWithFloorOnBothSidesHasAnAxis) {
   OccupancyGrid grid = make_grid(31, 31, 0.1, {}, Cell::free);
   for (int row = 0; row < 31; ++row) grid.at(15, row) = Cell::occupied;
-  const WallMap upright = make_wall_map(grid, 0.1);
+  const LikelihoodField upright = make_likelihood_field(grid, 0.1);
   ASSERT_TRUE(is_axis(upright.walls[15].facing));
   EXPECT_EQ(upright.walls[15].facing, kDirections);  // across it, along x
   for (int row = 0; row < 31; ++row) grid.at(15, row) = Cell::free;
   for (int i = 0; i < 31; ++i) grid.at(i, i) = Cell::occupied;
-  const WallMap diagonal = make_wall_map(grid, 0.1);
+  const LikelihoodField diagonal = make_likelihood_field(grid, 0.1);
   ASSERT_TRUE(is_axis(diagonal.walls[15].facing));
   EXPECT_EQ(diagonal.walls[15].facing, kDirections + 3 * kAxes / 4);
 }
 
-TEST(WallMap, APillarAndTheInsideOfAThickWallHaveNoAxis) {
+TEST(LikelihoodField, APillarAndTheInsideOfAThickWallHaveNoAxis) {
   OccupancyGrid grid = make_grid(41, 41, 0.1, {}, Cell::free);
   grid.at(10, 10) = Cell::occupied;
   for (int row = 0; row < 41; ++row)
     for (int column = 24; column < 35; ++column) grid.at(column, row) = Cell::occupied;
-  const WallMap map = make_wall_map(grid, 0.1);
+  const LikelihoodField map = make_likelihood_field(grid, 0.1);
   for (const WallPoint& wall : map.walls) EXPECT_FALSE(is_axis(wall.facing)) << wall.position.x;
 }
 
-TEST(WallMap, SmallThingsStandAloneAndWallsDoNot) {
+TEST(LikelihoodField, SmallThingsStandAloneAndWallsDoNot) {
   OccupancyGrid grid = make_grid(80, 80, 0.1, {}, Cell::free);
   for (int i = 0; i < 80; ++i) grid.at(i, 2) = Cell::occupied;    // a wall of 8 m
   for (int i = 30; i < 36; ++i) grid.at(i, 30) = Cell::occupied;  // a table
   for (int i = 3; i < 9; ++i) grid.at(60, i) = Cell::occupied;    // a cupboard against the wall
   grid.at(50, 60) = Cell::occupied;                               // a speck
-  const WallMap map = make_wall_map(grid, 0.1);
+  const LikelihoodField map = make_likelihood_field(grid, 0.1);
   int alone = 0;
   for (const WallPoint& wall : map.walls) {
     if (!wall.stands_alone) continue;
