@@ -124,10 +124,15 @@ TEST(Simulate, TiersTellHowMuchWallTwoMapsShare) {
   options.clutter = 0.0;
   options.width = 40.0;
   options.overlap = 0.8;
-  EXPECT_EQ(simulate(options).pairs.at(0).tier, 'A');
+  const SimulatedPair much = simulate(options).pairs.at(0);
+  EXPECT_EQ(much.tier, 'A');
+  EXPECT_GE(much.shared_wall, 20.0);
   options.overlap = 0.05;
   const Simulation apart = simulate(options);
-  for (const SimulatedPair& pair : apart.pairs) EXPECT_NE(pair.tier, 'A');
+  for (const SimulatedPair& pair : apart.pairs) {
+    EXPECT_NE(pair.tier, 'A');
+    EXPECT_LT(pair.shared_wall, much.shared_wall);
+  }
 }
 
 TEST(Simulate, NoOverlapMakesStrangers) {
