@@ -59,12 +59,15 @@ struct TopicQos {
 
 /// In the USER_DATA of this program's writers: maps that have it are merged ones.
 inline constexpr std::string_view kMergedMark = "gridmerge=merged;";
+/// Likewise, of recorded maps that this program publishes: it hears them as any robot's.
+inline constexpr std::string_view kPlayedMark = "gridmerge=played;";
 
 /// A reader of a topic, by its name in DDS. Throws as require_dds().
 DdsEntity make_reader(dds_entity_t participant, const TopicType& type, const std::string& topic,
                       const TopicQos& qos);
 
-/// A writer likewise, with `mark` in its USER_DATA.
+/// A writer likewise, with `mark` in its USER_DATA. Readers of the same participant do not hear it, except
+/// where the mark is kPlayedMark.
 DdsEntity make_writer(dds_entity_t participant, const TopicType& type, const std::string& topic,
                       const TopicQos& qos, std::string_view mark = {});
 
