@@ -139,10 +139,16 @@ const std::map<std::string, RawDiagnosis>& Peer::diagnoses() {
   take_all<diagnostic_msgs_msg_dds__DiagnosticArray_>(
       reader_of("/diagnostics", kDiagnosticType, {true, false, 10}),
       [&](const diagnostic_msgs_msg_dds__DiagnosticArray_& sample) {
-        diagnoses_.clear();
+        // The first is of the node itself; those of robots begin with its name.
+        const std::string node = sample.status._length > 0 ? sample.status._buffer[0].name : "";
+        std::erase_if(diagnoses_, [&](const auto& one) {
+          return one.first == node || one.first.starts_with(node + ": ");
+        });
+        ++received_;
         for (std::uint32_t i = 0; i < sample.status._length; ++i) {
           const auto& one = sample.status._buffer[i];
           RawDiagnosis& diagnosis = diagnoses_[one.name];
+          diagnosis.received = received_;
           diagnosis.level = one.level;
           diagnosis.message = one.message;
           for (std::uint32_t j = 0; j < one.values._length; ++j)
