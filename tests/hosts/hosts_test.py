@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """A team without a centre: three hosts, each a network namespace with a robot and a node of its own, on one network.
-Hosts are killed, cut off, and come back; the network loses messages and is slow. All nodes have to publish the same answer
-again, and the one that gridmerge merge gives. Nothing leaves the namespaces.
+Hosts are killed, cut off, and come back; the network loses messages and is slow. All nodes have to publish the same
+answer again, and the one that gridmerge merge gives. Nothing leaves the namespaces.
 
 usage: hosts_test.py --gridmerge BINARY --listener BINARY [--rate R] [SCENARIO...]
 
-It needs root, and ip and tc (Debian: iproute2). Without them it ends with 77. It prints the seconds after which all nodes
-agreed.
+It needs root, and ip and tc (Debian: iproute2). Without them it ends with 77. It prints the seconds after
+which all nodes agreed.
 """
 
 import argparse
