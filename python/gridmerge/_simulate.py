@@ -212,7 +212,13 @@ def _to_simulation(dataset: _core.Dataset) -> Simulation:
         maps=tuple(_to_map(one) for one in dataset.maps),
         pairs=tuple(
             SimulatedPair(
-                pair.fixed, pair.moving, Transform(*pair.transform), pair.tolerance, pair.overlap, pair.tier, pair.shared_wall
+                pair.fixed,
+                pair.moving,
+                Transform(*pair.transform),
+                pair.tolerance,
+                pair.overlap,
+                pair.tier,
+                pair.shared_wall,
             )
             for pair in dataset.pairs
         ),
