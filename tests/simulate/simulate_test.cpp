@@ -118,6 +118,26 @@ TEST(Simulate, EachMapHasAFrameOfItsOwn) {
   EXPECT_GT(*most - *least, 1.5);
 }
 
+TEST(Simulate, RobotsStartFarFromEachOther) {
+  SimulateOptions options = small();
+  options.width = 60.0;
+  options.longest_way = 0.5;
+  const auto mean_distance = [&] {
+    constexpr int kSeeds = 12;
+    double sum = 0.0;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      options.seed = static_cast<std::uint64_t>(seed);
+      const Simulation simulation = simulate(options);
+      const auto start = [&](std::size_t i) { return simulation.maps.at(i).path.front(); };
+      sum += std::hypot(start(0).x - start(1).x, start(0).y - start(1).y);
+    }
+    return sum / kSeeds;
+  };
+  options.robots = 2;
+  // Of two random places along a line the distance is a third of its length; the farther of six is farther.
+  EXPECT_GT(mean_distance(), 0.5 * options.width);
+}
+
 TEST(Simulate, TiersTellHowMuchWallTwoMapsShare) {
   SimulateOptions options = small();
   options.drift = 0.0;
