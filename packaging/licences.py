@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes into a wheel the licences of what it contains besides gridmerge: packaging/wheel.sh runs this.
 
-Nothing is listed by hand. The shared libraries are those that auditwheel put into the wheel. The headers are those that
-the compiler read, by Ninja's record of them. Debian's packages say whose they are and under which licence. What is under
-the GPL alone, or the LGPL, ends this with an error: a wheel that is passed on under Apache-2.0 may not contain it.
+Nothing is listed by hand. The shared libraries are those that auditwheel put into the wheel. The headers are those
+that the compiler read, by Ninja's record of them. Debian's packages say whose they are and under which licence. A part
+whose licences are all of the GPL family ends this with an error.
 """
 
 from __future__ import annotations
@@ -22,8 +22,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 FILE_NAME = "THIRD_PARTY_LICENSES.txt"
-# Whoever has a Python 3 has these, or compiles with them what is nobody's work but the compiler's.
-OF_THE_SYSTEM = re.compile(r"^(libc6-dev|linux-libc-dev|libstdc\+\+-\d+-dev|libgcc-\d+-dev|libpython3\.\d+-dev|libpython3-dev)$")
+# The C and C++ runtime and Python are not in the wheel: who installs it has them.
+OF_THE_SYSTEM = re.compile(
+    r"^(libc6-dev|linux-libc-dev|libstdc\+\+-\d+-dev|libgcc-\d+-dev|libpython3\.\d+-dev|libpython3-dev)$"
+)
 PARAGRAPH = re.compile(r"\n\s*\n")
 
 
@@ -141,7 +143,7 @@ class Contents:
                 raise LicenceError(f"{path}: the compiler read it, and no package has it")
             counts[package] = counts.get(package, 0) + 1
         for package, count in sorted(counts.items()):
-            if not OF_THE_SYSTEM.match(package):
+            if not OF_THE_SYSTEM.fullmatch(package):
                 self.part(debian_part(package)).headers += count
 
     def text(self) -> str:
@@ -150,13 +152,15 @@ class Contents:
         for part in parts:
             if refused := refused_licences(part.copyright):
                 what = ", ".join(sorted(part.libraries)) or f"{part.headers} headers"
-                raise LicenceError(f"{part.name}: {what}: under {'; '.join(refused)}, which the wheel may not contain")
+                raise LicenceError(
+                    f"{part.name}: {what}: under {'; '.join(refused)}, which the wheel may not contain"
+                )
         lines = [
             "What this wheel contains besides gridmerge, whose licence is in LICENSE.",
             "",
-            "Shared libraries are as Debian built them; of the others, headers are compiled into gridmerge. Each part's notice",
-            "is of the whole work that it is from, of which the wheel may contain less. Where a notice offers several licences",
-            "and one is the GPL, the wheel is passed on under another. `apt-get source NAME=VERSION` brings a part's sources.",
+            "Shared libraries are as Debian built them; of the others, headers are compiled into gridmerge. A notice is",
+            "of a whole work, of which the wheel may contain less. Where it offers several licences and one is the GPL,",
+            "the wheel is passed on under another. `apt-get source NAME=VERSION` brings the sources of a part of Debian.",
             "",
         ]
         for part in parts:
@@ -184,7 +188,9 @@ def with_file(wheel: Path, text: str, output: Path) -> None:
         contents = {name: source.read(name) for name in modes}
     info = next(name for name in contents if name.endswith(".dist-info/METADATA")).removesuffix("METADATA")
     metadata = contents[f"{info}METADATA"].decode()
-    listed = re.sub(r"^(License-File: .*\n)", rf"\1License-File: {FILE_NAME}\n", metadata, count=1, flags=re.MULTILINE)
+    listed = re.sub(
+        r"^(License-File: .*\n)", rf"\1License-File: {FILE_NAME}\n", metadata, count=1, flags=re.MULTILINE
+    )
     if listed == metadata:
         raise LicenceError(f"{wheel}: METADATA has no License-File after which another could stand")
     contents[f"{info}METADATA"] = listed.encode()
@@ -206,9 +212,13 @@ def with_file(wheel: Path, text: str, output: Path) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("wheel", type=Path, help="as auditwheel has repaired it")
-    parser.add_argument("--build", type=Path, required=True, help="the folder in which Ninja built its module")
+    parser.add_argument(
+        "--build", type=Path, required=True, help="the folder in which Ninja built its module"
+    )
     parser.add_argument("--own", type=Path, required=True, help="gridmerge's sources, which hold that folder")
-    parser.add_argument("--ceres", type=Path, required=True, help="where the Ceres is that is linked in, with its `copyright`")
+    parser.add_argument(
+        "--ceres", type=Path, required=True, help="folder of the Ceres linked in, with its `copyright`"
+    )
     parser.add_argument("--ceres-version", required=True)
     parser.add_argument("--output", type=Path, required=True, help="folder for the wheel with its licences")
     arguments = parser.parse_args()

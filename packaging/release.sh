@@ -47,7 +47,7 @@ make_ceres() {
     fetch_ceres "$folder"
     tar -x -C "$folder/source" --strip-components=1 -f "$folder/$ceres_archive"
     tar -x -C "$folder/source" -f "$folder/ceres-solver_$ceres_version.debian.tar.xz" debian/copyright
-    CXXFLAGS=-ffile-prefix-map=$PWD=. cmake -G Ninja -S "$folder/source" -B "$folder/build" -DCMAKE_INSTALL_PREFIX="$PWD/$prefix" "${ceres_options[@]}"
+    cmake -G Ninja -S "$folder/source" -B "$folder/build" -DCMAKE_INSTALL_PREFIX="$PWD/$prefix" "${ceres_options[@]}"
     cmake --build "$folder/build" --parallel "$jobs"
     cmake --install "$folder/build"
   } >"$folder/ceres.log" 2>&1 || { tail -n 40 "$folder/ceres.log"; die "release: Ceres: the above"; }
@@ -59,11 +59,20 @@ make_ceres() {
 # release_sources NAME: the tree NAME in the release's folder, and packed.
 release_sources() {
   local folder=$release_folder name=$1
+  configure release
+  cmake --build build/release --target web/page_template.cpp
   git archive --prefix="$name/" HEAD | tar -x -C "$folder"
   mkdir "$folder/$name/web/bundled"
   cp build/release/web/page_template.cpp "$folder/$name/web/bundled/"
   tar -C "$folder" --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner --mode=go=rX,u+rw -c "$name" |
     gzip -9 -n >"$folder/$name.tar.gz"
+}
+
+# merge_example PROGRAM: the merge of the example, held against the same one in a bare system: in the folder `expected`.
+merge_example() {
+  local code=0
+  "$1" merge examples/three_robots/{robot_1,robot_2,robot_3,elsewhere}.yaml --quiet -o "$release_folder/expected" || code=$?
+  ((code == 3)) || die "release: the example's merge was to leave one map out (exit code 3), but ended with exit code $code"
 }
 
 # release_debs NAME
@@ -75,31 +84,32 @@ release_debs() {
   cmake --build "$folder/build" --parallel "$jobs"
   (cd "$folder" && cpack --config build/CPackConfig.cmake -B debian >cpack.log) || { cat "$folder/cpack.log"; die "cpack: the above"; }
   mv "$folder"/debian/*.deb "$folder"
-  rm -rf "$folder/debian" "$folder/build"
+  merge_example "$folder/build/bin/gridmerge"
+  rm -rf "$folder/debian" "$folder/build" "${folder:?}/$name"
   lintian --fail-on error "$folder"/*.deb
 }
 
 # release_python NAME: an sdist of the packed sources, and of the sdist a wheel that has what it needs with it.
 release_python() {
-  local folder=$PWD/$release_folder name=$1 venv=$PWD/build/release-venv sources
+  local folder=$PWD/$release_folder name=$1 venv=$PWD/build/release-venv sources=$PWD/$release_folder/$1
   make_venv "$venv" "$(<packaging/requirements.txt)" --requirement packaging/requirements.txt
   make_ceres
   say "Making the Python sdist (output: $release_folder/python)"
-  "$venv/bin/python" -m build --sdist --no-isolation --outdir "$folder/python" "$folder/$name" >"$folder/sdist.log" 2>&1 ||
+  tar -x -C "$folder" -f "$folder/$name.tar.gz"
+  "$venv/bin/python" -m build --sdist --no-isolation --outdir "$folder/python" "$sources" >"$folder/sdist.log" 2>&1 ||
     { tail -n 40 "$folder/sdist.log"; die "release: the sdist: the above"; }
-  mkdir "$folder/sdist"
-  tar -x -C "$folder/sdist" -f "$folder/python/$name.tar.gz"
-  sources=$folder/sdist/$name
+  # The sdist's sources lie where those of the packages lay: what was compiled there is in the compiler's cache.
+  rm -rf "$sources"
+  tar -x -C "$folder" -f "$folder/python/$name.tar.gz"
   say "Building the wheel from it (log: $release_folder/wheel.log)"
-  # Its sources lie in one place each time, and the module names no folder of this machine.
-  CXXFLAGS=-ffile-prefix-map=$PWD=. CMAKE_PREFIX_PATH=$PWD/build/third-party/ceres CMAKE_BUILD_PARALLEL_LEVEL=$jobs "$venv/bin/pip" wheel --verbose \
+  CMAKE_PREFIX_PATH=$PWD/build/third-party/ceres CMAKE_BUILD_PARALLEL_LEVEL=$jobs "$venv/bin/pip" wheel --verbose \
     --disable-pip-version-check --no-build-isolation --no-deps --wheel-dir "$folder/plain" "$sources" >"$folder/wheel.log" 2>&1 ||
     { tail -n 40 "$folder/wheel.log"; die "release: the wheel: the above"; }
   PATH=$venv/bin:$PATH "$venv/bin/auditwheel" repair --plat auto --wheel-dir "$folder/repaired" "$folder"/plain/*.whl >>"$folder/wheel.log" 2>&1 ||
     { tail -n 40 "$folder/wheel.log"; die "release: auditwheel: the above"; }
   "$venv/bin/python" packaging/licences.py "$folder"/repaired/*.whl --build "$sources"/build/python/* --own "$sources" \
     --ceres build/third-party/ceres --ceres-version "$ceres_version" --output "$folder/python"
-  rm -rf "$folder/sdist" "$folder/plain" "$folder/repaired"
+  rm -rf "$sources" "$folder/plain" "$folder/repaired"
   "$venv/bin/twine" check --strict "$folder"/python/*
 }
 
@@ -152,9 +162,6 @@ check_release() {
     say "Not tried in bare systems: that takes root"
     return
   fi
-  rm -rf "$release_folder/expected"
-  (cd examples/three_robots && ../../build/release/bin/gridmerge merge "${maps[@]}" --quiet -o "../../$release_folder/expected") || (($? == 3))
-
   say "Trying the package gridmerge in a bare Debian 12"
   fresh_root bookworm /release/gridmerge_*.deb
   in_root sh -c "cd /maps && gridmerge merge ${maps[*]} -o /merged; [ \$? = 3 ]"
@@ -181,13 +188,12 @@ check_release() {
     check_merge "$root/merged/transforms.json"
     chroot "$root" python3 --version
   done
-  rm -rf "$root" "$release_folder/expected"
+  rm -rf "$root"
 }
 
 # The last commit's sources, packed: nothing that is not committed is in them.
 cmd_release() {
   install_missing "${build_packages[@]}" "${python_packages[@]}" "${release_packages[@]}"
-  build release gridmerge_cli
   local version name folder=$release_folder
   version=$(sed -n 's/^project(gridmerge VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
   name=gridmerge-$version
@@ -196,12 +202,13 @@ cmd_release() {
   [[ -z $(git status --porcelain) ]] || say "There are changes that are not committed: they are left out"
   rm -rf "$folder"
   mkdir -p "$folder"
-  use_ccache
   release_sources "$name"
+  # What is compiled names no folder of this machine.
+  export CXXFLAGS=-ffile-prefix-map=$PWD=.
   release_debs "$name"
   release_python "$name"
-  rm -rf "${folder:?}/$name"
   check_release
+  rm -rf "$folder/expected"
   say "Made:"
   (cd "$folder" && sha256sum -- *.tar.gz *.deb python/*)
 }

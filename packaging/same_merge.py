@@ -7,6 +7,7 @@ A wheel brings a Ceres of its own, whose last bits may differ from those of Debi
 import json
 import math
 import sys
+from pathlib import Path
 
 TOLERANCE = 1e-6  # metres, radians, and shares; probabilities are given with six digits
 
@@ -17,14 +18,17 @@ def differences(expected: object, found: object, where: str) -> list[str]:
     if isinstance(expected, list) and isinstance(found, list) and len(expected) == len(found):
         pairs = enumerate(zip(expected, found, strict=True))
         return [text for at, (one, other) in pairs for text in differences(one, other, f"{where}[{at}]")]
-    numbers = isinstance(expected, int | float) and isinstance(found, int | float)
-    if expected == found or (numbers and math.isclose(expected, found, rel_tol=TOLERANCE, abs_tol=TOLERANCE)):
+    if isinstance(expected, int | float) and isinstance(found, int | float):
+        same = math.isclose(expected, found, rel_tol=TOLERANCE, abs_tol=TOLERANCE)
+    else:
+        same = expected == found
+    if same:
         return []
     return [f"{where}: {expected!r} here, {found!r} there"]
 
 
 def main() -> int:
-    first, second = (open(name, encoding="utf-8").read() for name in sys.argv[1:3])
+    first, second = (Path(name).read_text(encoding="utf-8") for name in sys.argv[1:3])
     found = differences(json.loads(first), json.loads(second), "")
     for text in found:
         print(text)
