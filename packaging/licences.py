@@ -23,9 +23,7 @@ from pathlib import Path
 
 FILE_NAME = "THIRD_PARTY_LICENSES.txt"
 # The C and C++ runtime and Python are not in the wheel: who installs it has them.
-OF_THE_SYSTEM = re.compile(
-    r"^(libc6-dev|linux-libc-dev|libstdc\+\+-\d+-dev|libgcc-\d+-dev|libpython3\.\d+-dev|libpython3-dev)$"
-)
+OF_THE_SYSTEM = re.compile(r"(libc6|linux-libc|libstdc\+\+-\d+|libgcc-\d+|libpython3(\.\d+)?)-dev")
 PARAGRAPH = re.compile(r"\n\s*\n")
 
 
@@ -158,9 +156,10 @@ class Contents:
         lines = [
             "What this wheel contains besides gridmerge, whose licence is in LICENSE.",
             "",
-            "Shared libraries are as Debian built them; of the others, headers are compiled into gridmerge. A notice is",
-            "of a whole work, of which the wheel may contain less. Where it offers several licences and one is the GPL,",
-            "the wheel is passed on under another. `apt-get source NAME=VERSION` brings the sources of a part of Debian.",
+            "Shared libraries are as Debian built them; headers of the others are compiled into gridmerge.",
+            "A notice is of a whole work, of which the wheel may contain less. Where it offers several licences",
+            "and one is the GPL, the wheel is passed on under another. `apt-get source NAME=VERSION` brings the",
+            "sources of a part of Debian.",
             "",
         ]
         for part in parts:
