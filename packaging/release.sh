@@ -60,7 +60,7 @@ make_ceres() {
 release_sources() {
   local folder=$release_folder name=$1
   configure release
-  cmake --build build/release --target web/page_template.cpp
+  cmake --build build/release --target gridmerge_page
   git archive --prefix="$name/" HEAD | tar -x -C "$folder"
   mkdir "$folder/$name/web/bundled"
   cp build/release/web/page_template.cpp "$folder/$name/web/bundled/"
