@@ -79,13 +79,15 @@ merge_example() {
 release_debs() {
   local folder=$release_folder name=$1
   say "Building Debian packages from $folder/$name.tar.gz"
-  cmake -G Ninja -S "$folder/$name" -B "$folder/build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DGRIDMERGE_BUILD_TESTS=OFF \
+  # Folders lie to each other as those of the project's other builds do, whose compiler cache serves this one.
+  local build=$folder/$name/build/release
+  cmake -G Ninja -S "$folder/$name" -B "$build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DGRIDMERGE_BUILD_TESTS=OFF \
     --log-level=WARNING
-  cmake --build "$folder/build" --parallel "$jobs"
-  (cd "$folder" && cpack --config build/CPackConfig.cmake -B debian >cpack.log) || { cat "$folder/cpack.log"; die "cpack: the above"; }
+  cmake --build "$build" --parallel "$jobs"
+  (cd "$folder" && cpack --config "$name/build/release/CPackConfig.cmake" -B debian >cpack.log) || { cat "$folder/cpack.log"; die "cpack: the above"; }
   mv "$folder"/debian/*.deb "$folder"
-  merge_example "$folder/build/bin/gridmerge"
-  rm -rf "$folder/debian" "$folder/build" "${folder:?}/$name"
+  merge_example "$build/bin/gridmerge"
+  rm -rf "$folder/debian" "${folder:?}/$name"
   lintian --fail-on error "$folder"/*.deb
 }
 
@@ -98,7 +100,6 @@ release_python() {
   tar -x -C "$folder" -f "$folder/$name.tar.gz"
   "$venv/bin/python" -m build --sdist --no-isolation --outdir "$folder/python" "$sources" >"$folder/sdist.log" 2>&1 ||
     { tail -n 40 "$folder/sdist.log"; die "release: the sdist: the above"; }
-  # The sdist's sources lie where those of the packages lay: what was compiled there is in the compiler's cache.
   rm -rf "$sources"
   tar -x -C "$folder" -f "$folder/python/$name.tar.gz"
   say "Building the wheel from it (log: $release_folder/wheel.log)"
@@ -203,8 +204,6 @@ cmd_release() {
   rm -rf "$folder"
   mkdir -p "$folder"
   release_sources "$name"
-  # What is compiled names no folder of this machine.
-  export CXXFLAGS=-ffile-prefix-map=$PWD=.
   release_debs "$name"
   release_python "$name"
   check_release
