@@ -4,6 +4,7 @@
 
 release_packages=(dpkg-dev lintian debootstrap)
 release_folder=build/package
+example_maps=(robot_1.yaml robot_2.yaml robot_3.yaml elsewhere.yaml)
 
 # Debian 12's sources of Ceres, by version and checksum. Debian's own library takes SuiteSparse, which is GPL in parts.
 ceres_version=2.1.0+really2.1.0+dfsg-1
@@ -70,8 +71,8 @@ release_sources() {
 
 # merge_example PROGRAM: the merge of the example, held against the same one in a bare system: in the folder `expected`.
 merge_example() {
-  local code=0
-  "$1" merge examples/three_robots/{robot_1,robot_2,robot_3,elsewhere}.yaml --quiet -o "$release_folder/expected" || code=$?
+  local code=0 program=$PWD/$1 output=$PWD/$release_folder/expected
+  (cd examples/three_robots && "$program" merge "${example_maps[@]}" --quiet -o "$output") || code=$?
   ((code == 3)) || die "release: the example's merge was to leave one map out (exit code 3), but ended with exit code $code"
 }
 
@@ -127,7 +128,7 @@ make_root() {
   touch "$root/made"
 }
 
-# fresh_root SUITE PACKAGE...: a copy of the bare root in build/roots/tried with these packages alone, and with this
+# fresh_root SUITE PACKAGE...: a copy of the bare root in build/roots/tried with these packages (or files) alone, and with this
 # machine's settings for apt, pip, names and certificates; the example's maps are in /maps, the release's files in /release.
 fresh_root() {
   local suite=$1 root=build/roots/tried setting
@@ -136,13 +137,14 @@ fresh_root() {
   rm -rf "$root"
   cp -a "build/roots/$suite" "$root"
   for setting in /etc/apt/apt.conf.d /etc/ssl/certs /etc/pip.conf /etc/resolv.conf /etc/hosts; do
+    mkdir -p "$root/${setting%/*}"
     [[ ! -e $setting ]] || cp -rL --remove-destination "$setting" "$root/${setting%/*}/"
   done
   mkdir "$root/maps" "$root/release"
   cp examples/three_robots/*.{yaml,pgm} "$root/maps/"
   cp "$release_folder"/*.deb "$release_folder"/python/* "$root/release/"
   in_root apt-get update
-  in_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "$@"
+  in_root sh -c "DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $*"
 }
 
 # in_root COMMAND...: its output is shown if it fails.
@@ -158,21 +160,20 @@ check_merge() {
 
 # check_release: everything as somebody without this machine has it. Roots need root.
 check_release() {
-  local maps=(robot_1.yaml robot_2.yaml robot_3.yaml elsewhere.yaml) root=build/roots/tried suite
+  local root=build/roots/tried suite more
   if ((EUID != 0)); then
     say "Not tried in bare systems: that takes root"
     return
   fi
   say "Trying the package gridmerge in a bare Debian 12"
-  fresh_root bookworm /release/gridmerge_*.deb
-  in_root sh -c "cd /maps && gridmerge merge ${maps[*]} -o /merged; [ \$? = 3 ]"
+  fresh_root bookworm '/release/gridmerge_*.deb'
+  in_root sh -c "cd /maps && gridmerge merge ${example_maps[*]} -o /merged; [ \$? = 3 ]"
   check_merge "$root/merged/transforms.json"
 
   say "Trying the package libgridmerge-dev in a bare Debian 12, with no library but oneTBB"
-  fresh_root bookworm /release/libgridmerge-dev_*.deb g++ cmake make
-  if chroot "$root" dpkg-query -W libeigen3-dev libceres-dev libyaml-cpp-dev libfmt-dev >/dev/null 2>&1; then
-    die "release: libgridmerge-dev brings more than the core needs"
-  fi
+  fresh_root bookworm '/release/libgridmerge-dev_*.deb' g++ cmake make
+  more=$(chroot "$root" dpkg-query --show libeigen3-dev libceres-dev libyaml-cpp-dev libpng-dev libfmt-dev 2>/dev/null || true)
+  [[ -z $more ]] || die "release: libgridmerge-dev brings more than the core takes: $more"
   cp -r tests/install/consumer "$root/consumer"
   in_root cmake -S /consumer -B /built -D COMPONENT=core
   in_root cmake --build /built
@@ -185,7 +186,7 @@ check_release() {
     python3 -c 'import sys; from PIL import Image; Image.open(sys.argv[1]).save(sys.argv[2])' "$root/maps/robot_2.pgm" "$root/maps/robot_2.png"
     sed 's/robot_2\.pgm/robot_2.png/' "$root/maps/robot_2.yaml" >"$root/maps/png.yaml"
     in_root sh -c 'pip install --break-system-packages --only-binary :all: /release/*.whl'
-    in_root sh -c "cd /maps && python3 /try_wheel.py ${maps[*]}"
+    in_root sh -c "cd /maps && python3 /try_wheel.py ${example_maps[*]}"
     check_merge "$root/merged/transforms.json"
     chroot "$root" python3 --version
   done
