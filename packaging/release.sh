@@ -72,7 +72,7 @@ release_sources() {
 # merge_example PROGRAM: the merge of the example, held against the same one in a bare system: in the folder `expected`.
 merge_example() {
   local code=0 program=$PWD/$1 output=$PWD/$release_folder/expected
-  (cd examples/three_robots && "$program" merge "${example_maps[@]}" --quiet -o "$output") || code=$?
+  (cd examples/three_robots && "$program" merge "${example_maps[@]}" --quiet -o "$output" >/dev/null) || code=$?
   ((code == 3)) || die "release: the example's merge was to leave one map out (exit code 3), but ended with exit code $code"
 }
 
