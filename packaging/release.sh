@@ -158,18 +158,15 @@ check_merge() {
   python3 packaging/same_merge.py "$release_folder/expected/transforms.json" "$1"
 }
 
-# check_release: everything as somebody without this machine has it. Roots need root.
-check_release() {
-  local root=build/roots/tried suite more
-  if ((EUID != 0)); then
-    say "Not tried in bare systems: that takes root"
-    return
-  fi
+check_tool() {
   say "Trying the package gridmerge in a bare Debian 12"
   fresh_root bookworm '/release/gridmerge_*.deb'
   in_root sh -c "cd /maps && gridmerge merge ${example_maps[*]} -o /merged; [ \$? = 3 ]"
-  check_merge "$root/merged/transforms.json"
+  check_merge build/roots/tried/merged/transforms.json
+}
 
+check_libraries() {
+  local root=build/roots/tried more
   say "Trying the package libgridmerge-dev in a bare Debian 12, with no library but oneTBB"
   fresh_root bookworm '/release/libgridmerge-dev_*.deb' g++ cmake make
   more=$(chroot "$root" dpkg-query --show libeigen3-dev libceres-dev libyaml-cpp-dev libpng-dev libfmt-dev 2>/dev/null || true)
@@ -178,19 +175,33 @@ check_release() {
   in_root cmake -S /consumer -B /built -D COMPONENT=core
   in_root cmake --build /built
   in_root /built/consumer
+}
 
-  for suite in bookworm trixie; do
-    say "Trying the wheel in a bare Debian '$suite'"
-    fresh_root "$suite" python3-numpy python3-pip
-    cp packaging/try_wheel.py "$root/"
-    python3 -c 'import sys; from PIL import Image; Image.open(sys.argv[1]).save(sys.argv[2])' "$root/maps/robot_2.pgm" "$root/maps/robot_2.png"
-    sed 's/robot_2\.pgm/robot_2.png/' "$root/maps/robot_2.yaml" >"$root/maps/png.yaml"
-    in_root sh -c 'pip install --break-system-packages --only-binary :all: /release/*.whl'
-    in_root sh -c "cd /maps && python3 /try_wheel.py ${example_maps[*]}"
-    check_merge "$root/merged/transforms.json"
-    chroot "$root" python3 --version
-  done
-  rm -rf "$root"
+# check_wheel SUITE: with that Debian's own Python and numpy, of which each has another version.
+check_wheel() {
+  local suite=$1 root=build/roots/tried
+  say "Trying the wheel in a bare Debian '$suite'"
+  fresh_root "$suite" python3-numpy python3-pip
+  cp packaging/try_wheel.py "$root/"
+  python3 -c 'import sys; from PIL import Image; Image.open(sys.argv[1]).save(sys.argv[2])' "$root/maps/robot_2.pgm" "$root/maps/robot_2.png"
+  sed 's/robot_2\.pgm/robot_2.png/' "$root/maps/robot_2.yaml" >"$root/maps/png.yaml"
+  in_root sh -c 'pip install --break-system-packages --only-binary :all: /release/*.whl'
+  in_root sh -c "cd /maps && python3 /try_wheel.py ${example_maps[*]}"
+  check_merge "$root/merged/transforms.json"
+  chroot "$root" python3 --version
+}
+
+# check_release: everything as somebody without this machine has it. Roots need root.
+check_release() {
+  if ((EUID != 0)); then
+    say "Not tried in bare systems: that takes root"
+    return
+  fi
+  check_tool
+  check_libraries
+  check_wheel bookworm
+  check_wheel trixie
+  rm -rf build/roots/tried
 }
 
 # The last commit's sources, packed: nothing that is not committed is in them.
