@@ -149,7 +149,7 @@ class Contents:
         parts = sorted(self.parts.values(), key=lambda part: part.name)
         for part in parts:
             if refused := refused_licences(part.copyright):
-                what = ", ".join(sorted(part.libraries)) or f"{part.headers} headers"
+                what = ", ".join(sorted(part.libraries)) or f"headers ({part.headers} files)"
                 raise LicenceError(
                     f"{part.name}: {what}: under {'; '.join(refused)}, which the wheel may not contain"
                 )
@@ -163,7 +163,8 @@ class Contents:
             "",
         ]
         for part in parts:
-            contained = [*sorted(part.libraries), *([f"{part.headers} headers"] if part.headers else [])]
+            headers = [f"headers ({part.headers} files)"] if part.headers else []
+            contained = [*sorted(part.libraries), *headers]
             licences = "; ".join(licences_of(part.copyright)) or "see its notice"
             lines.append(f"- {part.name} {part.version}: {', '.join(contained)}. Licence: {licences}")
         for part in parts:

@@ -71,7 +71,7 @@ def test_the_text_names_each_part_and_has_its_notice() -> None:
     part.libraries.add("libthing-01234567.so.1")
     part.headers = 3
     text = contents.text()
-    assert "- thing 1.2: libthing-01234567.so.1, 3 headers. Licence: Expat\n" in text
+    assert "- thing 1.2: libthing-01234567.so.1, headers (3 files). Licence: Expat\n" in text
     assert "Upstream-Name: x" in text
 
 
