@@ -128,23 +128,29 @@ make_root() {
   touch "$root/made"
 }
 
-# fresh_root SUITE PACKAGE...: a copy of the bare root in build/roots/tried with these packages (or files) alone, and with this
-# machine's settings for apt, pip, names and certificates; the example's maps are in /maps, the release's files in /release.
-fresh_root() {
-  local suite=$1 root=build/roots/tried setting
-  shift
-  make_root "$suite"
-  rm -rf "$root"
-  cp -a "build/roots/$suite" "$root"
+copy_settings() {
+  local root=build/roots/tried setting
   for setting in /etc/apt/apt.conf.d /etc/ssl/certs /etc/pip.conf /etc/resolv.conf /etc/hosts; do
     mkdir -p "$root/${setting%/*}"
     [[ ! -e $setting ]] || cp -rL --remove-destination "$setting" "$root/${setting%/*}/"
   done
+}
+
+# fresh_root SUITE PACKAGE...: a copy of the bare root in build/roots/tried with these packages (or files) alone, and with this
+# machine's settings for apt, pip, names and certificates; the example's maps are in /maps, the release's files in /release.
+fresh_root() {
+  local suite=$1 root=build/roots/tried
+  shift
+  make_root "$suite"
+  rm -rf "$root"
+  cp -a "build/roots/$suite" "$root"
+  copy_settings
   mkdir "$root/maps" "$root/release"
   cp examples/three_robots/*.{yaml,pgm} "$root/maps/"
   cp "$release_folder"/*.deb "$release_folder"/python/* "$root/release/"
   in_root apt-get update
   in_root sh -c "DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $*"
+  copy_settings  # installing ca-certificates makes its own
 }
 
 # in_root COMMAND...: its output is shown if it fails.
