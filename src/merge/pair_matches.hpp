@@ -26,6 +26,9 @@ class PairMatches {
   void add(std::vector<Pair> pairs, const FindMap& find_map, const MatchOptions& options,
            const Progress& progress);
 
+  /// Takes a match of the pair as its maps are now.
+  void keep(const Pair& pair, MatchResult match);
+
   bool holds(MapId a, MapId b) const;
   /// Whether it holds the pair as its maps are now.
   bool is_up_to_date(MapId a, MapId b) const;
