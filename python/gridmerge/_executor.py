@@ -127,9 +127,7 @@ class MatchingExecutor:
                     try:
                         future = self._start(task)
                     except Exception as error:
-                        raise self._error(
-                            f"takes no task: {_describe(error)}", made, total
-                        ) from error
+                        raise self._error(f"takes no task: {_describe(error)}", made, total) from error
                     running[future] = task
                     future.add_done_callback(done.put)
                 try:
@@ -255,8 +253,11 @@ def match_due(
         ]
         if not wanted:
             return
-        total = len(wanted)
-        executor.make(wanted, None if progress is None else lambda made: progress(made / total))
+        executor.make(wanted, None if progress is None else _share_of(len(wanted), progress))
+
+
+def _share_of(total: int, progress: Callable[[float], object]) -> Callable[[int], object]:
+    return lambda made: progress(made / total)
 
 
 def _hand_in(merger: _core.Merger, fixed: int, moving: int, search: str) -> Callable[[bytes], object]:
@@ -266,7 +267,5 @@ def _hand_in(merger: _core.Merger, fixed: int, moving: int, search: str) -> Call
 def check(executor: Executor | None) -> Executor | None:
     """An argument that is one, or None."""
     if executor is not None and not callable(getattr(executor, "submit", None)):
-        raise TypeError(
-            f"executor: must be a concurrent.futures.Executor, is {_arguments.kind_of(executor)}"
-        )
+        raise TypeError(f"executor: must be a concurrent.futures.Executor, is {_arguments.kind_of(executor)}")
     return executor

@@ -146,9 +146,7 @@ class Merger:
         in this order."""
         return tuple(self._maps)
 
-    def solve(
-        self, *, executor: Executor | None = None, progress: Progress | None = None
-    ) -> MergeResult:
+    def solve(self, *, executor: Executor | None = None, progress: Progress | None = None) -> MergeResult:
         """Matches the pairs that are new or have changed, and merges: seconds to minutes for many maps.
 
         An executor makes the matches, as for merge(). Those that it has made when it fails are kept, and the next

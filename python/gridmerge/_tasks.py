@@ -57,7 +57,12 @@ class _FileChanged(Exception):
 
 
 def match_pairs(
-    engine: str, number: int, maps: Sequence[MapSpec], pairs: Sequence[PairSpec], accept: float, hypotheses: int
+    engine: str,
+    number: int,
+    maps: Sequence[MapSpec],
+    pairs: Sequence[PairSpec],
+    accept: float,
+    hypotheses: int,
 ) -> Answer:
     """The matches of these pairs, with one thread. Depends on nothing but its arguments, and changes nothing."""
     if engine != _core.engine_id():

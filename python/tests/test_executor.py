@@ -180,7 +180,7 @@ def test_paths_hold_wherever_the_program_goes(
     folder = Path(four[0]).parent
     monkeypatch.chdir(folder)
     inline = Inline()
-    inline.fail = lambda number: os.chdir(tmp_path)  # type: ignore[func-returns-value]
+    inline.fail = lambda number: os.chdir(tmp_path)
     result = gridmerge.merge([Path(path).name for path in four], executor=inline)
     assert [component.members[0].map for component in result.components] == [0]
 
@@ -197,7 +197,8 @@ def test_a_task_that_fails_again_and_again_is_an_error_that_names_the_executor(r
 
 
 @pytest.mark.parametrize(
-    "answer", [None, 7, ("matches", 0, "x"), ("matches", 99, []), ("matches", 0, [b"no match"]), ("matches", 0, [])]
+    "answer",
+    [None, 7, ("matches", 0, "x"), ("matches", 99, []), ("matches", 0, [b"no match"]), ("matches", 0, [])],
 )
 def test_an_answer_that_is_none_is_a_failure(answer: Any, robots: list[str]) -> None:
     class Wrong(Executor):
@@ -232,9 +233,7 @@ def test_a_pool_whose_process_is_killed_is_named(robots: list[str], tmp_path: Pa
         assert merger.solve(executor=executor).complete
 
 
-def test_a_worker_of_another_version_is_refused(
-    robots: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_worker_of_another_version_is_refused(robots: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     class Older(Inline):
         def submit(self, task: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
             with monkeypatch.context() as other:
@@ -242,7 +241,10 @@ def test_a_worker_of_another_version_is_refused(
                 return super().submit(task, *args, **kwargs)
 
     with pytest.raises(
-        gridmerge.ExecutorError, match=re.escape(f"has the engine 0.0.9+0123456789abcdef of gridmerge, and this is {_core.engine_id()}")
+        gridmerge.ExecutorError,
+        match=re.escape(
+            f"has the engine 0.0.9+0123456789abcdef of gridmerge, and this is {_core.engine_id()}"
+        ),
     ):
         gridmerge.merge(robots, executor=Older())
 
@@ -261,7 +263,7 @@ def own(robots: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> l
 
 def test_a_file_that_vanishes_is_named(own: list[str]) -> None:
     inline = Inline()
-    inline.fail = lambda number: os.remove(own[0]) if number == 1 else None  # type: ignore[func-returns-value]
+    inline.fail = lambda number: os.remove(own[0]) if number == 1 else None
     with pytest.raises(gridmerge.FileError, match=re.escape(own[0])):
         gridmerge.merge(own, executor=inline)
 
@@ -273,7 +275,7 @@ def test_a_file_that_changes_is_named(own: list[str], elsewhere: str) -> None:
         if number == 1:
             gridmerge.save(gridmerge.load(elsewhere), own[1])
 
-    inline.fail = change  # type: ignore[assignment]
+    inline.fail = change
     with pytest.raises(
         gridmerge.FileError, match=re.escape(own[1]) + ": is not the map that it was when the work began"
     ):
@@ -337,7 +339,7 @@ def without_times(json: str) -> str:
 
 
 def test_an_evaluation_is_the_same(team_folder: Path) -> None:
-    tables = {"pairs": team_folder / "pairs.tsv", "sets": team_folder / "sets.tsv"}
+    tables: dict[str, Any] = {"pairs": team_folder / "pairs.tsv", "sets": team_folder / "sets.tsv"}
     shares: list[float] = []
     with ProcessPoolExecutor(2) as executor:
         told = gridmerge.evaluate(**tables, executor=executor, progress=shares.append)

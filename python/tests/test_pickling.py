@@ -22,9 +22,7 @@ def files_of(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-def test_a_result_is_the_same_with_all_that_it_writes(
-    result: gridmerge.MergeResult, tmp_path: Path
-) -> None:
+def test_a_result_is_the_same_with_all_that_it_writes(result: gridmerge.MergeResult, tmp_path: Path) -> None:
     again = pickle.loads(pickle.dumps(result))
     assert again == result
     assert again.maps == result.maps and again.names == result.names
@@ -92,7 +90,9 @@ def test_another_process_reads_them(result: gridmerge.MergeResult, tmp_path: Pat
         "import pickle, sys; r = pickle.load(open(sys.argv[1], 'rb')); "
         "print(len(r.components[0].members), len(r.joins))"
     )
-    ran = subprocess.run([sys.executable, "-c", program, str(file)], capture_output=True, text=True, check=True)
+    ran = subprocess.run(
+        [sys.executable, "-c", program, str(file)], capture_output=True, text=True, check=True
+    )
     assert ran.stdout == f"{len(result.components[0].members)} {len(result.joins)}\n"
 
 
