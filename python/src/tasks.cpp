@@ -49,7 +49,7 @@ Map load_regular(const nb::bytes& path, double resolution, bool literal_threshol
 }  // namespace
 
 void bind_tasks(nb::module_& module) {
-  nb::class_<Prepared>(module, "Prepared");
+  [[maybe_unused]] const nb::class_<Prepared> prepared(module, "Prepared");
   module.def("engine_id", &engine_id);
   module.def(
       "content_id",
