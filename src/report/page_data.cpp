@@ -10,6 +10,7 @@
 #include "gridmerge/report/preview.hpp"
 #include "gridmerge/version.hpp"
 #include "report/shown_map.hpp"
+#include "report/told_joins.hpp"
 #include "report/wording.hpp"
 
 namespace gridmerge::internal {
@@ -61,7 +62,7 @@ Json join_json(const Join& join) {
             {"transform", transform_json(join.T_fixed_moving)},
             {"probability", number_json(join.probability)}};
   json.update(common_json(join));
-  json["hypotheses"] = hypotheses_json(join);
+  json["hypotheses"] = hypotheses_json(told_hypotheses(join, true));
   return json;
 }
 
