@@ -246,8 +246,7 @@ class RecordReader {
     static_cast<PairPose&>(join) = read_pair_pose(json);
     join.match = read_match(json, join);
     // Where it is known, and not in what earlier versions wrote.
-    if (join.used() && json.has("sd"))
-      set_deviation(join, json.at("sd").number_in(0.0, kInfinity));
+    if (join.used() && json.has("sd")) set_deviation(join, json.at("sd").number_in(0.0, kInfinity));
     const JsonReader reason = json.at("reason");
     const Reason told = reason.is_null() ? Reason::none : read_reason(reason);
     if (told != join.reason() && json.has("by_themselves")) reason.fail("does not go with the outcome");
