@@ -81,6 +81,16 @@ export class Stage {
     else this.look({ width, height, center: aim.center, scale: Math.min(width, height) / aim.metres });
   }
 
+  /** A map of the scene, with what lies around it. */
+  lookAtMap(map: number): void {
+    const pose = this.state.poseOf(map);
+    const grid = this.state.grids[map];
+    if (!pose || !grid) return;
+    const { left, bottom, right, top } = boxAround(grid.corners(pose));
+    const margin = 0.5 * Math.max(right - left, top - bottom);
+    this.look(fit({ left: left - margin, bottom: bottom - margin, right: right + margin, top: top + margin }, this.view.width, this.view.height));
+  }
+
   /** What is seen, as a PNG, when all of it is drawn. */
   picture(): Promise<Blob | null> {
     this.draw(Infinity);
