@@ -96,7 +96,7 @@ export function fleet(count: number): string {
     }];
   }));
   const rows = [...Array(Math.min(5000, 5 * count)).keys()].map((i) =>
-    [i % (placed - 60), (i % (placed - 60)) + 50, "ambiguous", 0.01 + 0.0001 * (i % 100), 1, 2, 0.5]);
+    [i % (placed - 60), (i % (placed - 60)) + 50 + Math.floor(i / (placed - 60)), "ambiguous", 0.01 + 0.0001 * (i % 100), 1, 2, 0.5]);
   writeFileSync(join(folder, "transforms.json"), JSON.stringify({
     maps: names, components, joins,
     refused: {

@@ -122,10 +122,15 @@ function notice(): { element: HTMLElement; say(text: string): void } {
   };
 }
 
-/** The grids one after the other, those that are seen first first; what they were unpacked from is let go. */
+/**
+ * The grids, those that are seen first first; what they were unpacked from is let go. Of many maps the merged ones come first,
+ * and the page is ready with them; the others follow, those that are asked for meanwhile first.
+ */
 async function unpackAll(state: State): Promise<void> {
   const { report } = state;
+  const large = isLarge(report);
   const damaged: string[] = [];
+  let due = 0;
   const each = async (name: string, packed: PackedGrid, keep: (grid: Grid) => void) => {
     try {
       keep(await unpack(packed));
@@ -133,30 +138,42 @@ async function unpackAll(state: State): Promise<void> {
       damaged.push(`${name} (${error instanceof Error ? error.message : String(error)})`);
     }
     packed.cells = "";
+    // Of many maps not after each: what listens would take longer than unpacking.
     if (performance.now() < due) return;
+    if (large) due = performance.now() + pause;
     state.changed("grids");
-    // Of many maps not after each: what listens would take longer than unpacking. And what is asked for meanwhile comes first.
-    if (isLarge(report)) {
-      await new Promise((done) => setTimeout(done));
-      due = performance.now() + pause;
-    }
   };
-  let due = 0;
-  const first = new Set(state.scene.placed.map(({ map }) => map));
-  const order = [...report.maps.keys()].sort((a, b) => Number(first.has(b)) - Number(first.has(a)));
-  const unpackMaps = async () => {
-    for (const i of order) await each(report.maps[i].name, report.maps[i], (grid) => { state.grids[i] = grid; });
-  };
+  const unpackMap = (i: number) => each(report.maps[i].name, report.maps[i], (grid) => { state.grids[i] = grid; });
   const unpackMerged = async () => {
     for (const [i, component] of report.components.entries()) {
       await each(component.file, component, (grid) => { state.mergedGrids[i] = grid; });
     }
   };
-  for (const next of isLarge(report) ? [unpackMerged, unpackMaps] : [unpackMaps, unpackMerged]) await next();
-  if (isLarge(report)) state.changed("grids");
+  const first = new Set(state.scene.placed.map(({ map }) => map));
+  const waiting = new Set([...report.maps.keys()].sort((a, b) => Number(first.has(b)) - Number(first.has(a))));
+  if (!large) {
+    for (const i of waiting) await unpackMap(i);
+    await unpackMerged();
+  } else {
+    await unpackMerged();
+    state.changed("grids");
+    document.documentElement.dataset.ready = "true";
+    while (waiting.size > 0) {
+      const next = state.wanted.filter((map) => waiting.has(map)).concat([...waiting]).slice(0, atOnce);
+      for (const map of next) waiting.delete(map);
+      if (next.some((map) => state.wanted.includes(map))) due = 0;
+      await Promise.all([...new Set(next)].map(unpackMap));
+      await new Promise((done) => setTimeout(done));
+    }
+    state.changed("grids");
+    document.documentElement.dataset.all = "true";
+  }
   if (damaged.length > 0) showProblem(`The data of these maps are damaged: ${damaged.join(", ")}`);
   document.documentElement.dataset.ready = "true";
 }
+
+/** So many maps are unpacked at once, if there are many. */
+const atOnce = 8;
 
 /** Between redrawings while many maps are unpacked [ms]. */
 const pause = 300;
@@ -195,6 +212,7 @@ function build(report: Report): void {
   const joins = new JoinsPanel(state, { placeByHand: placeSo });
   const overview = () => new OverviewPanel(state, {
     show: (map) => {
+      state.wanted = [map];
       state.show(sceneOf(report, map));
       state.point(map);
       stage.lookAtMap(map);

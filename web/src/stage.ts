@@ -3,7 +3,7 @@ import { parseColor } from "./color";
 import type { Picture } from "./compose";
 import { type DecorColors, drawAxes, drawCrosshair, drawGrid, drawRuler, drawScaleBar } from "./decor";
 import { h } from "./dom";
-import type { Grid } from "./grid";
+import { Grid } from "./grid";
 import { placeOf } from "./scene";
 import type { Point, SE2 } from "./se2";
 import { Stamp, handleOf, outline } from "./stamp";
@@ -84,9 +84,8 @@ export class Stage {
   /** A map of the scene, with what lies around it. */
   lookAtMap(map: number): void {
     const pose = this.state.poseOf(map);
-    const grid = this.state.grids[map];
-    if (!pose || !grid) return;
-    const { left, bottom, right, top } = boxAround(grid.corners(pose));
+    if (!pose) return;
+    const { left, bottom, right, top } = boxAround(Grid.cornersOf(this.state.report.maps[map], pose));
     const margin = 0.5 * Math.max(right - left, top - bottom);
     this.look(fit({ left: left - margin, bottom: bottom - margin, right: right + margin, top: top + margin }, this.view.width, this.view.height));
   }

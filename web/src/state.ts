@@ -48,6 +48,8 @@ export class State {
   ruler: Ruler | null = null;
   /** What is searched for in the names of maps. */
   query = "";
+  /** Maps that somebody asked for, whose cells are to be there before others'. */
+  wanted: number[] = [];
   /** The map that can be dragged now. */
   handled: number | null = null;
   /** The scene that was shown last and is no join. */
@@ -78,6 +80,7 @@ export class State {
 
   show(id: SceneId): void {
     this.scene = makeScene(this.report, id);
+    if (id.kind !== "component") this.wanted = this.scene.placed.map(({ map }) => map);
     if (id.kind !== "join") this.whole = id;
     this.handled = this.offered = null;
     this.spotlight = null;
