@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "gridmerge/report/json.hpp"
 #include "report/interchange.hpp"
@@ -48,7 +49,7 @@ Json member_json(const NamedMerge& merge, const std::string& file, const Member&
 }  // namespace
 
 std::string geojson_text(const NamedMerge& merge) {
-  Json features = Json::array();
+  std::vector<Json> features;
   Json frames = Json::object();
   for (std::size_t i = 0; i < merge.result.components.size(); ++i) {
     const Component& component = merge.result.components[i];
@@ -68,16 +69,20 @@ std::string geojson_text(const NamedMerge& merge) {
                      {{"kind", "merged map"}, {"merged_map", file}, {"maps", members.size()}}));
     for (Json& member : members) features.push_back(std::move(member));
   }
-  const Json json{{"type", "FeatureCollection"},
-                  {"coordinate_frame",
-                   {{"unit", "metre"},
-                    {"axes", "x to the right, y up"},
-                    {"note",
-                     "local coordinates, no longitude and latitude; features of different merged maps are in "
-                     "different frames"},
-                    {"frames", std::move(frames)}}},
-                  {"features", std::move(features)}};
-  return text_of(json, 1) + "\n";
+  const Json coordinate_frame{{"unit", "metre"},
+                              {"axes", "x to the right, y up"},
+                              {"note",
+                               "local coordinates, no longitude and latitude; features of different merged "
+                               "maps are in different frames"},
+                              {"frames", std::move(frames)}};
+  // A feature is a line.
+  std::string text = "{\"type\": \"FeatureCollection\",\n\"coordinate_frame\": ";
+  text.append(text_of(coordinate_frame, -1)).append(",\n\"features\": [\n");
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    text += text_of(features[i], -1);
+    text += i + 1 < features.size() ? ",\n" : "\n";
+  }
+  return text + "]}\n";
 }
 
 }  // namespace gridmerge::internal
