@@ -55,33 +55,43 @@ std::vector<std::size_t> held_in(const Component& component) {
 
 std::string g2o_text(const NamedMerge& merge) {
   const auto& [names, maps, result] = merge;
-  std::string text =
+  // Vertices and edges come first: GTSAM reads no edge behind a line that it does not know, such as a
+  // comment.
+  std::string text;
+  std::string notes =
       "# gridmerge: a vertex for each map that was placed, an edge for each join that was used\n"
       "# metres and radians; a vertex takes a map's frame to its merged map's\n";
-  const auto out = std::back_inserter(text);
   std::vector<std::optional<std::size_t>> component_of(maps.size());
   std::vector<MapExtent> extents(maps.size());
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     for (const Member& member : result.components[i].members) {
       component_of.at(member.map) = i;
       extents[member.map] = extent_of(maps[member.map]);
-      fmt::format_to(out, "# {}: {} in {}\nVERTEX_SE2 {} {}\n", member.map, quoted(names.at(member.map)),
-                     component_file(i), member.map, pose_text(member.T_component_map));
+      fmt::format_to(std::back_inserter(text), "VERTEX_SE2 {} {}\n", member.map,
+                     pose_text(member.T_component_map));
+      fmt::format_to(std::back_inserter(notes), "# {}: {} in {}\n", member.map, quoted(names.at(member.map)),
+                     component_file(i));
     }
-    for (const std::size_t map : held_in(result.components[i])) fmt::format_to(out, "FIX {}\n", map);
   }
   for (const Join& join : result.joins) {
     const auto& component = component_of.at(join.fixed);
     if (!join.used() || !component || component != component_of.at(join.moving)) continue;
     const std::optional<double> sd = deviation_of(join);
     const MapExtent &fixed = extents[join.fixed], &moving = extents[join.moving];
-    if (!sd) text += "# no deviation of the next edge is known: that of poses that are taken for equal\n";
+    if (!sd)
+      fmt::format_to(std::back_inserter(notes),
+                     "# {} to {}: no deviation is known; it is that of poses that are taken for equal\n",
+                     join.fixed, join.moving);
     const RelativePose measured = measured_between(join.fixed, join.moving, join.T_fixed_moving, fixed,
                                                    moving, sd ? *sd : agreement_tolerance(fixed, moving));
-    fmt::format_to(out, "EDGE_SE2 {} {} {} {}\n", join.fixed, join.moving, pose_text(join.T_fixed_moving),
-                   information_text(measured));
+    fmt::format_to(std::back_inserter(text), "EDGE_SE2 {} {} {} {}\n", join.fixed, join.moving,
+                   pose_text(join.T_fixed_moving), information_text(measured));
   }
-  return text;
+  for (const Component& component : result.components) {
+    for (const std::size_t map : held_in(component))
+      fmt::format_to(std::back_inserter(text), "FIX {}\n", map);
+  }
+  return text + notes;
 }
 
 }  // namespace gridmerge::internal

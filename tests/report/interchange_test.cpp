@@ -233,6 +233,16 @@ RC_GTEST_PROP(G2o, WeighsAnErrorAsTheMergeDoes, ()) {
   RC_ASSERT(std::abs(weighed - expected) <= 1e-4 * expected + 1e-18);
 }
 
+TEST(G2o, BeginsWithVerticesAndEdges) {
+  // Some readers know these alone, and stop at anything else.
+  const Fleet fleet(12);
+  const std::string text = export_text(ExportFormat::g2o, fleet.named());
+  EXPECT_GT(text.find("\nFIX "), text.rfind("\nEDGE_SE2 "));
+  EXPECT_LT(text.rfind("\nVERTEX_SE2 "), text.find("\nEDGE_SE2 "));
+  EXPECT_GT(text.find('#'), text.rfind("\nEDGE_SE2 "));
+  EXPECT_EQ(text.find("VERTEX_SE2 "), 0u);
+}
+
 TEST(G2o, SaysWhereNoDeviationIsKnown) {
   Fleet fleet(6);
   Join join = fleet.result.joins[0];
@@ -240,7 +250,7 @@ TEST(G2o, SaysWhereNoDeviationIsKnown) {
   join.match.hypotheses.clear();
   fleet.result.joins = {join};
   const std::string text = export_text(ExportFormat::g2o, fleet.named());
-  EXPECT_TRUE(contains(text, "# no deviation of the next edge is known")) << text;
+  EXPECT_TRUE(contains(text, "# 0 to 1: no deviation is known")) << text;
   // That of agreement_tolerance(): half a metre for small maps.
   EXPECT_DOUBLE_EQ(read_g2o(text).edges.at(0).information(0, 0), 4.0);
 }
