@@ -43,6 +43,11 @@ std::filesystem::path normal(const std::filesystem::path& path) {
   return std::filesystem::absolute(path).lexically_normal();
 }
 
+/// A folder, "" for the current one.
+std::filesystem::path normal_folder(const std::filesystem::path& folder) {
+  return normal(folder.empty() ? "./" : folder / "");
+}
+
 }  // namespace
 
 void add_export_option(CLI::App& command, ExportOptions& options) {
@@ -70,7 +75,7 @@ std::vector<Export> exports_of(const ExportOptions& options, const std::string& 
 
 void try_result_file(const std::filesystem::path& file, const std::string& directory,
                      const std::vector<std::filesystem::path>& inputs) {
-  const bool beside = normal(file.parent_path() / "") == normal(std::filesystem::path(directory) / "");
+  const bool beside = normal_folder(file.parent_path()) == normal_folder(directory);
   if (beside && is_merge_output(file.filename()))
     throw FileError(file, "is a file that the merge itself writes: choose another name");
   if (!beside || std::filesystem::exists(directory)) try_output_file(file.string(), inputs);

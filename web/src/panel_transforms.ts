@@ -13,7 +13,8 @@ import { flat } from "./text";
 export class TransformsPanel {
   readonly element = h("div", { class: "panel", id: "panel-transforms" });
   private readonly state: State;
-  private readonly content = h("div");
+  /** Apart from the search, which keeps the focus while what it found changes. */
+  private readonly content: HTMLElement;
   private pending = 0;
 
   constructor(state: State) {
@@ -21,7 +22,8 @@ export class TransformsPanel {
     state.on("scene", () => this.rebuild());
     state.on("hand", () => this.rebuild());
     for (const topic of ["colors", "query"] as const) state.on(topic, () => this.rebuild());
-    replace(this.element, isLarge(state.report) ? searchBox(state) : null, this.content);
+    this.content = isLarge(state.report) ? h("div") : this.element;
+    if (this.content !== this.element) replace(this.element, searchBox(state), this.content);
     this.rebuild();
   }
 
