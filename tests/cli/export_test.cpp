@@ -78,7 +78,8 @@ TEST_F(Export, OfNothingIsAnErrorAfterTheWork) {
   const Outcome outcome = run({"merge", left, other, "-o", output, "--export", "g2o"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
-  EXPECT_NE(outcome.err.find(output + "/merged.g2o: is not written: no two maps were joined"), std::string::npos)
+  EXPECT_NE(outcome.err.find(output + "/merged.g2o: is not written: no two maps were joined"),
+            std::string::npos)
       << outcome.err;
   EXPECT_NE(outcome.out.find("nothing was merged"), std::string::npos) << outcome.out;
   EXPECT_TRUE(std::filesystem::exists(output + "/transforms.json"));
