@@ -70,6 +70,12 @@ DdsEntity& DdsEntity::operator=(DdsEntity&& other) noexcept {
   return *this;
 }
 
+dds_guid_t guid_of(dds_entity_t entity) {
+  dds_guid_t guid{};
+  require_dds(dds_get_guid(entity, &guid), "an entity's number");
+  return guid;
+}
+
 void DdsEntity::reset() {
   if (handle_ > 0) dds_delete(std::exchange(handle_, 0));
 }

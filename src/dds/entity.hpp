@@ -34,6 +34,9 @@ class DdsEntity {
   dds_entity_t handle_ = 0;
 };
 
+/// The entity's number in DDS. Throws as require_dds().
+dds_guid_t guid_of(dds_entity_t entity);
+
 /// A type of ROS's: how Cyclone DDS reads and writes it, and the hash by which ROS's tools know its
 /// definition.
 struct TopicType {

@@ -62,8 +62,7 @@ bool Player::is_over() const {
 
 std::vector<dds_guid_t> Player::writers() const {
   std::vector<dds_guid_t> guids;
-  for (const Topic& topic : topics_)
-    require_dds(dds_get_guid(topic.writer.get(), &guids.emplace_back()), "a writer's number");
+  for (const Topic& topic : topics_) guids.push_back(guid_of(topic.writer.get()));
   return guids;
 }
 

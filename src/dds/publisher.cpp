@@ -117,11 +117,7 @@ void Publisher::publish_diagnoses(const std::vector<Diagnosis>& diagnoses) {
 }
 
 void Publisher::publish_node(const std::vector<dds_guid_t>& readers, const std::vector<dds_guid_t>& writers) {
-  const auto gid_of_entity = [](const DdsEntity& entity) {
-    dds_guid_t guid{};
-    require_dds(dds_get_guid(entity.get(), &guid), "a writer's number");
-    return gid_of(guid);
-  };
+  const auto gid_of_entity = [](const DdsEntity& entity) { return gid_of(guid_of(entity.get())); };
   std::vector<rmw_dds_common_msg_dds__Gid_> reader_gids;
   reader_gids.reserve(readers.size());
   for (const dds_guid_t& guid : readers) reader_gids.push_back(gid_of(guid));

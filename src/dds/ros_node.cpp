@@ -296,7 +296,7 @@ void RosNode::State::publish() {
 
 void RosNode::State::publish_node() {
   std::vector<dds_guid_t> readers = listener_.readers();
-  require_dds(dds_get_guid(ages_.reader(), &readers.emplace_back()), "a reader's number");
+  readers.push_back(guid_of(ages_.reader()));
   publisher_.publish_node(readers, player_.writers());
 }
 

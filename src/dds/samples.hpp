@@ -19,12 +19,12 @@ inline char* text(const std::string& value) {
   return const_cast<char*>(value.c_str());
 }
 
-/// Makes a generated sequence refer to a vector.
+/// Makes a generated sequence refer to a vector, likewise.
 template <typename Sequence, typename Element>
-void refer(Sequence& sequence, std::vector<Element>& elements) {
+void refer(Sequence& sequence, const std::vector<Element>& elements) {
   sequence._length = static_cast<std::uint32_t>(elements.size());
   sequence._maximum = sequence._length;
-  sequence._buffer = elements.data();
+  sequence._buffer = const_cast<Element*>(elements.data());
   sequence._release = false;
 }
 

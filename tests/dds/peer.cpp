@@ -5,24 +5,13 @@
 #include <functional>
 
 #include "dds/message.hpp"
-#include "ros_messages.h"
+#include "dds/samples.hpp"
 
 namespace gridmerge::test {
 
 using namespace internal;
 
 namespace {
-
-char* text(const std::string& value) {
-  return const_cast<char*>(value.c_str());
-}
-
-template <typename Sequence, typename Element>
-void refer(Sequence& sequence, const std::vector<Element>& elements) {
-  sequence._length = sequence._maximum = static_cast<std::uint32_t>(elements.size());
-  sequence._buffer = const_cast<Element*>(elements.data());
-  sequence._release = false;
-}
 
 template <typename Sample>
 void take_all(dds_entity_t reader, const std::function<void(const Sample&)>& take) {
