@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "gridmerge/report/named_merge.hpp"
-#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -17,7 +16,7 @@ std::string geojson_text(const NamedMerge& merge);
 
 /// A text in double quotes, as YAML and JSON have it: one line of printable characters. What is not UTF-8
 /// becomes U+FFFD. O(length).
-GRIDMERGE_INTERNAL_EXPORT std::string quoted(const std::string& text);
+std::string quoted(const std::string& text);
 
 /// The corners of the smallest upright rectangle in the grid that holds all known cells, in the map's frame,
 /// counter-clockwise; none if nothing is known. O(cells).
@@ -25,10 +24,10 @@ std::vector<Point2> known_corners(const OccupancyGrid& grid);
 
 /// The corners of the smallest convex shape that holds all known cells, in the map's frame,
 /// counter-clockwise; none if nothing is known. O(cells + h log h) for a grid of h rows.
-GRIDMERGE_INTERNAL_EXPORT std::vector<Point2> known_outline(const OccupancyGrid& grid);
+std::vector<Point2> known_outline(const OccupancyGrid& grid);
 
 /// The corners of the smallest convex shape that holds all points, counter-clockwise, without those on a
 /// straight line between others (Andrew 1979). O(n log n).
-GRIDMERGE_INTERNAL_EXPORT std::vector<Point2> convex_hull(std::vector<Point2> points);
+std::vector<Point2> convex_hull(std::vector<Point2> points);
 
 }  // namespace gridmerge::internal

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "gridmerge/merge/merge_result.hpp"
-#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -29,7 +28,7 @@ struct ToldJoins {
 };
 
 /// O(joins log joins).
-GRIDMERGE_INTERNAL_EXPORT ToldJoins tell_joins(const MergeResult& result);
+ToldJoins tell_joins(const MergeResult& result);
 
 /// The hypotheses of a join that outputs tell, in their order. All of one that was used or contradicts the
 /// others, if joins are told in full. Else the best, those that may well be true, and the one that was used.
