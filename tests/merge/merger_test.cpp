@@ -19,6 +19,15 @@ using test::Team;
 
 namespace {
 
+/// Options with which each round adds the number of its matches to `totals`.
+MergeOptions counting_into(std::vector<std::size_t>& totals) {
+  MergeOptions options;
+  options.progress = [&totals](std::size_t done, std::size_t total) {
+    if (done == total) totals.push_back(total);
+  };
+  return options;
+}
+
 TEST(Merger, OneByOneGivesWhatAllAtOnceGives) {
   const Team team;
   Merger merger;
@@ -32,11 +41,7 @@ TEST(Merger, OneByOneGivesWhatAllAtOnceGives) {
 TEST(Merger, MatchesOnlyWhatHasChanged) {
   const Team team;
   std::vector<std::size_t> totals;
-  MergeOptions options;
-  options.progress = [&](std::size_t done, std::size_t total) {
-    if (done == total) totals.push_back(total);
-  };
-  Merger merger(options);
+  Merger merger(counting_into(totals));
   const auto first = merger.add(team.maps[0]);
   merger.add(team.maps[1]);
   const auto third = merger.add(team.maps[4]);
@@ -89,11 +94,7 @@ TEST(Merger, AMapThatGrowsKeepsItsMatchesUntilItIsSearchedAgain) {
 TEST(Merger, SoonAndBitByBitItIsTheSameInTheEnd) {
   const Team team;
   std::vector<std::size_t> totals;
-  MergeOptions options;
-  options.progress = [&](std::size_t done, std::size_t total) {
-    if (done == total) totals.push_back(total);
-  };
-  Merger merger(options);
+  Merger merger(counting_into(totals));
   for (const std::size_t map : {0u, 1u, 4u}) merger.add(team.maps[map]);
   merger.solve_soon(0);
   EXPECT_FALSE(merger.is_complete());
