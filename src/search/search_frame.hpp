@@ -66,7 +66,8 @@ TurnedWalls turn_walls(const std::vector<WallPoint>& walls, const SearchFrame& f
 /// below the best one are no candidates. O(scores).
 std::vector<Peak> best_peaks(const ScoreImage& scores, const TurnedWalls& turned, int rotation);
 
-/// The same of those above `floor` (at least 0), where only the scores in the blocks are. O(scores in blocks).
+/// The same of those above `floor` (at least 0), where only the scores in the blocks are. O(scores in
+/// blocks).
 std::vector<Peak> best_peaks(const ScoreImage& scores, const std::vector<ScoreBlock>& looked_at,
                              const TurnedWalls& turned, int rotation, int floor);
 

@@ -132,7 +132,8 @@ void widen(const std::uint8_t* known, int width, int height, std::uint8_t* seen)
     const std::uint8_t *const far_below = below - width, *const far_above = above + width;
     std::uint8_t* const out = seen + line;
     for (int x = 2; x + 2 < width; ++x) {
-      const int along = row[x - 2] | row[x - 1] | row[x] | row[x + 1] | row[x + 2] | far_below[x] | far_above[x];
+      const int along =
+          row[x - 2] | row[x - 1] | row[x] | row[x + 1] | row[x + 2] | far_below[x] | far_above[x];
       const int beside = below[x - 1] | below[x] | below[x + 1] | above[x - 1] | above[x] | above[x + 1];
       out[x] = static_cast<std::uint8_t>(along | beside);
     }
