@@ -11,11 +11,26 @@ using namespace internal;
 
 namespace {
 
+Json deformation_json(const Deformation& deformation) {
+  Json shifts = Json::array();
+  for (const Point2& shift : deformation.shifts()) {
+    shifts.push_back(number_json(shift.x));
+    shifts.push_back(number_json(shift.y));
+  }
+  return {{"frame", transform_json(deformation.T_map_lattice())},
+          {"spacing", number_json(deformation.spacing())},
+          {"columns", deformation.columns()},
+          {"rows", deformation.rows()},
+          {"shifts", std::move(shifts)}};
+}
+
 Json member_json(const std::string& name, const Member& member) {
-  return {{"source", name},
-          {"transform", transform_json(member.T_component_map)},
-          {"probability", probability_json(member.probability)},
-          {"sd", deviation_json(member.sd)}};
+  Json json{{"source", name},
+            {"transform", transform_json(member.T_component_map)},
+            {"probability", probability_json(member.probability)},
+            {"sd", deviation_json(member.sd)}};
+  if (!member.deformation.is_identity()) json["deformation"] = deformation_json(member.deformation);
+  return json;
 }
 
 Json join_json(const std::string& fixed, const std::string& moving, const Join& join) {

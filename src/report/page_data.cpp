@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "grid/parallel.hpp"
+#include "gridmerge/merge/fuse.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/preview.hpp"
 #include "gridmerge/version.hpp"
@@ -67,14 +68,23 @@ Json join_json(const Join& join) {
           {"hypotheses", hypotheses_json(join)}};
 }
 
-/// All maps, then all fused ones: what takes time is done for several at once.
+/// All maps, bent as they lie, then all fused ones: what takes time is done for several at once.
 std::vector<ShownMap> show_all(const std::vector<OccupancyGrid>& maps, const MergeResult& result) {
   std::vector<const OccupancyGrid*> grids;
   grids.reserve(maps.size() + result.components.size());
   for (const OccupancyGrid& map : maps) grids.push_back(&map);
-  for (const Component& component : result.components) grids.push_back(&component.fused.grid);
+  std::vector<const Deformation*> deformations(maps.size(), nullptr);
+  for (const Component& component : result.components) {
+    grids.push_back(&component.fused.grid);
+    for (const Member& member : component.members) {
+      if (!member.deformation.is_identity()) deformations.at(member.map) = &member.deformation;
+    }
+  }
   std::vector<ShownMap> shown(grids.size());
-  parallel_for(grids.size(), [&](std::size_t i) { shown[i] = show_map(*grids[i]); });
+  parallel_for(grids.size(), [&](std::size_t i) {
+    const bool is_bent = i < maps.size() && deformations[i] != nullptr;
+    shown[i] = is_bent ? show_map(bent_map(*grids[i], *deformations[i])) : show_map(*grids[i]);
+  });
   return shown;
 }
 
