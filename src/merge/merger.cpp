@@ -369,7 +369,7 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
       if (group.size() == 1) {
         result.left_out.push_back(inputs.index[group.front().map]);
       } else {
-        result.components.push_back(make_component(group, problem, arrangement, inputs, options_.resolution));
+        result.components.push_back(make_component(group, problem, arrangement, inputs, options_));
       }
     }
     std::sort(result.left_out.begin(), result.left_out.end());
