@@ -15,6 +15,7 @@ from importlib.metadata import version
 from types import FunctionType
 
 from ._core import FileError
+from ._deformation import Deformation
 from ._evaluate import (
     Evaluation,
     MatchCase,
@@ -59,6 +60,7 @@ __all__ = [
     "CellClass",
     "CommonCells",
     "Component",
+    "Deformation",
     "DistancePass",
     "Evaluation",
     "FileError",

@@ -6,8 +6,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, TypeAlias, cast
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from . import _arguments, _core, _html
 from ._arguments import Progress
+from ._deformation import Deformation
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_maps
 from ._known_poses import InitialPoses, MapKey, NamedMaps, to_known_poses
@@ -37,6 +41,21 @@ class Member:
     """Standard deviation of the middle of the map's known cells [m]; 0 for what holds the frame, None up the tree."""
     sd_theta: float | None
     """Standard deviation of the direction [rad]; 0 for what holds the frame, None up the tree."""
+    deformation: Deformation | None = None
+    """How the map is bent, in its own frame, before the transform takes it to the component's. None for a straight map,
+    as all are without ``elastic=True``."""
+
+    def to_component(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Where points of the map's frame lie in the component's [m]: an array of shape (..., 2), and so is the result.
+
+        Raises ValueError for another shape.
+        """
+        return self.transform.apply(points if self.deformation is None else self.deformation.bend(points))
+
+    def to_map(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Where points of the component's frame lie in the map's: the inverse of to_component()."""
+        placed = self.transform.inverse().apply(points)
+        return placed if self.deformation is None else self.deformation.straighten(placed)
 
     def __repr__(self) -> str:
         return (
@@ -211,6 +230,7 @@ def merge(
     accept: float | None = None,
     max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
     output_resolution: float | None = None,
+    elastic: bool = False,
     search: str = "exhaustive",
     progress: Progress | None = None,
 ) -> MergeResult:
@@ -231,6 +251,9 @@ def merge(
         max_false_joins: so many joins of the whole merge may be expected to be false; those that are least sure are not
             made. It holds beside `accept`. "tree" does not use it.
         output_resolution: of the merged maps [m]; None = the finest of the maps'.
+        elastic: whether maps are bent so that walls that several have seen come to lie on each other: for maps that
+            drift has bent. See Member.deformation. Fixed maps stay straight. It changes neither which maps join nor
+            how sure that is, and needs the strategy "joint".
         search: as of match(). With "exhaustive" the thorough look is for pairs whose maps the quick one leaves apart.
             "random-walk" needs the strategy "tree".
         progress: called now and then, in the calling thread, with the share of the pairs that are matched.
@@ -248,6 +271,8 @@ def merge(
         raise ValueError(
             "search: 'random-walk' needs the strategy 'tree': it has one pose per pair, no probability"
         )
+    if elastic and up_the_tree:
+        raise ValueError("strategy: elastic needs 'joint'")
     # The program may go to another directory before it saves.
     more_inputs = (os.fsencode(os.path.abspath(init)),) if isinstance(init, (str, os.PathLike)) else ()
     merged = _core.merge(
@@ -258,6 +283,7 @@ def merge(
         _arguments.at_least_0("max_false_joins", max_false_joins),
         to_output_resolution(output_resolution),
         up_the_tree,
+        bool(elastic),
         _arguments.choice("search", search, tuple(_core.search_methods())),
         _arguments.progress(progress),
     )
@@ -333,6 +359,7 @@ def _to_member(member: _core.Member, names: Sequence[str]) -> Member:
         probability=member.probability,
         sd_position=None if member.sd is None else member.sd.position,
         sd_theta=None if member.sd is None else member.sd.theta,
+        deformation=None if member.deformation.is_identity else Deformation._of(member.deformation),
     )
 
 

@@ -31,12 +31,14 @@ class Merger:
         accept: float = _core.DEFAULT_ACCEPT,
         max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
         output_resolution: float | None = None,
+        elastic: bool = False,
     ) -> None:
         self._core = _core.Merger(
             _arguments.threads(threads),
             _arguments.share("accept", accept),
             _arguments.at_least_0("max_false_joins", max_false_joins),
             to_output_resolution(output_resolution),
+            bool(elastic),
         )
         self._maps: dict[int, tuple[OccupancyGrid, str]] = {}
         self._posed: set[int] = set()  # of which a pose is known

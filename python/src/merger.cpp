@@ -15,8 +15,8 @@ namespace {
 /// without the interpreter's lock.
 class MapMerger {
  public:
-  MapMerger(int threads, double accept, double max_false_joins, double output_resolution)
-      : merger_(make_options(threads, accept, max_false_joins, output_resolution, share_)) {}
+  MapMerger(int threads, double accept, double max_false_joins, double output_resolution, bool elastic)
+      : merger_(make_options(threads, accept, max_false_joins, output_resolution, elastic, share_)) {}
 
   std::size_t add(const Map& map, const std::optional<Known>& known) {
     std::optional<std::size_t> id;
@@ -31,17 +31,11 @@ class MapMerger {
     return *id;
   }
 
-  void update(std::size_t id, const Map& map) {
-    replace(id, map, &Merger::update);
-  }
+  void update(std::size_t id, const Map& map) { replace(id, map, &Merger::update); }
 
-  void grow(std::size_t id, const Map& map) {
-    replace(id, map, &Merger::grow);
-  }
+  void grow(std::size_t id, const Map& map) { replace(id, map, &Merger::grow); }
 
-  void search_again(std::size_t id) {
-    merger_.search_again(id);
-  }
+  void search_again(std::size_t id) { merger_.search_again(id); }
 
   void remove(std::size_t id) {
     merger_.remove(id);
@@ -85,12 +79,13 @@ class MapMerger {
   }
 
   static MergeOptions make_options(int threads, double accept, double max_false_joins,
-                                   double output_resolution, std::shared_ptr<Report> share) {
+                                   double output_resolution, bool elastic, std::shared_ptr<Report> share) {
     MergeOptions options;
     options.match.threads = threads;
     options.match.accept_probability = accept;
     options.max_false_joins = max_false_joins;
     options.resolution = output_resolution;
+    options.elastic = elastic;
     options.progress = [share = std::move(share)](std::size_t done, std::size_t total) {
       (*share)(static_cast<double>(done) / static_cast<double>(total));
     };
@@ -106,8 +101,8 @@ class MapMerger {
 
 void bind_merger(nb::module_& module) {
   nb::class_<MapMerger>(module, "Merger")
-      .def(nb::init<int, double, double, double>(), nb::arg("threads"), nb::arg("accept"),
-           nb::arg("max_false_joins"), nb::arg("output_resolution"))
+      .def(nb::init<int, double, double, double, bool>(), nb::arg("threads"), nb::arg("accept"),
+           nb::arg("max_false_joins"), nb::arg("output_resolution"), nb::arg("elastic"))
       .def("add", &MapMerger::add, nb::arg("map"), nb::arg("known").none())
       .def("update", &MapMerger::update, nb::arg("id"), nb::arg("map"))
       .def("grow", &MapMerger::grow, nb::arg("id"), nb::arg("map"))
