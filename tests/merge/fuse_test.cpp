@@ -262,7 +262,7 @@ RC_GTEST_PROP(Fuse, BentMapsAreLookedUpWhereTheyComeFrom, ()) {
       ++compared;
     }
   }
-  RC_ASSERT(compared > 5);
+  RC_ASSERT(compared > 5 || resolution > 0.05);  // a few large cells may all miss the middles
   // Nothing that the map knows lies beyond the result.
   for (int row = 0; row < map.height; ++row) {
     for (int column = 0; column < map.width; ++column) {
