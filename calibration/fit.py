@@ -94,6 +94,11 @@ def pack(folder: pathlib.Path) -> None:
     print(f"{number} cases, {len(packed)} hypotheses: {CASES}")
 
 
+def logistic(log_odds):
+    """The probability of these log-odds."""
+    return 1.0 / (1.0 + np.exp(-log_odds))
+
+
 def kind_of(domain: str) -> str:
     return REAL.get(domain, "simulated")
 
@@ -159,7 +164,7 @@ def best_of(names: Names, ranks: np.ndarray, case: Case) -> tuple[int, float]:
     """The hypothesis of the largest rank, and its share of what there is."""
     best = int((case.ranks @ ranks).argmax())
     stands_out = case.terms[best][names.terms.index(STANDS_OUT)]
-    return best, float(1.0 / (1.0 + np.exp(-stands_out)))
+    return best, float(logistic(stands_out))
 
 
 def fit(names: Names, cases: list[Case]) -> Model:
@@ -175,7 +180,7 @@ def fit(names: Names, cases: list[Case]) -> Model:
     ridge = np.array([0.0, *([RIDGE] * len(names.terms))])
 
     def loss(w):
-        belief = 1.0 / (1.0 + np.exp(-np.clip(x @ w, -200.0, 200.0)))
+        belief = logistic(np.clip(x @ w, -200.0, 200.0))
         refused = 1.0 - share * belief
         value = -(weight * np.where(right, np.log(np.maximum(share * belief, 1e-300)), np.log(refused))).sum()
         slope = weight * np.where(right, belief - 1.0, share * belief * (1.0 - belief) / refused)
@@ -193,7 +198,7 @@ def judge(names: Names, model: Model, cases: list[Case]) -> list[tuple[float, st
     for case in cases:
         best, share = best_of(names, model.ranks, case)
         truth = "negative" if case.negative else "right" if case.right[best] else "wrong"
-        judged.append((share / (1.0 + float(np.exp(-(model.bias + case.terms[best] @ model.terms)))), truth))
+        judged.append((share * float(logistic(model.bias + case.terms[best] @ model.terms)), truth))
     return judged
 
 

@@ -5,9 +5,11 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gridmerge)
 set(GRIDMERGE_PACKAGES_OF "")  # set() lines for the package's configuration file
 
-# What consumers have to find as well: for static libraries all that a library links, for shared ones nothing.
+# What consumers have to find as well: for static libraries all that a library links, for shared ones nothing. What
+# stands in $<BUILD_INTERFACE:> is for the build alone.
 function(gridmerge_packages_named_by target out)
   get_target_property(links ${target} INTERFACE_LINK_LIBRARIES)
+  string(REGEX REPLACE "\\$<BUILD_INTERFACE:[^<>]*>" "" links "${links}")
   set(named "")
   foreach(package IN LISTS ARGN)
     if("${links}" MATCHES "(^|[;:<])${package}(::|;|>|$)")
@@ -61,3 +63,6 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/gridmergeConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/gridmergeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/gridmergeConfig.cmake ${PROJECT_BINARY_DIR}/gridmergeConfigVersion.cmake
         DESTINATION ${package_dir} COMPONENT core)
+# For packages of which neither CMake nor they themselves say how they are found.
+install(FILES ${PROJECT_SOURCE_DIR}/cmake/Findlz4.cmake ${PROJECT_SOURCE_DIR}/cmake/Findzstd.cmake
+        DESTINATION ${package_dir} COMPONENT bag)

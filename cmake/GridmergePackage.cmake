@@ -23,18 +23,29 @@ set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_TOOL_DESCRIPTION "Takes the maps that robots built without knowing where the others were, and
 returns one map, the transform of every input, and a verdict on each join.")
 
+# What a program takes to be linked with the core; the other components, of which it may want none, take the rest.
 set(dev_depends "")
+set(dev_recommends "")
 foreach(component IN LISTS GRIDMERGE_COMPONENTS)
-  foreach(package IN LISTS gridmerge_${component}_packages)
-    list(APPEND dev_depends ${gridmerge_debian_${package}})
+  if(NOT TARGET gridmerge_${component})
+    continue()
+  endif()
+  gridmerge_packages_named_by(gridmerge_${component} packages ${gridmerge_${component}_packages})
+  foreach(package IN LISTS packages)
+    if(component STREQUAL core)
+      list(APPEND dev_depends ${gridmerge_debian_${package}})
+    else()
+      list(APPEND dev_recommends ${gridmerge_debian_${package}})
+    endif()
   endforeach()
 endforeach()
-list(REMOVE_DUPLICATES dev_depends)
+list(REMOVE_DUPLICATES dev_recommends)
 list(JOIN dev_depends ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS)
+list(JOIN dev_recommends ", " CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libgridmerge-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_DESCRIPTION "C++ libraries with their headers: grids, matching of two maps, merging of
-many, map files, simulated maps, evaluation, reports.")
+many, map files, ROS bags, simulated maps, evaluation, reports.")
 
 # What Debian wants to find in usr/share/doc.
 set(documents ${PROJECT_BINARY_DIR}/debian)

@@ -22,7 +22,7 @@ function(gridmerge_configure target)
 endfunction()
 
 # gridmerge_choose_components(): an option for each component, GRIDMERGE_WITH_MERGE and so on. GRIDMERGE_WITH_ALL_AT_TOP
-# says whether this is the top project, and nothing is left out.
+# says whether this is the top project, and nothing is left out but what the command line tool can do without.
 macro(gridmerge_choose_components)
   set(GRIDMERGE_WITH_ALL_AT_TOP ${PROJECT_IS_TOP_LEVEL})
   set(GRIDMERGE_WITH_CORE ON)
@@ -32,7 +32,9 @@ macro(gridmerge_choose_components)
       option(GRIDMERGE_WITH_${upper} "Build the component ${component}" ON)
     endif()
     if(NOT GRIDMERGE_WITH_${upper})
-      set(GRIDMERGE_WITH_ALL_AT_TOP OFF)
+      if(NOT component STREQUAL dds)  # the tool has no `gridmerge node` then
+        set(GRIDMERGE_WITH_ALL_AT_TOP OFF)
+      endif()
       continue()
     endif()
     foreach(needed IN LISTS gridmerge_${component}_needs)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
@@ -18,9 +19,12 @@ inline std::string_view as_bytes(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// Ends the process, which is how a target reports a finding.
-inline void require(bool condition) {
-  if (!condition) std::abort();
+/// Ends the process, which is how a target reports a finding, and says where. (Debian's Clang has no
+/// std::source_location.)
+inline void require(bool condition, const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+  if (condition) return;
+  std::fprintf(stderr, "%s:%d: what is required here is not so\n", file, line);
+  std::abort();
 }
 
 /// What every decoder promises of its image.

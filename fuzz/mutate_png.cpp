@@ -16,7 +16,7 @@ using namespace gridmerge::fuzz;
 
 constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
 constexpr std::size_t kHeaderBytes = 13;
-constexpr std::size_t kMostRows = 1 << 16;  // bytes of them
+constexpr std::size_t kMaxRows = 1 << 16;  // bytes of them
 
 struct Chunk {
   std::string type;  // four letters
@@ -61,7 +61,7 @@ std::string png_of(const std::vector<Chunk>& chunks) {
 }
 
 std::string inflated(const std::string& deflated) {
-  std::string rows(kMostRows, '\0');
+  std::string rows(kMaxRows, '\0');
   z_stream stream{};
   if (inflateInit(&stream) != Z_OK) return {};
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(deflated.data()));

@@ -14,7 +14,7 @@ namespace gridmerge::fuzz {
 
 namespace {
 
-constexpr int kMostSide = 40;   // [cells]
+constexpr int kMaxSide = 40;    // [cells]
 constexpr int kPlaceSide = 56;  // [cells]
 
 // Fills a rectangle of cells, as far as it lies in the grid.
@@ -42,7 +42,7 @@ OccupancyGrid part_of(const OccupancyGrid& place, FuzzedDataProvider& bytes) {
   constexpr std::array kResolutions{0.05, 0.1, 0.0501, 0.02, 0.3, 1.0, 1e-3, 100.0};
   constexpr std::array kOrigins{0.0, 1.0, -7.25, 123.456, 1e-300, -1e5, 1e6};
   OccupancyGrid map =
-      make_grid(bytes.ConsumeIntegralInRange(1, kMostSide), bytes.ConsumeIntegralInRange(1, kMostSide),
+      make_grid(bytes.ConsumeIntegralInRange(1, kMaxSide), bytes.ConsumeIntegralInRange(1, kMaxSide),
                 bytes.PickValueInArray(kResolutions),
                 {bytes.PickValueInArray(kOrigins), bytes.PickValueInArray(kOrigins),
                  bytes.ConsumeIntegralInRange(-3, 3) * 1.0});

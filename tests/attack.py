@@ -57,13 +57,15 @@ def corpus(*targets):
 def throw_files(program, count, rng, folder):
     yamls, tables, records = corpus("map_yaml"), corpus("truth", "initial_poses"), corpus("transforms")
     images = {"pgm": corpus("pnm"), "png": corpus("png"), "bmp": corpus("bmp"), "jpg": corpus("jpeg")}
+    data = PROJECT / "tests/bag/data"
+    bags = corpus("mcap") + [file.read_bytes() for file in sorted(data.rglob("*")) if file.is_file()]
     sound = folder / "sound.yaml"
     shutil.copyfile(PROJECT / "examples/three_robots/robot_1.yaml", sound)
     for image in (PROJECT / "examples/three_robots").glob("robot_1.p*"):
         shutil.copyfile(image, folder / image.name)
     counts, failures = collections.Counter(), []
     for i in range(count):
-        kind = rng.choice(("yaml", "image", "image", "table", "record"))
+        kind = rng.choice(("yaml", "image", "image", "table", "record", "bag"))
         if kind == "yaml":
             (folder / "x.yaml").write_bytes(hostile(yamls, rng))
             command = ["info", folder / "x.yaml"]
@@ -84,6 +86,9 @@ def throw_files(program, count, rng, folder):
                 ["merge", sound, "-o", folder / "o", "--init"],
             )
             command = [*rng.choice(readers), folder / "x.tsv"]
+        elif kind == "bag":
+            (folder / "x.bag").write_bytes(hostile(bags, rng))
+            command = ["info", folder / "x.bag"]
         else:
             (folder / "saved").mkdir(exist_ok=True)
             (folder / "saved/transforms.json").write_bytes(hostile(records, rng))

@@ -23,6 +23,7 @@ void add_info(CLI::App& app, Action& action);
 void add_match(CLI::App& app, Action& action);
 void add_measure(CLI::App& app, Action& action);
 void add_merge(CLI::App& app, Action& action);
+void add_node(CLI::App& app, Action& action);  // where the component dds is built
 void add_report(CLI::App& app, Action& action);
 void add_view(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);

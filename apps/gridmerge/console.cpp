@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "gridmerge/bag/any_map.hpp"
 #include "io/atomic_file.hpp"
 
 namespace gridmerge::cli {
@@ -91,7 +92,7 @@ void Console::progress(const std::string& phase, double share) {
   share = std::clamp(share, 0.0, 1.0);
   draw(phase, [&] {
     const std::string done(static_cast<std::size_t>(share * kBarWidth), '#');
-    const std::string bar = fmt::format(" [{:<{}}] {:3.0f} %", done, kBarWidth, 100.0 * share);
+    std::string bar = fmt::format(" [{:<{}}] {:3.0f} %", done, kBarWidth, 100.0 * share);
     if (share == 0.0) return bar;
     const std::chrono::duration<double> taken = Clock::now() - phase_began_;
     return bar + ", " + describe_time_left(taken * (1.0 - share) / share);
@@ -132,7 +133,7 @@ void try_output_file(const std::string& path, const std::vector<std::filesystem:
 }
 
 LoadedMap MapReader::read(const std::string& path) {
-  LoadedMap map = load_map(path, options_);
+  LoadedMap map = load_any_map(path, options_);
   for (const MapWarning& warning : map.warnings) warned_.push_back({path, warning});
   console_.remark(fmt::format("read {}: {} x {} cells of {} m", path, map.grid.width, map.grid.height,
                               map.grid.resolution));

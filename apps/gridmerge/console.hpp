@@ -67,7 +67,7 @@ class MapReader {
   /// `console` must outlive this.
   MapReader(LoadOptions options, Console& console) : options_(options), console_(console) {}
 
-  /// load_map().
+  /// load_any_map().
   LoadedMap read(const std::string& path);
 
   /// Tells the warnings of all maps that were read since it was called last.

@@ -32,14 +32,14 @@ namespace {
 
 constexpr std::uint32_t kMaxHead = 16U << 10;
 constexpr std::uint64_t kMaxBody = std::uint64_t{1} << 20;
-constexpr std::size_t kMostConnections = 128;
-constexpr std::ptrdiff_t kMostBodies = 16;
+constexpr std::size_t kMaxConnections = 128;
+constexpr std::ptrdiff_t kMaxBodies = 16;
 constexpr auto kTimeOfRequest = std::chrono::seconds(10);
 constexpr auto kTimeOfStep = std::chrono::seconds(10);  // that a client may take for some of its answer
 // A client that is refused in the middle of its request sends on until it looks for the answer; a connection
 // that is closed before would lose it.
 constexpr auto kTimeToEnd = std::chrono::seconds(2);
-constexpr std::size_t kMostDropped = std::size_t{8} << 20;
+constexpr std::size_t kMaxDropped = std::size_t{8} << 20;
 constexpr auto kPause = std::chrono::milliseconds(50);  // where the system has no more descriptors
 
 constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
@@ -183,7 +183,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
     stream_.async_read_some(asio::buffer(dropped_),
                             [self = shared_from_this()](error_code error, std::size_t count) {
                               self->count_dropped_ += count;
-                              if (!error && self->count_dropped_ < kMostDropped) self->drop();
+                              if (!error && self->count_dropped_ < kMaxDropped) self->drop();
                             });
   }
 
@@ -191,7 +191,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   beast::tcp_stream stream_;
   std::list<Connection*>::iterator place_;
   State state_ = State::reading_head;
-  beast::flat_buffer buffer_{2 * kMaxHead};
+  beast::flat_buffer buffer_{std::size_t{2} * kMaxHead};
   http::request_parser<http::string_body> parser_;
   std::shared_ptr<const std::string> body_;
   http::response<http::span_body<const char>> message_;
@@ -258,7 +258,7 @@ void HttpServer::accept() {
 
 void HttpServer::admit(Tcp::socket socket) {
   Connection* const unfinished =
-      connections_.size() < kMostConnections ? nullptr : oldest(&Connection::is_closeable);
+      connections_.size() < kMaxConnections ? nullptr : oldest(&Connection::is_closeable);
   if (unfinished != nullptr) unfinished->close();
   error_code ignored;
   socket.set_option(Tcp::no_delay(true), ignored);
@@ -268,7 +268,7 @@ void HttpServer::admit(Tcp::socket socket) {
 bool HttpServer::make_room_for_body() {
   const auto bodies = std::count_if(connections_.begin(), connections_.end(),
                                     [](const Connection* one) { return one->has_body(); });
-  if (bodies < kMostBodies) return true;
+  if (bodies < kMaxBodies) return true;
   Connection* const slow = oldest(&Connection::reads_body);
   if (slow != nullptr) slow->give_way();
   return slow != nullptr;

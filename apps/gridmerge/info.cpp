@@ -5,11 +5,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "gridmerge/bag/any_map.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/io/map_file.hpp"
 
@@ -26,6 +28,20 @@ struct InfoOptions {
   bool json = false;
 };
 
+// What a bag says of a map beside the map itself.
+struct Recording {
+  std::string topic;
+  std::string frame_id;
+  std::size_t maps = 0;     // whole ones
+  std::size_t updates = 0;  // of parts of them
+};
+
+struct NamedMap {
+  std::string name;
+  LoadedMap map;
+  std::optional<Recording> recording;  // nothing where the map is of a file
+};
+
 struct Size {
   double width = 0.0;   // [m]
   double height = 0.0;  // [m]
@@ -38,18 +54,24 @@ Size known_size(const OccupancyGrid& grid) {
   return {known.width * known.resolution, known.height * known.resolution};
 }
 
-std::string describe(const std::string& path, const LoadedMap& map) {
-  const OccupancyGrid& grid = map.grid;
+std::string describe(const NamedMap& named) {
+  const OccupancyGrid& grid = named.map.grid;
   const CellCounts counts = count_cells(grid);
   const Size known = known_size(grid);
   const auto share = [&](std::size_t count) {
     return fmt::format("{} ({:.1f} %)", count,
                        100.0 * static_cast<double>(count) / static_cast<double>(grid.cells.size()));
   };
-  std::string text = escape_controls(path) + "\n";
+  std::string text = escape_controls(named.name) + "\n";
   const auto line = [&](const char* name, const std::string& value) {
     fmt::format_to(std::back_inserter(text), "  {:<12}{}\n", name, value);
   };
+  if (named.recording) {
+    const Recording& recording = *named.recording;
+    line("topic", fmt::format("{}, {} maps, {} updates", escape_controls(recording.topic), recording.maps,
+                              recording.updates));
+    line("frame", escape_controls(recording.frame_id));
+  }
   line("size", fmt::format("{} x {} cells, {:.2f} m x {:.2f} m", grid.width, grid.height,
                            grid.width * grid.resolution, grid.height * grid.resolution));
   line("resolution", fmt::format("{} m", grid.resolution));
@@ -59,37 +81,67 @@ std::string describe(const std::string& path, const LoadedMap& map) {
   line("free", share(counts.free));
   line("unknown", share(counts.unknown));
   line("known area", fmt::format("{:.2f} m x {:.2f} m", known.width, known.height));
-  for (const MapWarning& warning : map.warnings) line("warning", escape_controls(warning.text));
+  for (const MapWarning& warning : named.map.warnings) line("warning", escape_controls(warning.text));
   return text;
 }
 
-Json describe_json(const std::string& path, const LoadedMap& map) {
-  const OccupancyGrid& grid = map.grid;
+Json describe_json(const NamedMap& named) {
+  const OccupancyGrid& grid = named.map.grid;
   const CellCounts counts = count_cells(grid);
   const Size known = known_size(grid);
   Json warnings = Json::array();
-  for (const MapWarning& warning : map.warnings) warnings.push_back(warning.text);
-  return {{"source", path},
-          {"width", grid.width},
-          {"height", grid.height},
-          {"resolution", grid.resolution},
-          {"origin", {{"x", grid.origin.x}, {"y", grid.origin.y}, {"theta", grid.origin.theta}}},
-          {"occupied", counts.occupied},
-          {"free", counts.free},
-          {"unknown", counts.unknown},
-          {"known_size", {{"width", known.width}, {"height", known.height}}},
-          {"warnings", warnings}};
+  for (const MapWarning& warning : named.map.warnings) warnings.push_back(warning.text);
+  Json json{{"source", named.name},
+            {"width", grid.width},
+            {"height", grid.height},
+            {"resolution", grid.resolution},
+            {"origin", {{"x", grid.origin.x}, {"y", grid.origin.y}, {"theta", grid.origin.theta}}},
+            {"occupied", counts.occupied},
+            {"free", counts.free},
+            {"unknown", counts.unknown},
+            {"known_size", {{"width", known.width}, {"height", known.height}}},
+            {"warnings", warnings}};
+  if (named.recording) {
+    const Recording& recording = *named.recording;
+    json["bag"] = {{"topic", recording.topic},
+                   {"frame_id", recording.frame_id},
+                   {"maps", recording.maps},
+                   {"updates", recording.updates}};
+  }
+  return json;
+}
+
+NamedMap read_topic(const Bag& bag, const std::string& topic) {
+  BagMaps maps(bag, topic);
+  BagMap last = maps.last();
+  const MapName name{bag.path(), maps.topic()};
+  return {
+      format_map_name(name).string(),
+      {std::move(last.grid), std::move(last.warnings), bag.files()},
+      Recording{maps.topic(), std::move(last.frame_id), maps.messages() - maps.updates(), maps.updates()}};
+}
+
+// Of a bag without a topic, the map of each of its topics.
+template <typename Use>
+void for_each_map(const std::string& path, const LoadOptions& load, const Use& use) {
+  const auto [file, topic] = parse_map_name(path);
+  if (!is_bag(file)) return use(NamedMap{path, load_any_map(path, load), std::nullopt});
+  const Bag bag(file, load);
+  const std::vector<BagTopic> topics = bag.map_topics();
+  if (!topic.empty() || topics.empty()) return use(read_topic(bag, topic));
+  for (const BagTopic& one : topics) use(read_topic(bag, one.name));
 }
 
 int info(const InfoOptions& options) {
   Json maps = Json::array();
   for (const std::string& path : options.maps) {
-    const LoadedMap map = load_map(path, options.load);
-    if (options.json) {
-      maps.push_back(describe_json(path, map));
-    } else {
-      print(describe(path, map));
-    }
+    for_each_map(path, options.load, [&](const NamedMap& map) {
+      if (options.json) {
+        maps.push_back(describe_json(map));
+      } else {
+        print(describe(map));
+      }
+    });
   }
   if (options.json) print(Json{{"maps", maps}}.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
   return kDone;
@@ -101,13 +153,13 @@ void add_info(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("info", "Show size, resolution, origin, cell counts and warnings of maps");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_option("MAP", options->maps, "map_server YAML, or an image with --resolution")
-      ->type_name("FILE")
-      ->required();
+  command->add_option("MAP", options->maps, std::string(kMapHelp))->type_name("MAP")->required();
   command->add_flag("--json", options->json, "Print JSON, on one line");
   add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
-  command->footer("Example:\n  gridmerge info robot1.yaml robot2.yaml");
+  command->footer(
+      "Of a bag without a topic it shows the last map of each topic that has maps.\n\n"
+      "Example:\n  gridmerge info robot1.yaml robot2.yaml\n  gridmerge info robot1.mcap");
   command->callback([options, &action] { action = [options] { return info(*options); }; });
 }
 

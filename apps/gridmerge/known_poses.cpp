@@ -9,10 +9,10 @@
 #include <numbers>
 #include <set>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 #include "console.hpp"
+#include "gridmerge/bag/any_map.hpp"
 #include "gridmerge/io/initial_poses.hpp"
 
 namespace gridmerge::cli {
@@ -23,8 +23,7 @@ namespace {
 std::optional<std::size_t> find_map(const std::vector<std::string>& maps, const std::string& name,
                                     const std::filesystem::path& path) {
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    std::error_code absent;
-    if (std::filesystem::equivalent(path, maps[i], absent)) return i;
+    if (is_same_map(path, maps[i])) return i;
   }
   const auto found = std::find(maps.begin(), maps.end(), name);
   if (found == maps.end()) return std::nullopt;

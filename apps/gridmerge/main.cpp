@@ -83,6 +83,9 @@ int run(int argc, char** argv) {
   add_match(app, action);
   add_measure(app, action);
   add_merge(app, action);
+#ifdef GRIDMERGE_HAS_NODE
+  add_node(app, action);
+#endif
   add_report(app, action);
   add_view(app, action);
   add_evaluate(app, action);

@@ -138,9 +138,7 @@ void add_match(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("match", "Find how one map lies on another, and whether to believe it");
   const auto options = std::make_shared<MatchCommandOptions>();
-  command->add_option("FIXED", options->fixed, "map_server YAML, or an image with --resolution")
-      ->type_name("FILE")
-      ->required();
+  command->add_option("FIXED", options->fixed, std::string(kMapHelp))->type_name("MAP")->required();
   command->add_option("MOVING", options->moving, "The map to lay on it")->type_name("FILE")->required();
   command->add_flag("--json", options->json, "Print JSON, on one line");
   add_search_options(*command, options->search);
@@ -151,7 +149,8 @@ void add_match(CLI::App& app, Action& action) {
   command->footer(
       "The transform takes points of MOVING to FIXED, in metres and radians of the map frames.\n"
       "It is given for a refused pair too; the exit code is 3 then.\n\n"
-      "Example:\n  gridmerge match robot1.yaml robot2.yaml");
+      "Example:\n  gridmerge match robot1.yaml robot2.yaml\n  gridmerge match team.mcap#/tb1/map "
+      "team.mcap#/tb2/map");
   command->callback([options, &action] { action = [options] { return run_match(*options); }; });
 }
 

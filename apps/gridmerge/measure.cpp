@@ -60,6 +60,7 @@ constexpr std::array kClasses{DistanceClass{"occupied", Cell::occupied}, Distanc
 template <typename Choices>
 std::vector<std::string> names_of(const Choices& choices) {
   std::vector<std::string> names;
+  names.reserve(choices.size());
   for (const auto& choice : choices) names.emplace_back(choice.name);
   return names;
 }
@@ -231,9 +232,7 @@ void add_distance_map_options(CLI::App& command, MeasureCommandOptions& options)
 void add_measure(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("measure", "Say what a pose of maps is worth, found or not");
   const auto options = std::make_shared<MeasureCommandOptions>();
-  command->add_option("FIXED", options->fixed, "map_server YAML, or an image with --resolution")
-      ->type_name("FILE")
-      ->required();
+  command->add_option("FIXED", options->fixed, std::string(kMapHelp))->type_name("MAP")->required();
   command->add_option("MOVING", options->moving, "The maps that are laid on it")
       ->type_name("FILE")
       ->required()

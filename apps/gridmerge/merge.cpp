@@ -14,8 +14,11 @@
 #include <utility>
 #include <vector>
 
+#include "cached_merge.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "exports.hpp"
+#include "gridmerge/bag/any_map.hpp"
 #include "gridmerge/merge/doubled_walls.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/json.hpp"
@@ -41,6 +44,8 @@ struct MergeCommandOptions {
   bool elastic = false;
   SearchOptions search;
   KnownPoseOptions known;
+  CacheOptions cache;
+  ExportOptions exports;
 };
 
 struct Inputs {
@@ -53,10 +58,6 @@ void tell_of_copies(const MergeCommandOptions& options, const std::vector<Occupa
                     Console& console) {
   std::vector<std::string> twice;   // named before
   std::vector<std::string> copies;  // of another file's cells
-  const auto is_one_file = [&](std::size_t i, std::size_t j) {
-    std::error_code absent;
-    return std::filesystem::equivalent(options.maps[i], options.maps[j], absent);
-  };
   const auto has_equal_cells = [&](std::size_t i, std::size_t j) {
     return maps[i].width == maps[j].width && maps[i].resolution == maps[j].resolution &&
            maps[i].cells == maps[j].cells;
@@ -65,7 +66,7 @@ void tell_of_copies(const MergeCommandOptions& options, const std::vector<Occupa
     bool is_twice = false;
     std::optional<std::size_t> original;
     for (std::size_t j = 0; j < i; ++j) {
-      is_twice = is_twice || is_one_file(i, j);
+      is_twice = is_twice || is_same_map(options.maps[i], options.maps[j]);
       if (!original && has_equal_cells(i, j)) original = j;
     }
     if (!(is_twice || original) || count_cells(maps[i]).known() == 0) continue;
@@ -109,27 +110,31 @@ MergeResult merge_up_tree_named(const std::vector<OccupancyGrid>& maps, const Me
   return merge_up_tree(maps, match_named, engine);
 }
 
-MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
-                       const std::vector<std::optional<KnownPose>>& known_poses,
-                       const MergeCommandOptions& options, PairMatcher& matcher,
-                       const std::optional<double>& coarser, Console& console) {
-  const auto progress = [&](std::size_t done, std::size_t total) {
+MergeOptions merge_options(const MergeCommandOptions& options, Console& console) {
+  MergeOptions engine;
+  engine.match = match_options(options.common, options.search);
+  engine.resolution = options.output_resolution;
+  engine.max_false_joins = options.max_false_joins;
+  engine.elastic = options.elastic;
+  engine.progress = [&console](std::size_t done, std::size_t total) {
     if (done < total) {
       console.progress("matching pairs", static_cast<double>(done) / static_cast<double>(total));
     } else {
       console.progress("arranging the maps");
     }
   };
+  return engine;
+}
+
+MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
+                       const std::vector<std::optional<KnownPose>>& known_poses,
+                       const MergeCommandOptions& options, PairMatcher& matcher, CachedEngine& cached,
+                       const std::optional<double>& coarser, Console& console) {
+  const MergeOptions engine = merge_options(options, console);
   try {
     if (options.search.up_the_tree())
-      return merge_up_tree_named(maps, options, matcher, {options.output_resolution, progress});
-    MergeOptions engine;
-    engine.match = match_options(options.common, options.search);
-    engine.resolution = options.output_resolution;
-    engine.max_false_joins = options.max_false_joins;
-    engine.elastic = options.elastic;
-    engine.progress = progress;
-    return merge(maps, engine, known_poses);
+      return merge_up_tree_named(maps, options, matcher, {engine.resolution, engine.progress});
+    return cached.merge(maps, engine, known_poses);
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one
     throw FileError(
         options.output,
@@ -179,17 +184,17 @@ std::string describe_nothing(const MergeCommandOptions& options, const MergeResu
 
 /// How maps that lie apart may lie together, the most probable ways.
 std::string describe_open_ways(const std::vector<std::string>& names, const MergeResult& result) {
-  constexpr std::size_t kMostTold = 6;
+  constexpr std::size_t kMaxTold = 6;
   std::string text;
   const auto out = std::back_inserter(text);
-  for (std::size_t i = 0; i < std::min(result.open_ways.size(), kMostTold); ++i) {
+  for (std::size_t i = 0; i < std::min(result.open_ways.size(), kMaxTold); ++i) {
     const OpenWay& way = result.open_ways[i];
     fmt::format_to(out, "perhaps: {} in the frame of {} at {} (probability {:.2f})\n",
                    escape_controls(names[way.moving]), escape_controls(names[way.fixed]),
                    describe_pose(way.T_fixed_moving), way.probability);
   }
-  if (result.open_ways.size() > kMostTold)
-    fmt::format_to(out, "and {} more such ways: see transforms.json\n", result.open_ways.size() - kMostTold);
+  if (result.open_ways.size() > kMaxTold)
+    fmt::format_to(out, "and {} more such ways: see transforms.json\n", result.open_ways.size() - kMaxTold);
   return text;
 }
 
@@ -209,10 +214,8 @@ std::string describe(const MergeCommandOptions& options, const MergeResult& resu
   }
   if (result.expected_false_joins && !result.components.empty())
     fmt::format_to(out, "of these joins, {:.3f} are expected to be false\n", *result.expected_false_joins);
-  for (std::size_t i = 0; i < result.left_out.size(); ++i) {
-    fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[result.left_out[i]]),
-                   explain_left_out(result, i));
-  }
+  for (const LeftOut& one : result.left_out)
+    fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain_left_out(result, one));
   text += describe_open_ways(names, result);
   for (const Join& join : result.joins) {
     const std::string pair =
@@ -234,16 +237,17 @@ std::string describe(const MergeCommandOptions& options, const MergeResult& resu
 /// another map, at another scale.
 std::string scale_hints(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
                         const MergeResult& result, Console& console) {
-  constexpr std::size_t kMostHints = 2;  // each takes as long as ten matches
+  constexpr std::size_t kMaxHints = 2;  // each takes as long as ten matches
   if (options.search.up_the_tree() || result.left_out.empty()) return {};
   const bool has_merged = !result.components.empty();
-  const std::size_t first = result.left_out.front();
+  const std::size_t first = result.left_out.front().map;
   const NamedMap fixed = has_merged ? NamedMap{component_file(0), result.components.front().fused.grid}
                                     : NamedMap{options.maps[first], maps[first]};
   std::string text;
   std::size_t asked = 0;
-  for (const std::size_t map : result.left_out) {
-    if ((!has_merged && map == first) || count_cells(maps[map]).known() == 0 || asked == kMostHints) continue;
+  for (const LeftOut& one : result.left_out) {
+    const std::size_t map = one.map;
+    if ((!has_merged && map == first) || count_cells(maps[map]).known() == 0 || asked == kMaxHints) continue;
     ++asked;
     console.progress("trying other scales");
     text += scale_hint(fixed, {options.maps[map], maps[map]}, match_options(options.common, options.search));
@@ -267,21 +271,22 @@ std::string describe_doubled(const MergeCommandOptions& options, const std::vect
   return text;
 }
 
-/// The trace may lie beside the other outputs, whose directory need not be there yet.
-void try_trace(const MergeCommandOptions& options, const std::vector<std::filesystem::path>& inputs) {
-  const std::filesystem::path trace = options.search.trace;
-  const auto normal = [](const std::filesystem::path& path) {
-    return std::filesystem::absolute(path / "").lexically_normal();
-  };
-  const bool beside = normal(trace.parent_path()) == normal(options.output);
-  if (beside && is_merge_output(trace.filename()))
-    throw FileError(trace, "is a file that the merge itself writes: choose another name for the trace");
-  if (!beside || std::filesystem::exists(options.output)) try_output_file(options.search.trace, inputs);
+int run_shard(const MergeCommandOptions& options) {
+  Console console(options.common);
+  const KnownPoses known_poses(options.known, options.maps, console);
+  CachedEngine cached(options.cache, console);
+  const Inputs inputs = load_inputs(options, console);
+  const std::string text =
+      cached.make_shard(inputs.maps, merge_options(options, console), known_poses.poses());
+  console.clear();
+  print(text);
+  return kDone;
 }
 
 int run_merge(const MergeCommandOptions& options) {
   Console console(options.common);
   const KnownPoses known_poses(options.known, options.maps, console);
+  CachedEngine cached(options.cache, console);
   Inputs inputs = load_inputs(options, console);
   if (!options.known.init.empty()) inputs.files.emplace_back(options.known.init);
   prepare_merge_output(options.output, inputs.files);
@@ -293,10 +298,13 @@ int run_merge(const MergeCommandOptions& options) {
                     "--output-resolution {:.2g} makes it smaller",
                     *coarser));
   PairMatcher matcher(options.common, options.search);
-  if (!options.search.trace.empty()) try_trace(options, inputs.files);
-  const MergeResult result = merge_maps(inputs.maps, known_poses.poses(), options, matcher, coarser, console);
+  if (!options.search.trace.empty()) try_result_file(options.search.trace, options.output, inputs.files);
+  const std::vector<Export> exports = exports_of(options.exports, options.output);
+  try_exports(exports, options.output, inputs.files);
+  const MergeResult result =
+      merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
   console.progress("writing the result");
-  write_merge_output(options.output, inputs.files, options.maps, inputs.maps, result);
+  write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   matcher.write_trace();
   const std::string hints =
       scale_hints(options, inputs.maps, result, console) + describe_doubled(options, inputs.maps, result);
@@ -305,6 +313,7 @@ int run_merge(const MergeCommandOptions& options) {
   print(describe(options, result, known_poses.describe_unused(inputs.maps, result)) + hints);
   const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
   print("look at it: " + escape_controls(page.string()) + "\n");
+  print(write_exports(exports, inputs.files, {options.maps, inputs.maps, result}));
   return result.components.size() == 1 && result.left_out.empty() ? kDone : kRefused;
 }
 
@@ -313,13 +322,12 @@ int run_merge(const MergeCommandOptions& options) {
 void add_merge(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("merge", "Merge maps into one, as far as they fit together");
   const auto options = std::make_shared<MergeCommandOptions>();
-  command->add_option("MAP", options->maps, "map_server YAMLs, or images with --resolution")
-      ->type_name("FILE")
+  command->add_option("MAP", options->maps, std::string(kMapHelp))
+      ->type_name("MAP")
       ->required()
       ->expected(2, -1);
   command->add_option("-o,--output", options->output, "Directory for the results; made if need be")
-      ->type_name("DIR")
-      ->required();
+      ->type_name("DIR");
   command
       ->add_option("--output-resolution", options->output_resolution,
                    "Metres per cell of the merged map; if not given, those of the finest map")
@@ -342,6 +350,9 @@ void add_merge(CLI::App& app, Action& action) {
       "drift has bent. A map that --fix holds stays straight. It changes neither which maps join nor "
       "how sure that is");
   add_trace_option(*command, options->search);
+  add_cache_option(*command, options->cache);
+  add_shard_option(*command, options->cache);
+  add_export_option(*command, options->exports);
   add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
   command->footer(
@@ -349,7 +360,19 @@ void add_merge(CLI::App& app, Action& action) {
       "that do not fit are left out and the exit code is 3.\n\n"
       "Every pair is matched, and what all pairs say together decides: a weak pair that agrees with the\n"
       "others is used (rescued), a strong one that contradicts them is not (rejected).\n\n"
+      "With --cache a run that was ended goes on where it was. --shard shares the matches among machines "
+      "that\n"
+      "see one directory. Pairs are looked at in two rounds: quickly, and thoroughly those whose maps that\n"
+      "leaves apart. A shard needs no other for the first round, and all others for the second. So run "
+      "every\n"
+      "shard, wait for all, and run every shard once more; the merge itself makes what is missing:\n"
+      "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (and 2/2 elsewhere)\n"
+      "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (when both have ended; and 2/2 "
+      "elsewhere)\n"
+      "  gridmerge merge --cache matches robot*.yaml -o merged\n\n"
       "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged\n"
+      "  gridmerge merge robot1.yaml robot2.yaml -o merged --export g2o --export open-rmf=fleet.yaml\n"
+      "  gridmerge merge robot1.mcap team.mcap#/tb2/map team.mcap#/tb3/map -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml --fix robot2.yaml -o "
       "merged");
@@ -361,7 +384,14 @@ void add_merge(CLI::App& app, Action& action) {
     const bool knows_poses = !options->known.init.empty() || !options->known.fix.empty();
     if (knows_poses && options->search.up_the_tree())
       throw CLI::ValidationError(options->known.init.empty() ? "--fix" : "--init", "needs --strategy joint");
-    action = [options] { return run_merge(*options); };
+    if (options->cache.is_used() && options->search.up_the_tree())
+      throw CLI::ValidationError("--cache", "needs --strategy joint");
+    const bool is_shard = !options->cache.shard.empty();
+    if (is_shard && !options->cache.is_used()) throw CLI::ValidationError("--shard", "needs --cache");
+    if (is_shard && !options->output.empty())
+      throw CLI::ValidationError("--shard", "merges nothing: leave -o out");
+    if (!is_shard && options->output.empty()) throw CLI::RequiredError("--output");
+    action = [options, is_shard] { return is_shard ? run_shard(*options) : run_merge(*options); };
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <string_view>
 
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/io/map_file.hpp"
@@ -17,6 +18,11 @@ struct CommonOptions {
 };
 
 void add_common_options(CLI::App& command, CommonOptions& options);
+
+/// What a command takes as a map.
+inline constexpr std::string_view kMapHelp =
+    "map_server YAML, image with --resolution, or ROS 2 bag (.mcap, .db3, folder): BAG#TOPIC, "
+    "whose last map counts; the topic may be left out where only one has maps";
 
 /// --resolution and --literal-thresholds: how files become maps.
 void add_map_file_options(CLI::App& command, LoadOptions& options);

@@ -4,6 +4,7 @@
 #include <system_error>
 #include <utility>
 
+#include "gridmerge/bag/any_map.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_record.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 LoadedMap load_map_of(const std::string& name, const SavedMergeOptions& options, MapReader& reader) {
   const std::filesystem::path path = std::filesystem::path(options.root) / name;
   std::error_code error;
-  if (!std::filesystem::exists(path, error))
+  if (!std::filesystem::exists(parse_map_name(path).file, error))
     throw FileError(path,
                     "is not there, and the report shows it: name the folder from which the maps were merged "
                     "with --root FOLDER");

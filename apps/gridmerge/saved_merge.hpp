@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "console.hpp"
-#include "gridmerge/merge/merge_result.hpp"
+#include "gridmerge/report/named_merge.hpp"
 
 namespace gridmerge::cli {
 
@@ -27,6 +27,8 @@ struct SavedMerge {
   std::vector<OccupancyGrid> maps;
   std::vector<std::filesystem::path> files;  // that the maps were read from
   MergeResult result;
+
+  NamedMerge named() const { return {names, maps, result}; }
 };
 
 /// Reads what 'gridmerge merge' wrote, and the maps that it names. Warns of merged maps that differ from what

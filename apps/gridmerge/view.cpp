@@ -43,8 +43,7 @@ int run_view(const ViewCommandOptions& options) {
   Console console(options.common);
   const SavedMerge merge = load_saved_merge(options.merge, console);
   std::string page;
-  with_threads(options.common.threads,
-               [&] { page = live_report_page(merge.names, merge.maps, merge.result); });
+  with_threads(options.common.threads, [&] { page = live_report_page(merge.named()); });
   PageServer server(options.address, options.port, std::move(page), [&](const std::string& body) {
     return answer_refine(merge, options.common.threads, body);
   });

@@ -21,7 +21,7 @@ int main(int argc, char** argv) try {
       std::printf("  %s at x %.2f m, y %.2f m, %.2f rad\n", argv[member.map + 1], T.x, T.y, T.theta);
     }
   }
-  for (const std::size_t map : result.left_out) std::printf("left out: %s\n", argv[map + 1]);
+  for (const gridmerge::LeftOut& one : result.left_out) std::printf("left out: %s\n", argv[one.map + 1]);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "merge_maps: %s\n", error.what());
   return 1;

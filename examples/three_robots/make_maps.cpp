@@ -108,7 +108,7 @@ Shared shared_cells(const RobotMap& fixed, const RobotMap& moving) {
     for (int column = 0; column < moving.grid.width; ++column) {
       const Cell cell = moving.grid.at(column, row);
       if (cell == Cell::unknown) continue;
-      const Point2 p = in_other_frame(fixed.frame, moving.frame, moving.grid.cell_center(column, row));
+      const Point2 p = in_other_frame(fixed.frame, moving.frame, moving.grid.cell_centre(column, row));
       const int c = static_cast<int>(std::floor((p.x - fixed.grid.origin.x) / fixed.grid.resolution));
       const int r = static_cast<int>(std::floor((p.y - fixed.grid.origin.y) / fixed.grid.resolution));
       if (!says(c, r, Cell::free) && !says(c, r, Cell::occupied)) continue;

@@ -18,7 +18,14 @@
 #include "gridmerge/io/initial_poses.hpp"
 #include "gridmerge/io/map_file.hpp"
 #endif
+#if __has_include("gridmerge/cache/match_work.hpp")
+#include "gridmerge/cache/match_work.hpp"
+#endif
+#if __has_include("gridmerge/bag/any_map.hpp")
+#include "gridmerge/bag/any_map.hpp"
+#endif
 #if __has_include("gridmerge/report/merge_output.hpp")
+#include "gridmerge/report/interchange.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/merge_record.hpp"
 #endif

@@ -14,6 +14,7 @@ that is named first: that of ``match(fixed, moving)`` takes a point of the movin
 from importlib.metadata import version
 from types import FunctionType
 
+from ._bag import BagTopic, RecordedMap, bag_topics, recorded_maps
 from ._core import FileError
 from ._deformation import Deformation
 from ._evaluate import (
@@ -26,10 +27,11 @@ from ._evaluate import (
     TimeSummary,
     evaluate,
 )
+from ._executor import ExecutorError
 from ._grid import MapLike, OccupancyGrid, load, save
 from ._inputs import MapWarning
 from ._known_poses import InitialPose
-from ._match import Hypothesis, MatchResult, Reason, Verdict, match
+from ._match import Hypothesis, MatchResult, PairPose, Reason, Verdict, match
 from ._measure import (
     CellClass,
     CommonCells,
@@ -45,24 +47,37 @@ from ._measure import (
     measure_poses,
     poses_between,
 )
-from ._merge import Component, Join, JoinOutcome, LeftOut, Member, MergeResult, OpenWay, merge
+from ._merge import (
+    Component,
+    ExportFormat,
+    Join,
+    JoinOutcome,
+    LeftOut,
+    Member,
+    MergeResult,
+    OpenWay,
+    merge,
+)
 from ._merger import Merger
 from ._message import OccupancyGridMessage
 from ._random_walk import RandomWalkMatch, Trace, Walk, match_by_random_walk, plot_walk
 from ._simulate import BUILDING_KINDS, SimulatedMap, SimulatedPair, Simulation, simulate
-from ._team import RobotStatus, Team, TeamAnswer, TeamComponent, TeamEvent
+from ._team import RobotState, RobotStatus, Team, TeamAnswer, TeamComponent, TeamEvent, TeamEventKind
 from ._transform import PoseLike, Transform
 
 __version__ = version("gridmerge")
 
 __all__ = [
     "BUILDING_KINDS",
+    "BagTopic",
     "CellClass",
     "CommonCells",
     "Component",
     "Deformation",
     "DistancePass",
     "Evaluation",
+    "ExecutorError",
+    "ExportFormat",
     "FileError",
     "Hypothesis",
     "InitialPose",
@@ -82,11 +97,14 @@ __all__ = [
     "OccupancyGridMessage",
     "OpenWay",
     "PairCounts",
+    "PairPose",
     "PoseLike",
     "PoseMeasure",
     "PsiTerms",
     "RandomWalkMatch",
     "Reason",
+    "RecordedMap",
+    "RobotState",
     "RobotStatus",
     "SetCase",
     "SetCounts",
@@ -97,11 +115,13 @@ __all__ = [
     "TeamAnswer",
     "TeamComponent",
     "TeamEvent",
+    "TeamEventKind",
     "TimeSummary",
     "Trace",
     "Transform",
     "Verdict",
     "Walk",
+    "bag_topics",
     "count_equal_cells",
     "distance_map",
     "draw_on_lattice",
@@ -115,6 +135,7 @@ __all__ = [
     "merge",
     "plot_walk",
     "poses_between",
+    "recorded_maps",
     "save",
     "simulate",
 ]

@@ -44,13 +44,6 @@ def share(name: str, value: object) -> float:
     return converted
 
 
-def at_least_0(name: str, value: object) -> float:
-    converted = number(name, value)
-    if converted < 0.0:
-        raise ValueError(f"{name}: must not be negative, is {value}")
-    return converted
-
-
 def index(name: str, value: object, what: str = "a whole number") -> int:
     try:
         converted = None if isinstance(value, bool) else operator.index(value)  # type: ignore[arg-type]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arguments, _core, _html
+from . import _arguments, _bag, _core, _html
 from ._message import Content, OccupancyGridMessage, Stamp, fill_message, read_message, to_fields
 from ._transform import PoseLike, Transform, to_transform
 
@@ -147,10 +147,15 @@ class OccupancyGrid:
         return self._frame_id
 
     @property
-    def _file(self) -> str | None:
-        """The same, wherever the program has gone since."""
+    def _file(self) -> tuple[str, str] | None:
+        """The same, wherever the program has gone since: the file or folder, and the topic of a bag or ""."""
         files = self._core.files
-        return os.fsdecode(files[0]) if files else None
+        if not files or self._source is None:
+            return None
+        file = os.fsdecode(files[0])
+        if len(files) > 1 and os.path.basename(file) == "metadata.yaml":  # of a bag that is a folder
+            file = os.path.dirname(file)
+        return file, _bag.topic_of(self._source)
 
     def to_numpy(self, *, probabilities: bool | None = None) -> NDArray[np.int8]:
         """The values of nav_msgs/OccupancyGrid: a new int8 array of shape (height, width), row 0 at the bottom.
@@ -262,18 +267,36 @@ MapLike: TypeAlias = OccupancyGrid | OccupancyGridMessage | Mapping[str, Any] | 
 
 
 def load(
-    path: str | os.PathLike[str], resolution: float | None = None, *, literal_thresholds: bool = False
+    path: str | os.PathLike[str],
+    resolution: float | None = None,
+    *,
+    literal_thresholds: bool = False,
+    topic: str | None = None,
 ) -> OccupancyGrid:
-    """Reads a map_server YAML with its image, or a bare image with its `resolution` [m/cell].
+    """Reads a map_server YAML with its image, a bare image with its `resolution` [m/cell], or the last map of a bag.
 
     Images are PGM, PPM, PNG, BMP or JPEG. In trinary mode the gray 205, which map savers write for unknown, is unknown
     whatever the thresholds say, unless `literal_thresholds`.
+    Bags are those of ROS 2 (.mcap, .db3, a rosbag2 folder) and, with the extra `rosbags`, of ROS 1 (.bag). The path
+    may name the topic, as in ``robot.mcap#/tb1/map``, or `topic` does; without it the bag's only topic of maps is
+    taken. Updates of the map (`<topic>_updates`) are applied.
     What the file says that its author may not have meant is in the map's ``warnings``.
-    Raises FileError, an OSError, for a file that cannot be read or is no map.
+    Raises FileError, an OSError, for a file that cannot be read or is no map, and ImportError for a bag of ROS 1
+    without rosbags.
     """
     name = _arguments.path("path", path)
     cell = 0.0 if resolution is None else to_resolution("resolution", resolution)
-    return OccupancyGrid._of(_core.load(name, cell, bool(literal_thresholds)), os.fsdecode(name))
+    file, wanted = _bag.split_name(path, topic)
+    if _bag.is_ros1(file):
+        core, frame = _bag.load_ros1(file, wanted)
+    elif _core.is_bag(file):
+        core, frame, _, _ = _core.load_topic(file, _arguments.to_bytes(wanted))
+    elif topic is None:
+        return OccupancyGrid._of(_core.load(name, cell, bool(literal_thresholds)), os.fsdecode(name))
+    else:
+        raise _core.FileError(f"{os.fsdecode(file)}: is no bag, and so has no topic {topic!r}")
+    source = os.fsdecode(file) + (f"#{wanted}" if wanted else "")
+    return OccupancyGrid._of(core, source, frame or None)
 
 
 def save(grid: OccupancyGrid, path: str | os.PathLike[str], *, probabilities: bool = False) -> None:

@@ -10,7 +10,7 @@ from typing import SupportsIndex, TypeAlias
 
 import numpy as np
 
-from . import _arguments, _core
+from . import _arguments, _bag, _core
 from ._grid import OccupancyGrid
 from ._transform import PoseLike, Transform, to_transform
 
@@ -58,12 +58,17 @@ class NamedMaps:
     def at(self, path: str | os.PathLike[str]) -> int | None:
         """The map that lies there, by whichever way."""
         try:
-            there = os.stat(path)
+            file, topic = _bag.split_name(path, None)
+            there = os.stat(file)
         except (OSError, ValueError):
             return None
-        for index, file in enumerate(self._files):
+        for index, own in enumerate(self._files):
             try:
-                if file is not None and os.path.samestat(there, os.stat(file)):
+                if (
+                    own is not None
+                    and own[1] == topic.lstrip("/")
+                    and os.path.samestat(there, os.stat(own[0]))
+                ):
                     return index
             except OSError:
                 continue

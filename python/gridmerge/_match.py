@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias, cast
+from typing import Any, Literal, TypeAlias, cast
 
 from . import _arguments, _core
 from ._arguments import Progress
@@ -12,6 +12,7 @@ from ._repr import probability, short_pose
 from ._transform import Transform
 
 Verdict: TypeAlias = Literal["accepted", "refused"]
+"""Whether the best hypothesis is believed."""
 Reason: TypeAlias = Literal[
     "none",
     "nothing_to_compare",
@@ -21,6 +22,7 @@ Reason: TypeAlias = Literal[
     "several",
     "contradicts_others",
 ]
+"""Why a pair was refused: what, were it otherwise, would let the best hypothesis be accepted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,16 +44,13 @@ class Hypothesis:
 
 
 @dataclass(frozen=True, slots=True)
-class MatchResult:
-    """How the moving map lies on the fixed one, and whether that is to be believed."""
+class PairPose:
+    """A pose of a pair, and what its two maps say of it."""
 
-    verdict: Verdict
-    reason: Reason
-    """Why the pair was refused; "none" if it was accepted."""
     transform: Transform
-    """T_fixed_moving of the best hypothesis, between the map frames; given for a refused pair too."""
+    """T_fixed_moving, between the map frames."""
     probability: float
-    """That the best hypothesis is the true pose."""
+    """That it is the true pose."""
     acceptance_index: float
     """agreement / (agreement + disagreement); 0 when nothing overlaps."""
     agreement: int
@@ -60,6 +59,19 @@ class MatchResult:
     """Cells known in both maps and different."""
     overlap: float
     """Share of the smaller map's known cells that are known in both."""
+
+
+@dataclass(frozen=True, slots=True)
+class MatchResult(PairPose):
+    """How the moving map lies on the fixed one, and whether that is to be believed.
+
+    The pose is that of the best hypothesis, given for a refused pair too.
+    """
+
+    verdict: Verdict
+    """On the best hypothesis."""
+    reason: Reason
+    """Why the pair was refused; "none" if it was accepted."""
     seconds: float
     """Wall time from maps in memory to the verdict."""
     hypotheses: tuple[Hypothesis, ...]
@@ -67,6 +79,7 @@ class MatchResult:
 
     @property
     def accepted(self) -> bool:
+        """Whether the verdict is "accepted"."""
         return self.verdict == "accepted"
 
     def __repr__(self) -> str:
@@ -115,16 +128,23 @@ def match(
     return to_match_result(result)
 
 
+def pair_pose(core: _core.PairPose) -> dict[str, Any]:
+    """The fields of PairPose."""
+    return {
+        "transform": Transform(*core.transform),
+        "probability": core.probability,
+        "acceptance_index": core.acceptance_index,
+        "agreement": core.agreement,
+        "disagreement": core.disagreement,
+        "overlap": core.overlap,
+    }
+
+
 def to_match_result(core: _core.MatchResult) -> MatchResult:
     return MatchResult(
+        **pair_pose(core),
         verdict=cast(Verdict, core.verdict),
         reason=cast(Reason, core.reason),
-        transform=Transform(*core.transform),
-        probability=core.probability,
-        acceptance_index=core.acceptance_index,
-        agreement=core.agreement,
-        disagreement=core.disagreement,
-        overlap=core.overlap,
         seconds=core.seconds,
         hypotheses=tuple(
             Hypothesis(Transform(*one.transform), one.score, one.probability) for one in core.hypotheses

@@ -17,7 +17,9 @@ from ._repr import count, probability, short_pose
 from ._transform import PoseLike, Transform, to_pose
 
 CellClass: TypeAlias = Literal["occupied", "free", "unknown"]
+"""What a map says of a cell."""
 DistancePass: TypeAlias = Literal["start", "forward", "backward"]
+"""Where distance_map() stops: before its two passes, after the first, or after both."""
 
 _CLASSES: tuple[CellClass, ...] = ("unknown", "free", "occupied")
 _PASSES: tuple[DistancePass, ...] = ("start", "forward", "backward")
@@ -35,9 +37,13 @@ class PsiTerms:
     """The four mean distances that psi adds up [cells]; None where a map has no such cell, which counts as 0."""
 
     fixed_moving_occupied: float | None
+    """From the fixed map's occupied cells to the moving map's nearest one."""
     fixed_moving_free: float | None
+    """From the fixed map's free cells to the moving map's nearest one."""
     moving_fixed_occupied: float | None
+    """From the moving map's occupied cells to the fixed map's nearest one."""
     moving_fixed_free: float | None
+    """From the moving map's free cells to the fixed map's nearest one."""
 
     def __repr__(self) -> str:
         terms = (
@@ -53,8 +59,11 @@ class CommonCells:
     """The cells known in both maps, by what the maps say of them."""
 
     occupied_occupied: int
+    """Occupied in both maps."""
     free_free: int
+    """Free in both maps."""
     contradicting: int
+    """Free in the one map and occupied in the other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +79,7 @@ class PoseMeasure:
     psi: float
     """The sum of the four mean distances; 0 for equal maps."""
     psi_terms: PsiTerms
+    """The four mean distances."""
     agreement: int
     """Cells known in both maps and equal."""
     disagreement: int
@@ -77,6 +87,7 @@ class PoseMeasure:
     acceptance_index: float
     """agreement / (agreement + disagreement); 0 when nothing is known in common."""
     common: CommonCells
+    """Agreement and disagreement by what the maps say."""
     probability: float
     """That the pose is the true one, by the engine."""
     figures: Mapping[str, float]

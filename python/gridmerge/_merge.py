@@ -3,19 +3,20 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arguments, _core, _html
+from . import _arguments, _core, _executor, _html
 from ._arguments import Progress
 from ._deformation import Deformation
 from ._grid import MapLike, OccupancyGrid
-from ._inputs import to_maps
+from ._inputs import to_maps_and_files
 from ._known_poses import InitialPoses, MapKey, NamedMaps, to_known_poses
-from ._match import MatchResult, Reason, to_match_result
+from ._match import MatchResult, PairPose, Reason, pair_pose, to_match_result
 from ._repr import count, listed, probability, short_pose, shortened
 from ._transform import Transform
 
@@ -23,7 +24,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 JoinOutcome: TypeAlias = Literal["refused", "accepted", "rescued", "rejected", "known"]
+"""What became of a comparison of two maps: "rescued" is too weak by itself and agrees with the others, "rejected" would
+be believed by itself and contradicts them, "known" lies so because it is known beforehand."""
 Strategy: TypeAlias = Literal["joint", "tree"]
+ExportFormat: TypeAlias = Literal["g2o", "open-rmf", "geojson"]
+"""What other programs read of a merge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +38,7 @@ class Member:
     map: int
     """Index of the input map."""
     name: str
+    """Of the map: its file, or what merge() was told to call it."""
     transform: Transform
     """Takes points of the map's frame to the component's."""
     probability: float | None
@@ -93,27 +99,23 @@ class Component:
 
 
 @dataclass(frozen=True, slots=True)
-class Join:
-    """A comparison of two maps, and what became of it."""
+class Join(PairPose):
+    """A comparison of two maps, and what became of it.
+
+    The pose is the one that was used, or the best hypothesis if none was. The probability is that from these two maps
+    alone.
+    """
 
     fixed: int
     """Index of the input map."""
     moving: int
     """Index of the input map."""
     outcome: JoinOutcome
+    """What became of the comparison in the merge."""
     used: bool
     """Whether the maps lie so in the result."""
-    transform: Transform
-    """T_fixed_moving of the pose that was used, or of the best hypothesis if none was."""
-    probability: float
-    """Of that pose, from these two maps alone."""
     reason: Reason | None
     """Why the merge did not use it; None if it did."""
-    acceptance_index: float
-    """Of that pose, as the next three."""
-    agreement: int
-    disagreement: int
-    overlap: float
     match: MatchResult
     """What the two maps say by themselves."""
 
@@ -132,7 +134,9 @@ class LeftOut:
     map: int
     """Index of the input map."""
     name: str
+    """Of the map: its file, or what merge() was told to call it."""
     reason: Reason
+    """Of the refused join that was most probable."""
     explanation: str
     """The reason as the end of a sentence that begins with the map's name."""
 
@@ -198,6 +202,9 @@ class MergeResult:
     def _repr_html_(self) -> str:
         return _html.merge_html(self)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _unpickle, (self.maps, self.names, self._core.state(), self._more_inputs)
+
     def save(self, directory: str | os.PathLike[str]) -> None:
         """Writes the files that `gridmerge merge` writes: merged.yaml and merged.pgm (and merged_2.yaml and so on for
         further components), transforms.json, preview.png and report.html.
@@ -207,6 +214,21 @@ class MergeResult:
         """
         path = _arguments.path("directory", directory)
         self._core.save(path, [_arguments.to_bytes(name) for name in self.names], list(self._more_inputs))
+
+    def export(self, format: ExportFormat, file: str | os.PathLike[str]) -> None:
+        """Writes where the maps lie for other programs, as `gridmerge merge --export` does.
+
+        Args:
+            format: "g2o" is a pose graph, "open-rmf" has the points by which fleet adapters find where maps lie, and
+                "geojson" has the outlines of all placed maps.
+            file: is replaced as a whole.
+
+        Metres and radians, in the frame of each merged map. Raises ValueError for another format, and FileError if no
+        map was placed, or if the file cannot be written or is an input.
+        """
+        name = _arguments.choice("format", format, tuple(_core.export_formats()))
+        path = _arguments.path("file", file)
+        self._core.export(name, path, [_arguments.to_bytes(one) for one in self.names])
 
     def plot(self, ax: Axes | None = None, *, component: int = 0) -> Axes:
         """Draws a component: each input map in its own colour, where it lies in the component's frame [m].
@@ -232,6 +254,7 @@ def merge(
     output_resolution: float | None = None,
     elastic: bool = False,
     search: str = "exhaustive",
+    executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> MergeResult:
     """Merges maps by what all pairs of them say together; a map that does not belong is left out.
@@ -256,13 +279,18 @@ def merge(
             how sure that is, and needs the strategy "joint".
         search: as of match(). With "exhaustive" the thorough look is for pairs whose maps the quick one leaves apart.
             "random-walk" needs the strategy "tree".
+        executor: makes the matches: any concurrent.futures.Executor, of processes, threads, Dask or MPI. The result is
+            the same, bit by bit. Maps that are given as paths are read by the workers, under the same paths; others are
+            sent to them. Each task takes one thread, and is tried again when its worker dies. "tree" takes none.
         progress: called now and then, in the calling thread, with the share of the pairs that are matched.
 
     The frame of a component is that of its first member, unless a member is fixed. Other Python threads run meanwhile,
-    and Ctrl-C ends the work. Raises FileError for a file that is no map, and TypeError or ValueError, naming the
+    and Ctrl-C ends the work, also what an executor has not begun. Raises FileError for a file that is no map, or that
+    changes before a worker reads it; ExecutorError for an executor that fails; and TypeError or ValueError, naming the
     argument, for other mistakes and for merged maps of more than 2^28 cells.
     """
-    grids = to_maps("maps", maps)
+    given = to_maps_and_files("maps", maps)
+    grids = [grid for grid, _ in given]
     called = to_names(names, grids)
     up_the_tree = _arguments.choice("strategy", strategy, ("joint", "tree")) == "tree"
     if up_the_tree and (init is not None or fix is not None):
@@ -273,21 +301,51 @@ def merge(
         )
     if elastic and up_the_tree:
         raise ValueError("strategy: elastic needs 'joint'")
+    if _executor.check(executor) is not None and up_the_tree:
+        raise ValueError("executor: needs the strategy 'joint': a tree's matches wait for each other")
     # The program may go to another directory before it saves.
     more_inputs = (os.fsencode(os.path.abspath(init)),) if isinstance(init, (str, os.PathLike)) else ()
-    merged = _core.merge(
-        [grid._core for grid in grids],
-        to_known_poses(NamedMaps(called, grids), init, fix),
-        _arguments.threads(threads),
-        None if accept is None else _arguments.share("accept", accept),
-        _arguments.at_least_0("max_false_joins", max_false_joins),
-        to_output_resolution(output_resolution),
-        up_the_tree,
-        bool(elastic),
-        _arguments.choice("search", search, tuple(_core.search_methods())),
-        _arguments.progress(progress),
-    )
+    known = to_known_poses(NamedMaps(called, grids), init, fix)
+    checked_accept = None if accept is None else _arguments.share("accept", accept)
+    max_false_joins = _arguments.not_negative("max_false_joins", max_false_joins)
+    resolution = to_output_resolution(output_resolution)
+    search = _arguments.choice("search", search, tuple(_core.search_methods()))
+    told = _arguments.progress(progress)
+    if executor is None:
+        merged = _core.merge(
+            [grid._core for grid in grids],
+            known,
+            _arguments.threads(threads),
+            checked_accept,
+            max_false_joins,
+            resolution,
+            up_the_tree,
+            bool(elastic),
+            search,
+            told,
+        )
+    else:
+        merger = _core.Merger(
+            _arguments.threads(threads),
+            _core.DEFAULT_ACCEPT if checked_accept is None else checked_accept,
+            max_false_joins,
+            resolution,
+            bool(elastic),
+            search,
+        )
+        ids = [merger.add(grid._core, pose) for grid, pose in zip(grids, known, strict=True)]
+        shared = {i: _executor.of_map(grid, is_file) for i, (grid, is_file) in zip(ids, given, strict=True)}
+        matching = _executor.MatchingExecutor(executor, *merger.match_options())
+        _executor.match_due(matching, [(merger, shared)], told)
+        merged = merger.solve(None)
     return to_merge_result(merged, grids, called, more_inputs)
+
+
+def _unpickle(
+    grids: Sequence[OccupancyGrid], names: Sequence[str], state: bytes, more_inputs: tuple[bytes, ...]
+) -> MergeResult:
+    merged = _core.Merged.from_state([grid._core for grid in grids], state)
+    return to_merge_result(merged, grids, names, more_inputs)
 
 
 def to_names(names: Sequence[str] | None, grids: Sequence[OccupancyGrid]) -> list[str]:
@@ -369,16 +427,11 @@ def _to_open_way(way: _core.OpenWay) -> OpenWay:
 
 def _to_join(join: _core.Join) -> Join:
     return Join(
+        **pair_pose(join),
         fixed=join.fixed,
         moving=join.moving,
         outcome=cast(JoinOutcome, join.outcome),
         used=join.used,
-        transform=Transform(*join.transform),
-        probability=join.probability,
         reason=None if join.reason == "none" else cast(Reason, join.reason),
-        acceptance_index=join.acceptance_index,
-        agreement=join.agreement,
-        disagreement=join.disagreement,
-        overlap=join.overlap,
         match=to_match_result(join.match),
     )

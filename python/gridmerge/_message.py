@@ -29,10 +29,12 @@ class OccupancyGridMessage(Protocol):
     """
 
     @property
-    def info(self) -> Any: ...
+    def info(self) -> Any:
+        """Size, resolution and origin of the map."""
 
     @property
-    def data(self) -> Any: ...
+    def data(self) -> Any:
+        """The cells, row 0 at the bottom: -1 is unknown, 0 to 100 a probability of being occupied in per cent."""
 
 
 Stamp: TypeAlias = Any

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Trace: TypeAlias = Literal["none", "accepted", "all"]
+"""Which samples of a walk are kept."""
 
 _TRACES: tuple[Trace, ...] = ("none", "accepted", "all")
 _TRACE_COLUMNS = (
@@ -39,14 +40,21 @@ class Walk:
     """A random walk, and the best sample that it found."""
 
     c_lock: float
+    """Weight of disagreement less agreement in Delta."""
     transform: Transform
     """T_fixed_moving of the best sample."""
     delta: float
+    """Of the best sample: psi + c_lock * (disagreement - agreement)."""
     psi: float
+    """Of the best sample: the sum of the four mean distances [cells]."""
     omega: int
+    """Of the best sample: cells of the fixed map that have the same value in both maps, unknown included."""
     agreement: int
+    """Of the best sample: cells known in both maps and equal."""
     disagreement: int
+    """Of the best sample: cells known in both maps and different."""
     acceptance_index: float
+    """Of the best sample: agreement / (agreement + disagreement)."""
     proposals: int
     """Steps that were tried."""
     accepted: int

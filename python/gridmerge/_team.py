@@ -100,7 +100,8 @@ class TeamAnswer:
 
     def __repr__(self) -> str:
         state = "settled" if self.settled else "not settled"
-        return f"TeamAnswer({self.number}: {count(len(self.robots), 'robot')}, {count(len(self.components), 'component')}, {state})"
+        robots, components = count(len(self.robots), "robot"), count(len(self.components), "component")
+        return f"TeamAnswer({self.number}: {robots}, {components}, {state})"
 
 
 class Team:
@@ -138,7 +139,7 @@ class Team:
         options = _core.TeamOptions()
         options.threads = _arguments.threads(threads)
         options.accept = _arguments.share("accept", accept)
-        options.max_false_joins = _arguments.at_least_0("max_false_joins", max_false_joins)
+        options.max_false_joins = _arguments.not_negative("max_false_joins", max_false_joins)
         options.output_resolution = to_output_resolution(output_resolution)
         options.search_again = _arguments.share("search_again", search_again)
         options.confirmations = _arguments.whole("confirmations", confirmations, 1, 1000)
@@ -194,6 +195,14 @@ class Team:
         """The newest."""
         return _to_answer(self._core.answer())
 
+    def take_events(self) -> tuple[TeamEvent, ...]:
+        """What has changed since this was called last, oldest first: the events of every answer, those too that nobody
+        asked for.
+
+        Of more than 1000 the newest are kept.
+        """
+        return tuple(_to_event(event) for event in self._core.take_events())
+
     def wait_until_settled(self, seconds: float = 60.0) -> bool:
         """Waits until all that was heard is settled, or for so long [s]; says whether it is. Ctrl-C ends it."""
         until = time.monotonic() + _arguments.not_negative("seconds", seconds)
@@ -203,6 +212,10 @@ class Team:
                 return True
             if left <= 0.0:
                 return False
+
+
+def _to_event(event: _core.TeamEvent) -> TeamEvent:
+    return TeamEvent(cast(TeamEventKind, event.kind), event.robot, event.text)
 
 
 def _to_answer(answer: _core.TeamAnswer) -> TeamAnswer:
@@ -226,9 +239,7 @@ def _to_answer(answer: _core.TeamAnswer) -> TeamAnswer:
             )
             for robot in answer.robots
         ),
-        events=tuple(
-            TeamEvent(cast(TeamEventKind, event.kind), event.robot, event.text) for event in answer.events
-        ),
+        events=tuple(_to_event(event) for event in answer.events),
         seconds=answer.seconds,
         settled=answer.settled,
         problem=answer.problem or None,

@@ -25,8 +25,11 @@ class Transform:
     """
 
     x: float
+    """[m]"""
     y: float
+    """[m]"""
     theta: float
+    """[rad], in (-pi, pi]."""
 
     def __post_init__(self) -> None:
         theta = _arguments.number("theta", self.theta)

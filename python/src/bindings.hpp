@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/io/map_file.hpp"
 #include "gridmerge/match/match.hpp"
 
 namespace gridmerge::python {
@@ -42,6 +43,9 @@ struct Map {
   std::vector<std::filesystem::path> files;  // that it was read from
 };
 
+/// As Python holds it: the paths are absolute, as the program may go to another directory.
+Map to_map(LoadedMap loaded);
+
 /// Text that the library gives: names of files are any bytes, and come back as os.fsdecode() gives them.
 nb::str to_str(const std::string& text);
 
@@ -50,10 +54,15 @@ inline std::string to_string(const nb::bytes& bytes) {
   return {bytes.c_str(), bytes.size()};
 }
 
+inline nb::bytes to_nb_bytes(const std::string& bytes) {
+  return nb::bytes(bytes.data(), bytes.size());
+}
+
 /// How pairs are matched, as Python says it: `accept` is a probability, or the acceptance index of the random
 /// walk, and the usual one if there is none. `search` is one of search_methods().
 void set_search(MatchOptions& options, const std::string& search, std::optional<double> accept);
 
+void bind_bag(nb::module_& module);
 void bind_errors(nb::module_& module);
 void bind_worker(nb::module_& module);
 void bind_grid(nb::module_& module);
@@ -66,6 +75,7 @@ void bind_random_walk(nb::module_& module);
 void bind_simulate(nb::module_& module);
 void bind_deformation(nb::module_& module);
 void bind_evaluate(nb::module_& module);
+void bind_tasks(nb::module_& module);
 void bind_team(nb::module_& module);
 
 }  // namespace gridmerge::python

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
+#include "gridmerge/grid/message_values.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
@@ -22,22 +23,11 @@ using Percentages = Input<std::int8_t>;
 using Cells = Input<std::uint8_t>;
 using Probabilities = Input<float>;
 
-constexpr std::size_t kMostCells = std::size_t{1} << 28;
+constexpr std::size_t kMaxCells = std::size_t{1} << 28;
 
 constexpr std::int8_t kUnknown = -1;
 constexpr std::int8_t kFree = 0;
 constexpr std::int8_t kOccupied = 100;
-
-// nav2's thresholds for maps in raw mode, so that a message means what a file of the same values does.
-Cell cell_of(std::int8_t percentage) {
-  if (percentage < 0) return Cell::unknown;
-  const double occupancy = percentage / 100.0;
-  return occupancy >= 0.65 ? Cell::occupied : occupancy <= 0.196 ? Cell::free : Cell::unknown;
-}
-
-float probability_of(std::int8_t percentage) {
-  return percentage < 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(percentage / 100.0);
-}
 
 std::int8_t percentage_of(float probability) {
   return std::isnan(probability)
@@ -54,9 +44,8 @@ OccupancyGrid frame(const char* name, const Input<Value>& values, double resolut
   const std::size_t height = values.shape(0), width = values.shape(1);
   const std::string shape = "its shape is (" + std::to_string(height) + ", " + std::to_string(width) + ")";
   if (height == 0 || width == 0) throw std::invalid_argument(name + (": has no cells: " + shape));
-  if (height > kMostCells / width)
-    throw std::invalid_argument(name +
-                                (": has more than " + std::to_string(kMostCells) + " cells: " + shape));
+  if (height > kMaxCells / width)
+    throw std::invalid_argument(name + (": has more than " + std::to_string(kMaxCells) + " cells: " + shape));
   OccupancyGrid grid;
   grid.width = static_cast<int>(width);
   grid.height = static_cast<int>(height);
@@ -84,7 +73,7 @@ std::vector<Value> copy_of(const Input<Value>& values) {
 
 // Another thread may write into the array meanwhile: what is checked is what is used.
 Map from_percentages(const Percentages& data, double resolution, const Pose& origin) {
-  OccupancyGrid grid = frame("data", data, resolution, origin);
+  const OccupancyGrid grid = frame("data", data, resolution, origin);
   const OthersRun meanwhile;
   const std::vector<std::int8_t> values = copy_of(data);
   const auto wrong = std::find_if(values.begin(), values.end(),
@@ -96,13 +85,10 @@ Map from_percentages(const Percentages& data, double resolution, const Pose& ori
                                 std::to_string(at % data.shape(1)) +
                                 " is neither -1 (unknown) nor a percentage from 0 to 100");
   }
-  grid.cells.resize(values.size());
-  std::transform(values.begin(), values.end(), grid.cells.begin(), cell_of);
-  if (!std::all_of(values.begin(), values.end(), is_plain)) {
-    grid.probability.resize(values.size());
-    std::transform(values.begin(), values.end(), grid.probability.begin(), probability_of);
-  }
-  return {std::make_shared<const OccupancyGrid>(std::move(grid)), {}, {}};
+  return {std::make_shared<const OccupancyGrid>(
+              grid_of_percentages(grid.width, grid.height, grid.resolution, grid.origin, values)),
+          {},
+          {}};
 }
 
 Map from_cells(const Cells& cells, double resolution, const Pose& origin,
@@ -143,8 +129,8 @@ bool follows_from_percentages(const OccupancyGrid& grid) {
   for (std::size_t i = 0; i < grid.probability.size(); ++i) {
     const std::int8_t percentage = percentage_of(grid.probability[i]);
     plain = plain && is_plain(percentage);
-    if (cell_of(percentage) != grid.cells[i]) return false;
-    if (percentage != kUnknown && probability_of(percentage) != grid.probability[i]) return false;
+    if (cell_of_percentage(percentage) != grid.cells[i]) return false;
+    if (percentage != kUnknown && probability_of_percentage(percentage) != grid.probability[i]) return false;
   }
   return !plain;
 }

@@ -2,11 +2,20 @@
 #include <utility>
 
 #include "bindings.hpp"
+#include "gridmerge/bag/any_map.hpp"
 #include "gridmerge/io/initial_poses.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
+
+Map to_map(LoadedMap loaded) {
+  for (std::filesystem::path& one : loaded.files) one = std::filesystem::absolute(one);
+  std::vector<std::string> warnings;
+  for (MapWarning& warning : loaded.warnings) warnings.push_back(std::move(warning.text));
+  return {std::make_shared<const OccupancyGrid>(std::move(loaded.grid)), std::move(warnings),
+          std::move(loaded.files)};
+}
 
 namespace {
 
@@ -16,13 +25,7 @@ Map load(const nb::bytes& path, double resolution, bool literal_thresholds) {
   options.resolution = resolution;
   options.literal_thresholds = literal_thresholds;
   const OthersRun meanwhile;
-  LoadedMap loaded = load_map(file, options);
-  // The program may go to another directory.
-  for (std::filesystem::path& one : loaded.files) one = std::filesystem::absolute(one);
-  std::vector<std::string> warnings;
-  for (MapWarning& warning : loaded.warnings) warnings.push_back(std::move(warning.text));
-  return {std::make_shared<const OccupancyGrid>(std::move(loaded.grid)), std::move(warnings),
-          std::move(loaded.files)};
+  return to_map(load_any_map(file, options));
 }
 
 void save(const Map& map, const nb::bytes& path, bool probabilities) {

@@ -28,20 +28,22 @@ void set_search(MatchOptions& options, const std::string& search, std::optional<
 
 void bind_match(nb::module_& module) {
   module.attr("DEFAULT_ACCEPT") = MatchOptions{}.accept_probability;
+  module.attr("DEFAULT_MAX_HYPOTHESES") = MatchOptions{}.max_hypotheses;
   module.attr("DEFAULT_MAX_FALSE_JOINS") = MergeOptions{}.max_false_joins;
   nb::class_<Hypothesis>(module, "Hypothesis")
       .def_prop_ro("transform", [](const Hypothesis& it) { return to_pose(it.T_fixed_moving); })
       .def_ro("score", &Hypothesis::score)
       .def_ro("probability", &Hypothesis::probability);
-  nb::class_<MatchResult>(module, "MatchResult")
+  nb::class_<PairPose>(module, "PairPose")
+      .def_prop_ro("transform", [](const PairPose& pose) { return to_pose(pose.T_fixed_moving); })
+      .def_ro("probability", &PairPose::probability)
+      .def_ro("acceptance_index", &PairPose::acceptance_index)
+      .def_ro("agreement", &PairPose::agreement)
+      .def_ro("disagreement", &PairPose::disagreement)
+      .def_ro("overlap", &PairPose::overlap);
+  nb::class_<MatchResult, PairPose>(module, "MatchResult")
       .def_prop_ro("verdict", [](const MatchResult& result) { return name_of(result.verdict); })
       .def_prop_ro("reason", [](const MatchResult& result) { return name_of(result.reason); })
-      .def_prop_ro("transform", [](const MatchResult& result) { return to_pose(result.T_fixed_moving); })
-      .def_ro("probability", &MatchResult::probability)
-      .def_ro("acceptance_index", &MatchResult::acceptance_index)
-      .def_ro("agreement", &MatchResult::agreement)
-      .def_ro("disagreement", &MatchResult::disagreement)
-      .def_ro("overlap", &MatchResult::overlap)
       .def_ro("seconds", &MatchResult::seconds)
       .def_ro("hypotheses", &MatchResult::hypotheses);
   module.def("search_methods", [] {

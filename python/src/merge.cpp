@@ -6,8 +6,10 @@
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "gridmerge/merge/tree.hpp"
+#include "gridmerge/report/interchange.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/preview.hpp"
+#include "merge_bytes.hpp"
 #include "report/wording.hpp"
 #include "worker.hpp"
 
@@ -79,7 +81,17 @@ void save(const Merged& merged, const nb::bytes& directory, const std::vector<nb
   const std::vector<std::string> texts = to_strings(names);
   const std::filesystem::path path = to_string(directory);
   const OthersRun meanwhile;
-  write_merge_output(path, inputs, texts, grids_of(merged.maps), *merged.result);
+  write_merge_output(path, inputs, {texts, grids_of(merged.maps), *merged.result});
+}
+
+void write_exported(const Merged& merged, const std::string& format, const nb::bytes& file,
+                    const std::vector<nb::bytes>& names) {
+  std::vector<std::filesystem::path> inputs;
+  for (const Map& map : merged.maps) inputs.insert(inputs.end(), map.files.begin(), map.files.end());
+  const std::vector<std::string> texts = to_strings(names);
+  const std::filesystem::path path = to_string(file);
+  const OthersRun meanwhile;
+  write_export(export_format(format).value(), path, inputs, {texts, grids_of(merged.maps), *merged.result});
 }
 
 // The picture that save() writes.
@@ -87,25 +99,19 @@ nb::bytes preview(const Merged& merged, const std::vector<nb::bytes>& names) {
   const std::vector<std::string> texts = to_strings(names);
   const std::string png = [&] {
     const OthersRun meanwhile;
-    return preview_png(texts, grids_of(merged.maps), *merged.result);
+    return preview_png({texts, grids_of(merged.maps), *merged.result});
   }();
   return nb::bytes(png.data(), png.size());
 }
 
 void bind_results(nb::module_& module) {
-  nb::class_<Join>(module, "Join")
+  nb::class_<Join, PairPose>(module, "Join")
       .def_ro("fixed", &Join::fixed)
       .def_ro("moving", &Join::moving)
       .def_ro("match", &Join::match)
       .def_prop_ro("outcome", [](const Join& join) { return name_of(join.outcome); })
       .def_prop_ro("used", &Join::used)
-      .def_prop_ro("transform", [](const Join& join) { return to_pose(join.T_fixed_moving); })
-      .def_ro("probability", &Join::probability)
-      .def_prop_ro("reason", [](const Join& join) { return name_of(join.reason()); })
-      .def_ro("acceptance_index", &Join::acceptance_index)
-      .def_ro("agreement", &Join::agreement)
-      .def_ro("disagreement", &Join::disagreement)
-      .def_ro("overlap", &Join::overlap);
+      .def_prop_ro("reason", [](const Join& join) { return name_of(join.reason()); });
   nb::class_<PoseDeviation>(module, "PoseDeviation")
       .def_ro("position", &PoseDeviation::position)
       .def_ro("theta", &PoseDeviation::theta);
@@ -149,14 +155,29 @@ void bind_results(nb::module_& module) {
       .def_prop_ro("left_out",
                    [](const Merged& merged) {
                      std::vector<std::tuple<std::size_t, std::string, std::string>> left_out;
-                     for (std::size_t i = 0; i < merged.result->left_out.size(); ++i) {
-                       const Reason reason = merged.result->left_out_reasons[i];
-                       left_out.emplace_back(merged.result->left_out[i], name_of(reason),
-                                             explain_left_out(*merged.result, i));
-                     }
+                     for (const LeftOut& one : merged.result->left_out)
+                       left_out.emplace_back(one.map, name_of(one.reason),
+                                             explain_left_out(*merged.result, one));
                      return left_out;
                    })
+      .def("state",
+           [](const Merged& merged) {
+             const std::string bytes = [&] {
+               const OthersRun meanwhile;
+               return to_bytes(*merged.result);
+             }();
+             return to_nb_bytes(bytes);
+           })
+      .def_static(
+          "from_state",
+          [](std::vector<Map> maps, const nb::bytes& state) {
+            const std::string bytes = to_string(state);
+            const OthersRun meanwhile;
+            return Merged{std::move(maps), std::make_shared<const MergeResult>(merge_from_bytes(bytes))};
+          },
+          nb::arg("maps"), nb::arg("state"))
       .def("preview", &preview, nb::arg("names"))
+      .def("export", &write_exported, nb::arg("format"), nb::arg("file"), nb::arg("names"))
       .def("save", &save, nb::arg("directory"), nb::arg("names"), nb::arg("more_inputs"));
 }
 
@@ -176,6 +197,11 @@ void bind_merge(nb::module_& module) {
         return Map{std::make_shared<const OccupancyGrid>(bent_map(*map.grid, deformation)), {}, {}};
       },
       nb::arg("map"), nb::arg("deformation"));
+  module.def("export_formats", [] {
+    std::vector<std::string> names;
+    for (const ExportFormat format : export_formats()) names.emplace_back(name_of(format));
+    return names;
+  });
   module.def(
       "map_colour",
       [](std::size_t map) {

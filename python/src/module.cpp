@@ -10,6 +10,7 @@ NB_MODULE(_core, module) {
   bind_worker(module);
   bind_grid(module);
   bind_io(module);
+  bind_bag(module);
   bind_match(module);
   bind_measure(module);
   bind_deformation(module);
@@ -18,5 +19,6 @@ NB_MODULE(_core, module) {
   bind_random_walk(module);
   bind_simulate(module);
   bind_evaluate(module);
+  bind_tasks(module);
   bind_team(module);
 }

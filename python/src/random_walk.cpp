@@ -25,7 +25,7 @@ WalkedMatch match_walking(const Map& fixed, const Map& moving, const RandomWalkM
   return compute_in_worker(progress, [&](const Report& report) {
     RandomWalkMatchOptions options = wanted;
     WalkedMatch walked;
-    options.progress = [&](int done, int all) { report(static_cast<double>(done) / all); };
+    options.progress = report;
     options.on_walk = [&](int, double c_lock, const RandomWalkResult& result) {
       walked.walks.push_back({c_lock, result});
     };

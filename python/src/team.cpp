@@ -59,6 +59,8 @@ class PythonTeam {
     team_.set_known_pose(robot, to_known_pose(known));
   }
 
+  std::vector<TeamEvent> take_events() { return team_.take_events(); }
+
   Answer answer() const { return team_.answer(); }
 
   bool wait_until_settled(double seconds) const {
@@ -151,6 +153,7 @@ void bind_team(nb::module_& module) {
       .def("forget", &PythonTeam::forget, nb::arg("robot"))
       .def("set_known_pose", &PythonTeam::set_known_pose, nb::arg("robot"), nb::arg("known").none())
       .def("answer", [](const PythonTeam& team) { return HeldAnswer{team.answer()}; })
+      .def("take_events", &PythonTeam::take_events)
       .def("wait_until_settled", &PythonTeam::wait_until_settled, nb::arg("seconds"));
 }
 

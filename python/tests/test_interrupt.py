@@ -211,7 +211,7 @@ def test_a_merger_refuses_a_second_thread(robots: list[str]) -> None:
         other.start()
         other.join()
 
-    merger.result(progress=intrude)
+    merger.solve(progress=intrude)
     assert refusals and str(refusals[0]) == "the Merger is at work"
 
 
@@ -219,7 +219,7 @@ def test_a_merger_refuses_its_own_progress(robots: list[str]) -> None:
     merger = gridmerge.Merger()
     merger.add(robots[0])
     with pytest.raises(RuntimeError, match="at work"):
-        merger.result(progress=lambda share: merger.add(robots[1]))
+        merger.solve(progress=lambda share: merger.add(robots[1]))
     merger.add(robots[1])
     assert merger.solve().complete
 

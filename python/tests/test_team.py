@@ -41,6 +41,9 @@ def test_the_end_is_that_of_merge(explored: gridmerge.Simulation, team: gridmerg
         time.sleep(0.05)
     assert team.wait_until_settled(600.0)
     answer = team.answer()
+    joined = {event.robot for event in team.take_events() if event.kind == "joined"}
+    assert joined >= {robot.name for robot in answer.robots if robot.state == "placed"}
+    assert team.take_events() == ()
     merged = gridmerge.merge(grids_at(explored, 3), names=["tb0", "tb1", "tb2"])
     assert [sorted(member.name for member in one.members) for one in merged.components] == [
         list(one.robots) for one in answer.components
@@ -104,17 +107,19 @@ def test_bad_input(team: gridmerge.Team, explored: gridmerge.Simulation) -> None
 
 
 def test_many_threads_and_an_early_end(explored: gridmerge.Simulation) -> None:
-    team = gridmerge.Team()
     grids = grids_at(explored, 3)
 
-    def publish(number: int) -> None:
+    def publish(team: gridmerge.Team, number: int) -> None:
         for _ in range(20):
             team.hear(f"tb{number}", grids[number])
 
-    robots = [threading.Thread(target=publish, args=(number,)) for number in range(3)]
-    for robot in robots:
-        robot.start()
-    for robot in robots:
-        robot.join()
-    assert isinstance(team.answer().number, int)
-    del team  # at work, most likely
+    def hear_all() -> None:
+        team = gridmerge.Team()
+        robots = [threading.Thread(target=publish, args=(team, number)) for number in range(3)]
+        for robot in robots:
+            robot.start()
+        for robot in robots:
+            robot.join()
+        assert isinstance(team.answer().number, int)
+
+    hear_all()  # the team ends while it is at work, most likely

@@ -27,7 +27,7 @@ std::vector<TruePair> true_pairs(const Simulation& simulation) {
   std::vector<TruePair> pairs;
   for (const SimulatedPair& pair : simulation.pairs) {
     pairs.push_back({robot_map(pair.fixed), robot_map(pair.moving), pair.T_fixed_moving, pair.tolerance,
-                     std::string(1, pair.tier), pair.overlap});
+                     std::string(1, pair.tier), pair.overlap, pair.shared_wall});
   }
   return pairs;
 }
@@ -50,7 +50,7 @@ std::vector<TrueSet> sets(const Simulation& simulation) {
   for (std::size_t robot = 0; robot < simulation.maps.size(); ++robot) {
     const SimulatedMap& map = simulation.maps[robot];
     set.members.push_back({robot_map(robot), inverse(first.T_building_map) * map.T_building_map,
-                           std::max(kLeastTolerance, 0.3 + 2.0 * (first.bend + map.bend))});
+                           std::max(kMinTolerance, 0.3 + 2.0 * (first.bend + map.bend))});
   }
   return {set};
 }

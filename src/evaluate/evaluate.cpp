@@ -7,6 +7,7 @@
 
 #include "evaluate/count.hpp"
 #include "evaluate/map_cache.hpp"
+#include "gridmerge/bag/any_map.hpp"
 
 namespace gridmerge {
 
@@ -127,7 +128,7 @@ std::vector<std::filesystem::path> input_files(const Truth& truth) {
   const auto add = [&](const TruthMap& map) {
     if (!maps.insert(map.path).second) return;
     for (const std::filesystem::path& file :
-         named(map, [&] { return map_files(map.path, of_named_files({})); }))
+         named(map, [&] { return any_map_files(map.path, of_named_files({})); }))
       files.insert(file);
   };
   for (const TruePair& pair : truth.pairs) {

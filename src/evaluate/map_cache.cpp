@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "gridmerge/bag/any_map.hpp"
+
 namespace gridmerge::internal {
 
 namespace {
@@ -34,7 +36,7 @@ std::shared_ptr<const EvaluatedMap> MapCache::get(const std::filesystem::path& p
 }
 
 EvaluatedMap MapCache::read(const std::filesystem::path& path) {
-  LoadedMap loaded = load_map(path, load_);
+  LoadedMap loaded = load_any_map(path, load_);
   if (warn_ && !loaded.warnings.empty() && warned_.insert(path).second) {
     for (const MapWarning& warning : loaded.warnings) warn_(path.string() + ": " + warning.text);
   }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "grid/box.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 
 namespace gridmerge {
@@ -88,8 +89,8 @@ OccupancyGrid quarter_turned(const OccupancyGrid& grid, int quarters) {
 }
 
 OccupancyGrid without_painted(const OccupancyGrid& grid, double reach) {
-  constexpr int kLeastReach = 3;
-  const int cells = std::clamp(static_cast<int>(std::min(reach / grid.resolution, 250.0)), kLeastReach, 250);
+  constexpr int kMinReach = 3;
+  const int cells = std::clamp(static_cast<int>(std::min(reach / grid.resolution, 250.0)), kMinReach, 250);
   // Cells to the nearest free one of the column, as far as it matters.
   const std::size_t width = static_cast<std::size_t>(grid.width);
   const auto far = static_cast<std::uint8_t>(cells + 1);
@@ -163,30 +164,27 @@ OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map,
   const SE2 T_target_grid = T_target_map * grid.origin;
   const double width_m = grid.width * grid.resolution;
   const double height_m = grid.height * grid.resolution;
-  double min_x = std::numeric_limits<double>::infinity(), min_y = min_x, max_x = -min_x, max_y = -min_x;
+  internal::Box box;
   for (const Point2& corner :
        std::array<Point2, 4>{{{0, 0}, {width_m, 0}, {0, height_m}, {width_m, height_m}}}) {
-    const Point2 p = T_target_grid * corner;
-    min_x = std::min(min_x, p.x);
-    min_y = std::min(min_y, p.y);
-    max_x = std::max(max_x, p.x);
-    max_y = std::max(max_y, p.y);
+    box.add(T_target_grid * corner);
   }
   // The small slack keeps a grid that already fits whole cells from growing by one through rounding.
-  const double columns = std::max(1.0, std::ceil((max_x - min_x) / resolution - 1e-6));
-  const double rows = std::max(1.0, std::ceil((max_y - min_y) / resolution - 1e-6));
+  const double columns = std::max(1.0, std::ceil((box.max_x - box.min_x) / resolution - 1e-6));
+  const double rows = std::max(1.0, std::ceil((box.max_y - box.min_y) / resolution - 1e-6));
   if (!(columns * rows <= kMaxCells))
     throw std::invalid_argument("the transformed map would exceed 2^28 cells");
 
   OccupancyGrid target =
-      make_grid(static_cast<int>(columns), static_cast<int>(rows), resolution, {min_x, min_y, 0.0});
+      make_grid(static_cast<int>(columns), static_cast<int>(rows), resolution, {box.min_x, box.min_y, 0.0});
   const SE2 T_grid_target = inverse(T_target_grid);
   const double c = std::cos(T_grid_target.theta) / grid.resolution;
   const double s = std::sin(T_grid_target.theta) / grid.resolution;
+  const ManyPointsTransform T_frame_target(target.origin);
   for (int row = 0; row < target.height; ++row) {
     throw_if_cancelled();
     for (int column = 0; column < target.width; ++column) {
-      const Point2 p = target.cell_center(column, row);
+      const Point2 p = T_frame_target * Point2{(column + 0.5) * resolution, (row + 0.5) * resolution};
       const double source_x = c * p.x - s * p.y + T_grid_target.x / grid.resolution;
       const double source_y = s * p.x + c * p.y + T_grid_target.y / grid.resolution;
       // Compared before the cast: with a coarse target the centre may be further away than an int can tell.

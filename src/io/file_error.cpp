@@ -37,8 +37,8 @@ namespace {
 // Names and values are quoted from files, which may hold a megabyte of them; nobody reads that. What is cut
 // is the middle, as the file stands first and the cause last. No path that can be opened is longer than 4096.
 std::string shorten(std::string text) {
-  constexpr std::size_t kMost = 10'000, kShown = 300;
-  if (text.size() <= kMost) return text;
+  constexpr std::size_t kMax = 10'000, kShown = 300;
+  if (text.size() <= kMax) return text;
   return fmt::format("{} [... {} bytes ...] {}", text.substr(0, kShown), text.size() - 2 * kShown,
                      text.substr(text.size() - kShown));
 }

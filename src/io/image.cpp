@@ -41,11 +41,15 @@ bool looks_like_image(std::string_view bytes) {
 void refuse_other_kinds(std::string_view bytes) {
   if (bytes.starts_with("version https://git-lfs.github.com/spec/"))
     throw ParseError("a Git LFS pointer, not the file itself: fetch it with 'git lfs pull'");
+  using namespace std::string_view_literals;  // some beginnings hold a NUL
+  for (const std::string_view beginning : {"\x89MCAP0\r\n"sv, "SQLite format 3\0"sv, "#ROSBAG V"sv}) {
+    if (bytes.starts_with(beginning))
+      throw ParseError("a ROS bag, and no map file: a bag can be read where it is a regular file");
+  }
   struct Kind {
     std::string_view beginning;
     const char* name;
   };
-  using namespace std::string_view_literals;  // some beginnings hold a NUL
   constexpr std::array kKinds{
       Kind{"GIF8"sv, "a GIF image"},
       Kind{"II*\0"sv, "a TIFF image"},

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMaxBytes = std::size_t{16} << 20;  // bounds what a wrong argument makes us read
 
 constexpr double kFarthest = 1e7;  // [m]: what is farther off is a mistake
-constexpr double kLeastDeviation = 1e-6;
+constexpr double kMinDeviation = 1e-6;
 
 double place(const TextTable& table, std::size_t row, std::string_view column) {
   const double value = table.number(row, column);
@@ -28,7 +28,7 @@ double place(const TextTable& table, std::size_t row, std::string_view column) {
 double deviation(const TextTable& table, std::size_t row, std::string_view column, double usual) {
   if (!table.has(column)) return usual;
   const double value = table.number(row, column);
-  if (value < kLeastDeviation) table.fail(row, std::string(column) + " must be positive, 0.000001 at least");
+  if (value < kMinDeviation) table.fail(row, std::string(column) + " must be positive, 0.000001 at least");
   return value;
 }
 

@@ -6,7 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "gridmerge/grid/resample.hpp"
+#include "gridmerge/grid/message_values.hpp"
+#include "io/cell_warnings.hpp"
 
 namespace gridmerge::internal {
 
@@ -26,15 +27,10 @@ Cell classify(double occupancy, const MapYaml& yaml) {
   return occupancy < yaml.free_thresh ? Cell::free : Cell::unknown;
 }
 
-// map_saver compares percentages with `<=` and `>=`; so must we, or 0 with a free_thresh of 0 would get lost.
 Meaning raw_meaning(double shade, const MapYaml& yaml) {
-  const double percent = std::round(shade * 255.0);
-  if (percent > 100.0) return {};
-  const double occupancy = percent / 100.0;
-  const Cell cell = occupancy >= yaml.occupied_thresh ? Cell::occupied
-                    : occupancy <= yaml.free_thresh   ? Cell::free
-                                                      : Cell::unknown;
-  return {cell, static_cast<float>(occupancy)};
+  const int percent = static_cast<int>(std::lround(shade * 255.0));
+  return {cell_of_percentage(percent, {yaml.occupied_thresh, yaml.free_thresh}),
+          probability_of_percentage(percent)};
 }
 
 double occupancy_of(double shade, const MapYaml& yaml) {
@@ -166,24 +162,6 @@ void warn_of_alpha(const MapYaml& yaml, const MapImage& image, const OccupancyGr
        fmt::format("{} pixels load otherwise in nav2, which averages alpha into the lightness; here alpha "
                    "only marks unknown cells",
                    count)});
-}
-
-void warn_of_missing_cells(const OccupancyGrid& grid, std::vector<MapWarning>& warnings) {
-  const CellCounts counts = count_cells(grid);
-  if (counts.known() == 0) {
-    warnings.push_back({MapWarningKind::no_known_cell, "the map has no known cell"});
-  } else if (counts.occupied == 0) {
-    warnings.push_back({MapWarningKind::no_occupied_cell, "the map has no occupied cell"});
-  } else if (counts.free == 0) {
-    warnings.push_back({MapWarningKind::no_free_cell, "the map has no free cell"});
-  } else if (is_mostly_painted(grid)) {
-    warnings.push_back(
-        {MapWarningKind::painted_black,
-         fmt::format("{} of {} known cells are occupied, most of them far from any free one: was the unseen "
-                     "painted black? "
-                     "They count as unknown",
-                     counts.occupied, counts.known())});
-  }
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace gridmerge::internal {
 
 namespace {
 
-constexpr int kMostScans = 100;  // ordinary progressive files have about ten
+constexpr int kMaxScans = 100;  // ordinary progressive files have about ten
 
 // libjpeg reports errors by a function that must not return: it jumps to where guarded() stands.
 struct Reader {
@@ -52,9 +52,9 @@ void on_message(j_common_ptr jpeg, int level) {
 }
 
 void on_progress(j_common_ptr jpeg) {
-  if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= kMostScans) return;
+  if (reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number <= kMaxScans) return;
   Reader& reader = reader_of(jpeg);
-  std::snprintf(reader.message.data(), reader.message.size(), "it has more than %d scans", kMostScans);
+  std::snprintf(reader.message.data(), reader.message.size(), "it has more than %d scans", kMaxScans);
   std::longjmp(reader.failed, 1);
 }
 

@@ -5,17 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "io/add_map.hpp"
+#include "io/blaming.hpp"
 #include "io/file_reader.hpp"
 #include "io/image.hpp"
 #include "io/interpret.hpp"
 #include "io/map_yaml.hpp"
-#include "io/parse_error.hpp"
 #include "io/pnm.hpp"
 
 namespace gridmerge {
@@ -28,18 +27,6 @@ constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20;
 
 NamedBy named_by(const LoadOptions& options) {
   return options.regular_files_only ? NamedBy::file : NamedBy::user;
-}
-
-// Calls `parse`, and tells which file it was about when that fails.
-template <typename Parse>
-auto blaming(const std::filesystem::path& path, const Parse& parse) {
-  try {
-    return parse();
-  } catch (const ParseError& error) {
-    throw FileError(path, error.what());
-  } catch (const std::bad_alloc&) {
-    throw FileError(path, "the map needs more memory than there is");
-  }
 }
 
 MapImage read_image(FileReader& file, const LoadOptions& options) {

@@ -2,7 +2,6 @@
 #include "io/map_yaml.hpp"
 
 #include <fmt/format.h>
-#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include "gridmerge/io/map_file.hpp"
 #include "io/number.hpp"
 #include "io/parse_error.hpp"
+#include "io/yaml.hpp"
 
 namespace gridmerge::internal {
 
@@ -33,50 +33,6 @@ std::string to_lower(std::string text) {
   std::ranges::transform(text, text.begin(),
                          [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   return text;
-}
-
-// Knows how deep it is in a document, and no more. yaml-cpp calls itself for each level, and its own limit is
-// hundreds of them: more than a thread with a small stack can bear.
-class DepthGuard : public YAML::EventHandler {
- public:
-  void OnDocumentStart(const YAML::Mark&) override {}
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {
-    descend();
-  }
-  void OnSequenceEnd() override { --depth_; }
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
-    descend();
-  }
-  void OnMapEnd() override { --depth_; }
-
- private:
-  void descend() {
-    constexpr int kMost = 16;  // a map file has two
-    if (++depth_ > kMost) throw ParseError("not valid YAML: nested too deeply");
-  }
-
-  int depth_ = 0;
-};
-
-void check_depth(std::string_view text) {
-  std::istringstream stream{std::string(text)};
-  YAML::Parser parser(stream);
-  DepthGuard guard;
-  parser.HandleNextDocument(guard);
-}
-
-YAML::Node load_yaml(std::string_view text) {
-  try {
-    check_depth(text);
-    return YAML::Load(std::string(text));
-  } catch (const YAML::Exception& error) {
-    throw ParseError(fmt::format("not valid YAML: line {}: {}", error.mark.line + 1, error.msg));
-  }
 }
 
 // YAML forbids it; yaml-cpp takes the first value, Python's loaders the last, so that nobody can say what was

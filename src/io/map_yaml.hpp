@@ -5,8 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "gridmerge/grid/message_values.hpp"
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/io/map_file.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -18,8 +20,8 @@ struct MapYaml {
   std::string image;        ///< as written: relative to the YAML's directory, or absolute
   double resolution = 0.0;  ///< [m/cell]
   SE2 origin;               ///< pose of the lower-left corner of the lower-left pixel
-  double occupied_thresh = 0.65;
-  double free_thresh = 0.196;
+  double occupied_thresh = kOccupiedThreshold;
+  double free_thresh = kFreeThreshold;
   bool negate = false;
   MapMode mode = MapMode::trinary;
   std::vector<MapWarning> warnings;  ///< of what was not read to the letter
@@ -33,6 +35,6 @@ MapYaml parse_map_yaml(std::string_view text);
 std::string format_map_yaml(const MapYaml& map);
 
 /// Throws ParseError unless a map of `resolution` [m/cell] is within [kMinResolution, kMaxResolution].
-void check_resolution(double resolution);
+GRIDMERGE_INTERNAL_EXPORT void check_resolution(double resolution);
 
 }  // namespace gridmerge::internal

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "match/drawn_walls.hpp"
 #include "similarity/wall_lines.hpp"
 
 namespace gridmerge::internal {
@@ -18,8 +19,8 @@ constexpr double kCoarseCellsAlongSide = 150.0;
 constexpr double kCoarseSigma = 0.8;  // tolerance of the search [coarse cells]
 /// Steps of rotation move the walls by so much on average, within bounds.
 constexpr double kTurnStep = 2.0;  // coarse cells
-constexpr int kLeastRotations = 180;
-constexpr int kMostRotations = 720;
+constexpr int kMinRotations = 180;
+constexpr int kMaxRotations = 720;
 /// Poses nearer than this share of the larger map's side, and never less than kMinDistinct, are one
 /// hypothesis.
 constexpr double kDistinctShare = 0.03;
@@ -54,15 +55,15 @@ ComparedMaps::ComparedMaps(const PreparedMap& fixed_map, const PreparedMap& movi
       moving(moving_map.known()),
       cell(working_cell(fixed_map, moving_map)),
       smaller_area(std::min(known_area(fixed_map), known_area(moving_map))),
-      fixed_walls(fixed_map.walls(cell)),
-      moving_walls(moving_map.walls(cell)) {}
+      fixed_walls(DrawnWalls::of(fixed_map, cell)),
+      moving_walls(DrawnWalls::of(moving_map, cell)) {}
 
-SE2 to_map_frames(const SE2& T_cells, const WallMap& fixed, const WallMap& moving) {
+SE2 to_map_frames(const SE2& T_cells, const LikelihoodField& fixed, const LikelihoodField& moving) {
   const SE2 T_metres{T_cells.x * fixed.cell, T_cells.y * fixed.cell, T_cells.theta};
   return fixed.T_map_grid * T_metres * inverse(moving.T_map_grid);
 }
 
-SE2 to_cells(const SE2& T_fixed_moving, const WallMap& fixed, const WallMap& moving) {
+SE2 to_cells(const SE2& T_fixed_moving, const LikelihoodField& fixed, const LikelihoodField& moving) {
   const SE2 T_metres = inverse(fixed.T_map_grid) * T_fixed_moving * moving.T_map_grid;
   return {T_metres.x / fixed.cell, T_metres.y / fixed.cell, T_metres.theta};
 }
@@ -74,7 +75,7 @@ ExhaustiveSearchOptions choose_search(const ComparedMaps& maps) {
   search.sigma = kCoarseSigma * search.coarse_factor;
   const double radius = make_pose_metric(maps.moving_walls).radius / search.coarse_factor;
   search.rotations = std::clamp(static_cast<int>(std::ceil(2.0 * std::numbers::pi * radius / kTurnStep)),
-                                kLeastRotations, kMostRotations);
+                                kMinRotations, kMaxRotations);
   return search;
 }
 
@@ -128,7 +129,7 @@ PoseJudge::PoseJudge(const ComparedMaps& maps)
       patches_(maps.moving_walls) {}
 
 PoseFigures PoseJudge::figures(const SE2& T_cells) const {
-  const WallMap &fixed = maps_.fixed_walls, &moving = maps_.moving_walls;
+  const LikelihoodField &fixed = maps_.fixed_walls, &moving = maps_.moving_walls;
   const double cell = maps_.cell;
   const Evidence walls = walls_(T_cells);
   const AgreementCounts common = cells_.count(to_map_frames(T_cells, fixed, moving));

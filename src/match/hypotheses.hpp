@@ -24,13 +24,13 @@ struct ComparedMaps {
   const OccupancyGrid& moving;
   double cell;          ///< side [m]
   double smaller_area;  ///< of the two maps' known areas [m^2]
-  const WallMap& fixed_walls;
-  const WallMap& moving_walls;
+  const LikelihoodField& fixed_walls;
+  const LikelihoodField& moving_walls;
 };
 
 /// A pose between map frames, from one between grid frames in cells, and the inverse.
-SE2 to_map_frames(const SE2& T_cells, const WallMap& fixed, const WallMap& moving);
-SE2 to_cells(const SE2& T_fixed_moving, const WallMap& fixed, const WallMap& moving);
+SE2 to_map_frames(const SE2& T_cells, const LikelihoodField& fixed, const LikelihoodField& moving);
+SE2 to_cells(const SE2& T_fixed_moving, const LikelihoodField& fixed, const LikelihoodField& moving);
 
 /// How densely every pose of these maps is searched.
 ExhaustiveSearchOptions choose_search(const ComparedMaps& maps);

@@ -30,15 +30,22 @@ std::vector<Hypothesis> judge_all(const PoseJudge& judge, const std::vector<SE2>
   return judged;
 }
 
+RefineOptions refinement_of(const ComparedMaps& maps, double coarse_factor, std::size_t max_poses,
+                            RankBy rank) {
+  RefineOptions refinement;
+  refinement.coarse_cell = coarse_factor;
+  refinement.distinct = distinct_displacement(maps);
+  refinement.max_poses = max_poses;
+  refinement.rank = rank;
+  return refinement;
+}
+
 std::vector<Hypothesis> look_quickly(const ComparedMaps& maps, const PoseJudge& judge,
                                      const std::function<void(double)>& report) {
   const ExhaustiveSearchOptions search = choose_search(maps);
   const std::vector<PoseCandidate> candidates = search_all_poses(maps.fixed_walls, maps.moving_walls, search);
   report(0.5);
-  RefineOptions refinement;
-  refinement.coarse_cell = search.coarse_factor;
-  refinement.distinct = distinct_displacement(maps);
-  refinement.max_poses = kRankedPoses;
+  const RefineOptions refinement = refinement_of(maps, search.coarse_factor, kRankedPoses, RankBy::amount);
   std::vector<SE2> T_cells;
   for (const ScoredPose& pose : refine(judge.walls(), maps.moving_walls, candidates, refinement,
                                        [&](double share) { report(0.5 + 0.4 * share); }))
@@ -56,11 +63,7 @@ std::vector<Hypothesis> look_thoroughly(const ComparedMaps& maps, const PoseJudg
   const std::vector<PoseCandidate> candidates =
       search_thoroughly(maps.fixed_walls, maps.moving_walls, search);
   report(0.5);
-  RefineOptions refinement;
-  refinement.coarse_cell = search.coarse_factor;
-  refinement.distinct = distinct_displacement(maps);
-  refinement.max_poses = kCountedPoses;
-  refinement.rank = RankBy::quality;
+  const RefineOptions refinement = refinement_of(maps, search.coarse_factor, kCountedPoses, RankBy::quality);
   const std::vector<ScoredPose> poses = refine(judge.walls(), maps.moving_walls, candidates, refinement,
                                                [&](double share) { report(0.5 + 0.4 * share); });
   struct Promising {

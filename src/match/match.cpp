@@ -9,6 +9,7 @@
 
 #include "grid/parallel.hpp"
 #include "match/looks.hpp"
+#include "match/pair_pose.hpp"
 
 namespace gridmerge {
 
@@ -38,16 +39,10 @@ MatchResult match_in_arena(const PreparedMap& fixed, const PreparedMap& moving, 
   result.hypotheses = find_hypotheses(maps, {options.search, options.accept_probability, options.progress});
   result.reason = explain_refusal(figures_of(result.hypotheses), options.accept_probability);
   if (result.hypotheses.empty()) return result;
-  const AgreementCounts counts =
-      count_agreement(maps.fixed, maps.moving, result.hypotheses.front().T_fixed_moving);
-  result.acceptance_index = counts.acceptance_index();
-  result.agreement = counts.agreement;
-  result.disagreement = counts.disagreement;
-  result.overlap = measure_overlap(maps.fixed, maps.moving, counts);
-
   const Hypothesis& best = result.hypotheses.front();
   result.T_fixed_moving = best.T_fixed_moving;
   result.probability = best.probability;
+  count_common(maps.fixed, maps.moving, result);
   result.verdict = best.probability >= options.accept_probability ? Verdict::accepted : Verdict::refused;
   if (result.hypotheses.size() > options.max_hypotheses) result.hypotheses.resize(options.max_hypotheses);
   return swapped ? inverse(std::move(result)) : result;
@@ -57,9 +52,7 @@ MatchResult walk(const OccupancyGrid& fixed, const OccupancyGrid& moving, const 
   RandomWalkMatchOptions walk = options.random_walk;
   walk.threads = options.threads;
   walk.max_hypotheses = options.max_hypotheses;
-  walk.progress = nullptr;
-  if (options.progress)
-    walk.progress = [&](int done, int all) { options.progress(static_cast<double>(done) / all); };
+  walk.progress = options.progress;
   return match_by_random_walk(fixed, moving, walk);
 }
 

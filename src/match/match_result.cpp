@@ -10,9 +10,9 @@ std::span<const PoseFigure> pose_figures() {
   static constexpr std::array kFigures{
       PoseFigure{"score", "nats",
                  R"(the evidence of walls and common area: "same place" against "unrelated")", &F::score},
-      PoseFigure{"lead", "sqrt(nats)",
-                 "the score's lead over the best other one, by its square root: what chance moves it by",
-                 &F::lead},
+      PoseFigure{"score_margin", "sqrt(nats)",
+                 "the score's margin over the best other one, by its square root: what chance moves it by",
+                 &F::score_margin},
       PoseFigure{"stands_out", "nats", "how far its rank stands above those of all other hypotheses together",
                  &F::stands_out},
       PoseFigure{"wall_score", "nats", "of it, the evidence of the walls", &F::wall_score},

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "gridmerge/grid/resample.hpp"
-#include "similarity/wall_map.hpp"
+#include "match/drawn_walls.hpp"
 
 namespace gridmerge {
 
@@ -54,7 +54,7 @@ OccupancyGrid in_canonical_orientation(OccupancyGrid grid) {
 
 }  // namespace
 
-PreparedMap::PreparedMap(const OccupancyGrid& grid) {
+PreparedMap::PreparedMap(const OccupancyGrid& grid) : drawn_(std::make_unique<DrawnWalls>()) {
   validate(grid);
   known_ = in_canonical_orientation(crop_to_known(without_painted(crop_to_known(grid))));
   counts_ = count_cells(known_);
@@ -62,11 +62,12 @@ PreparedMap::PreparedMap(const OccupancyGrid& grid) {
 
 PreparedMap::~PreparedMap() = default;
 
-const WallMap& PreparedMap::walls(double cell) const {
-  const std::lock_guard lock(drawing_);
-  std::unique_ptr<const WallMap>& drawn = walls_[cell];
-  if (!drawn) drawn = std::make_unique<const WallMap>(make_wall_map(known_, cell));
-  return *drawn;
+const LikelihoodField& DrawnWalls::of(const PreparedMap& map, double cell) {
+  DrawnWalls& drawn = *map.drawn_;
+  const std::lock_guard lock(drawn.drawing_);
+  std::unique_ptr<const LikelihoodField>& walls = drawn.by_cell_[cell];
+  if (!walls) walls = std::make_unique<const LikelihoodField>(make_likelihood_field(map.known_, cell));
+  return *walls;
 }
 
 bool is_smaller(const PreparedMap& a, const PreparedMap& b) {

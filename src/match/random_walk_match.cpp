@@ -13,7 +13,7 @@
 
 #include "grid/parallel.hpp"
 #include "gridmerge/similarity/lattice.hpp"
-#include "similarity/agreement.hpp"
+#include "match/pair_pose.hpp"
 
 namespace gridmerge {
 
@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kDistinct = 10.0;  // cells at the corners of the moving map
 
-void check(const RandomWalkMatchOptions& options) {
+void validate(const RandomWalkMatchOptions& options) {
   RandomWalkOptions walk = options.walk;
   if (options.restarts < 1) throw std::invalid_argument("restarts must be at least 1");
   if (options.threads < 0) throw std::invalid_argument("threads must not be negative");
@@ -79,7 +79,7 @@ std::vector<RandomWalkResult> run_walks(const OccupancyGrid& fixed, const Occupa
         random_walk(fixed, moving, choose_start(starts, walk.c_lock, i / options.c_locks.size()), walk);
     const std::lock_guard lock(reporting);
     ++done;
-    if (options.progress) options.progress(done, options.restarts);
+    if (options.progress) options.progress(static_cast<double>(done) / options.restarts);
   });
   return walks;
 }
@@ -120,7 +120,7 @@ MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid
                                  const RandomWalkMatchOptions& options) {
   validate(fixed);
   validate(moving);
-  check(options);
+  validate(options);
   const auto start = std::chrono::steady_clock::now();
   MatchResult result;
   if (count_cells(fixed).known() == 0 || count_cells(moving).known() == 0) return result;
@@ -142,12 +142,9 @@ MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid
   const RandomWalkResult& best = *ranked.front();
   result.hypotheses = list_distinct(ranked, fixed, moving, options.max_hypotheses);
   result.T_fixed_moving = best.T_fixed_moving;
-  result.acceptance_index = best.similarity.acceptance_index();
-  result.probability = result.acceptance_index;
-  result.agreement = best.similarity.agreement;
-  result.disagreement = best.similarity.disagreement;
   // The counts are in cells of the fixed map.
-  result.overlap = measure_overlap(moving, fixed, {result.agreement, result.disagreement});
+  set_common({best.similarity.agreement, best.similarity.disagreement}, moving, fixed, result);
+  result.probability = result.acceptance_index;
   // Without free or without occupied cells in both maps every pose at which they touch has a perfect index.
   const bool comparable = result.agreement + result.disagreement >= options.least_common_cells &&
                           best.similarity.undefined_terms() == 0;

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "grid/displacement.hpp"
 #include "grid/parallel.hpp"
 #include "gridmerge/grid/cancellation.hpp"
+#include "match/ascend.hpp"
 #include "search/thorough.hpp"
 
 namespace gridmerge::internal {
@@ -77,11 +79,7 @@ double rank_of(const Evidence& evidence, RankBy rank) {
 }
 
 double PoseMetric::displacement(const SE2& a, const SE2& b) const {
-  const Point2 at_a = a * pivot;
-  const Point2 at_b = b * pivot;
-  const double dx = at_a.x - at_b.x;
-  const double dy = at_a.y - at_b.y;
-  return std::sqrt(dx * dx + dy * dy + 2.0 * (1.0 - std::cos(a.theta - b.theta)) * radius * radius);
+  return internal::displacement(pivot, radius, a, b);
 }
 
 SE2 PoseMetric::moved(const SE2& pose, double dx, double dy, double turn) const {
@@ -91,7 +89,7 @@ SE2 PoseMetric::moved(const SE2& pose, double dx, double dy, double turn) const 
   return {before.x + dx - after.x, before.y + dy - after.y, turned.theta};
 }
 
-PoseMetric make_pose_metric(const WallMap& moving) {
+PoseMetric make_pose_metric(const LikelihoodField& moving) {
   PoseMetric metric;
   if (moving.walls.empty()) return metric;
   for (const WallPoint& wall : moving.walls) {
@@ -111,36 +109,20 @@ PoseMetric make_pose_metric(const WallMap& moving) {
   return metric;
 }
 
-/// Steepest ascent over steps of +-x, +-y and +-rotation; the step is halved whenever none of them helps.
 ScoredPose climb(const WallEvidence& evidence, const PoseMetric& metric, const SE2& start, double first_step,
                  double last_step, double min_sigma) {
-  constexpr int kMaxMoves = 20;  // a step; far more than a climb between neighbouring candidates takes
-  constexpr std::array<std::array<double, 3>, 6> kMoves{
-      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+  constexpr int kMaxMoves = 20;  // far more than a climb between neighbouring candidates takes
   ScoredPose best{start, evidence(start, min_sigma)};
-  for (double step = first_step; step >= last_step; step /= 2.0) {
-    std::size_t last = kMoves.size();
-    for (int i = 0; i < kMaxMoves; ++i) {
-      const SE2 from = best.T_fixed_moving;
-      const std::size_t back = last ^ 1U;  // would undo the last move
-      last = kMoves.size();
-      for (std::size_t m = 0; m < kMoves.size(); ++m) {
-        if (m == back) continue;
-        const auto& [dx, dy, turn] = kMoves[m];
-        const SE2 pose = metric.moved(from, step * dx, step * dy, step * turn / metric.radius);
-        const Evidence found = evidence(pose, min_sigma);
-        if (found.score > best.evidence.score) {
-          best = {pose, found};
-          last = m;
-        }
-      }
-      if (last == kMoves.size()) break;
-    }
-  }
+  best.T_fixed_moving = ascend(metric, start, {first_step, last_step, kMaxMoves}, [&](const SE2& pose) {
+    const Evidence found = evidence(pose, min_sigma);
+    const bool is_better = found.score > best.evidence.score;
+    if (is_better) best.evidence = found;
+    return is_better;
+  });
   return best;
 }
 
-std::vector<ScoredPose> refine(const WallEvidence& all_points, const WallMap& moving,
+std::vector<ScoredPose> refine(const WallEvidence& all_points, const LikelihoodField& moving,
                                const std::vector<PoseCandidate>& candidates, const RefineOptions& options,
                                const std::function<void(double)>& progress) {
   const double coarse = options.coarse_cell;

@@ -23,7 +23,7 @@ struct PoseMetric {
 };
 
 /// O(walls).
-PoseMetric make_pose_metric(const WallMap& moving);
+PoseMetric make_pose_metric(const LikelihoodField& moving);
 
 /// A pose between grid frames [cells] and what speaks for it.
 struct ScoredPose {
@@ -52,7 +52,7 @@ double rank_of(const Evidence& evidence, RankBy rank);
 /// first, many points and few candidates last, with steps from half a coarse cell down to a quarter of a
 /// cell. `all_points` judges poses by all walls. Returns distinct poses, best first. `progress` is called
 /// with shares of the work in [0, 1]. Deterministic; runs in the calling TBB arena.
-std::vector<ScoredPose> refine(const WallEvidence& all_points, const WallMap& moving,
+std::vector<ScoredPose> refine(const WallEvidence& all_points, const LikelihoodField& moving,
                                const std::vector<PoseCandidate>& candidates, const RefineOptions& options,
                                const std::function<void(double)>& progress = {});
 

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "match/drawn_walls.hpp"
 #include "match/looks.hpp"
+#include "match/pair_pose.hpp"
 #include "similarity/lattice_frames.hpp"
 
 namespace gridmerge {
@@ -18,8 +20,8 @@ constexpr double kShiftReach = 1.0;   // [m] along either axis
 constexpr double kTurnReach = 0.125;  // [rad]
 /// No further than this on either side, in steps between poses: with cells of less than 2 cm, or maps of more
 /// than 8000 cells, there would be no end of poses.
-constexpr int kMostShifts = 25;
-constexpr int kMostTurns = 128;
+constexpr int kMaxShifts = 25;
+constexpr int kMaxTurns = 128;
 /// Maxima that are ranked. Those of the walls are not always those of walls and area together.
 constexpr std::size_t kMaxima = 6;
 constexpr double kDistinctMaxima = 2.0;  // [cells]
@@ -28,8 +30,8 @@ constexpr double kDistinctMaxima = 2.0;  // [cells]
 /// those from which match() climbs.
 std::vector<PoseCandidate> poses_around(const SE2& start, const ComparedMaps& maps, double spacing) {
   const PoseMetric metric = make_pose_metric(maps.moving_walls);
-  const double shift_reach = std::min(kShiftReach / maps.cell, kMostShifts * spacing);
-  const double turn_reach = std::min(kTurnReach, kMostTurns * spacing / metric.radius);
+  const double shift_reach = std::min(kShiftReach / maps.cell, kMaxShifts * spacing);
+  const double turn_reach = std::min(kTurnReach, kMaxTurns * spacing / metric.radius);
   const int shifts = static_cast<int>(std::ceil(shift_reach / spacing));
   const int turns = static_cast<int>(std::ceil(turn_reach * metric.radius / spacing));
   std::vector<PoseCandidate> poses{{start, 0}};
@@ -60,7 +62,7 @@ Hypothesis best_around(const Hypothesis& start, const SE2& T_start_cells, const 
   return best;
 }
 
-/// Gives the pose the probability and the lead that it would have among the hypotheses of a full search,
+/// Gives the pose the probability and the margin that it would have among the hypotheses of a full search,
 /// those aside that are the same pose. No probability if nothing speaks for it.
 void weigh_among_all(Hypothesis& pose, const ComparedMaps& maps) {
   const PoseMetric metric = make_pose_metric(maps.moving_walls);
@@ -79,8 +81,8 @@ void weigh_among_all(Hypothesis& pose, const ComparedMaps& maps) {
 
 double displacement(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_a, const SE2& T_b) {
   const double cell = working_cell(fixed, moving);
-  const WallMap& fixed_walls = fixed.walls(cell);
-  const WallMap& moving_walls = moving.walls(cell);
+  const LikelihoodField& fixed_walls = DrawnWalls::of(fixed, cell);
+  const LikelihoodField& moving_walls = DrawnWalls::of(moving, cell);
   return cell * make_pose_metric(moving_walls)
                     .displacement(to_cells(T_a, fixed_walls, moving_walls),
                                   to_cells(T_b, fixed_walls, moving_walls));
@@ -98,20 +100,15 @@ RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, con
   const Hypothesis start = judge.judge(T_start_cells);
   Hypothesis best = best_around(start, T_start_cells, maps, judge);
 
-  RefinedPose refined{.T_fixed_moving = T_start};
+  RefinedPose refined;
   refined.start_score = start.score;
   refined.score = best.score;
-  SE2 T = T_start_maps;
-  if (refined.score > refined.start_score) {
-    T = best.T_fixed_moving;
-    refined.T_fixed_moving = swapped ? inverse(T) : T;
-    refined.moved = displacement(fixed, moving, T_start, refined.T_fixed_moving);
-  }
-  const AgreementCounts common = count_agreement(maps.fixed, maps.moving, T);
-  refined.acceptance_index = common.acceptance_index();
-  refined.agreement = common.agreement;
-  refined.disagreement = common.disagreement;
-  refined.overlap = measure_overlap(maps.fixed, maps.moving, common);
+  const bool is_better = refined.score > refined.start_score;
+  const SE2 T_maps = is_better ? best.T_fixed_moving : T_start_maps;
+  refined.T_fixed_moving = T_maps;
+  count_common(maps.fixed, maps.moving, refined);
+  refined.T_fixed_moving = !is_better ? T_start : swapped ? inverse(T_maps) : T_maps;
+  if (is_better) refined.moved = displacement(fixed, moving, T_start, refined.T_fixed_moving);
   if (best.score > 0.0) weigh_among_all(best, maps);
   refined.probability = best.probability;
   return refined;

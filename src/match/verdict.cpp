@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "grid/logistic.hpp"
 #include "match/verdict_model.hpp"
 
 namespace gridmerge::internal {
@@ -28,18 +29,18 @@ double things_share(const PoseFigures& f) {
 
 /// How well the pose is held in its weakest direction, against its strongest. A corridor slides.
 double how_held(const PoseFigures& f) {
-  constexpr double kLeast = 0.03;
-  return logarithm(std::max(f.held, 0.0) / std::max(f.held_most, 1.0), kLeast);
+  constexpr double kMin = 0.03;
+  return logarithm(std::max(f.held, 0.0) / std::max(f.held_most, 1.0), kMin);
 }
 constexpr double kSlides = -2.0;  // of it: less than an eighth
 
-/// Of bent maps few walls can meet, even at the right pose. There a lead tells that no pose of unrelated maps
-/// has: as far as the errors are those of bent maps, since of crisp ones of a symmetric floor the wrong half
-/// leads as well.
+/// Of bent maps few walls can meet, even at the right pose. There a margin of the score tells that no pose of
+/// unrelated maps has: as far as the errors are those of bent maps, since of crisp ones of a symmetric floor
+/// the wrong half leads as well.
 double far_ahead_though_bent(const PoseFigures& f) {
   constexpr double kFar = 30.0, kAllOfIt = 20.0;  // sqrt(nats)
   constexpr double kCrisp = 0.1, kBent = 0.25;    // [m]
-  const double ahead = std::clamp((f.lead - kFar) / kAllOfIt, 0.0, 1.0);
+  const double ahead = std::clamp((f.score_margin - kFar) / kAllOfIt, 0.0, 1.0);
   const double bent =
       std::clamp(std::log(std::max(f.sigma, kCrisp) / kCrisp) / std::log(kBent / kCrisp), 0.0, 1.0);
   return ahead * bent;
@@ -55,10 +56,6 @@ double cells_agree(double acceptance_index) {
 double agrees_better(const PoseFigures& f) {
   constexpr double kAnyPose = 0.93;
   return cells_agree(f.acceptance_index) - cells_agree(std::max(f.next_acceptance_index, kAnyPose));
-}
-
-double logistic(double log_odds) {
-  return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
 }  // namespace
@@ -77,7 +74,7 @@ std::span<const VerdictTerm> verdict_terms() {
       VerdictTerm{"stands out", "stands_out", TermKind::rivals, 0.0, 6.0,
                   [](const F& f) { return f.stands_out; }},
       VerdictTerm{"far ahead, bent",
-                  "(lead - 30) / 20 within [0, 1], times ln(sigma / 0.1 m) / ln(2.5) within [0, 1]",
+                  "(score_margin - 30) / 20 within [0, 1], times ln(sigma / 0.1 m) / ln(2.5) within [0, 1]",
                   TermKind::excuse, 0.0, 1.0, far_ahead_though_bent},
       VerdictTerm{"met locally", "-ln(1.05 - walls_met_locally)", kQuality, 0.0, 2.5,
                   [](const F& f) { return missing(f.walls_met_locally, 0.05); }},
@@ -89,6 +86,7 @@ std::span<const VerdictTerm> verdict_terms() {
                   kQuality, 0.0, 1.39, agrees_better},
       VerdictTerm{"things met", "-ln(1.05 - share), the share of things met drawn towards 1/3 by 4 m",
                   kQuality, 0.05, 2.5, [](const F& f) { return missing(things_share(f), 0.05); }}};
+  static_assert(kTerms.size() == kVerdictWeights.size(), "each term has its weight in verdict_model.hpp");
   return kTerms;
 }
 
@@ -102,6 +100,7 @@ std::span<const RankTerm> rank_terms() {
       RankTerm{"lines", "ln(wall_lines + 0.5)", [](const F& f) { return std::log(f.wall_lines + 0.5); }},
       RankTerm{"things", "as \"things met\"", [](const F& f) { return missing(things_share(f), 0.05); }},
       RankTerm{"tolerance", "ln(sigma)", [](const F& f) { return logarithm(f.sigma, 0.03); }}};
+  static_assert(kTerms.size() == kRankWeights.size(), "each term has its weight in verdict_model.hpp");
   return kTerms;
 }
 
@@ -122,7 +121,7 @@ double log_odds_of(const PoseFigures& figures) {
 namespace {
 
 /// Nothing stands out more: also what has no rivals.
-constexpr double kMostStandingOut = 20.0;  // nats
+constexpr double kMaxStandingOut = 20.0;  // nats
 
 /// What has less than this share of a pose's score has too little in common to tell whose cells agree better.
 constexpr double kRivalScore = 0.5;
@@ -134,7 +133,7 @@ void compare_rivals(std::span<PoseFigures> hypotheses,
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     PoseFigures& one = hypotheses[i];
     const double rank = rank_of(one);
-    double next_score = 0.0, others = std::exp(-kMostStandingOut);
+    double next_score = 0.0, others = std::exp(-kMaxStandingOut);
     one.next_acceptance_index = 0.0;
     for (std::size_t j = 0; j < hypotheses.size(); ++j) {
       const PoseFigures& other = hypotheses[j];
@@ -144,7 +143,7 @@ void compare_rivals(std::span<PoseFigures> hypotheses,
       if (other.score >= kRivalScore * one.score)
         one.next_acceptance_index = std::max(one.next_acceptance_index, other.acceptance_index);
     }
-    one.lead = one.score > 0.0 ? (one.score - next_score) / std::sqrt(one.score) : 0.0;
+    one.score_margin = one.score > 0.0 ? (one.score - next_score) / std::sqrt(one.score) : 0.0;
     one.stands_out = -std::log(others);
   }
 }

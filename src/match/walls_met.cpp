@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grid/parallel.hpp"
+#include "match/ascend.hpp"
 #include "match/refine.hpp"
 #include "similarity/evidence.hpp"
 
@@ -15,13 +16,13 @@ namespace gridmerge::internal {
 
 namespace {
 
-constexpr double kPatchSide = 6.0;        // [m]
-constexpr double kLeastPatchSide = 60.0;  // [cells]
-constexpr double kFarthestShift = 1.2;    // [m]
-constexpr double kFirstStep = 0.4;        // [m]
-constexpr double kLastStep = 0.5;         // [cells]
-constexpr double kLeastWall = 2.0;        // that a patch must have where both have seen, to move [m]
-constexpr int kMeetingDistance = 2;       // [cells]
+constexpr double kPatchSide = 6.0;      // [m]
+constexpr double kMinPatchSide = 60.0;  // [cells]
+constexpr double kFarthestShift = 1.2;  // [m]
+constexpr double kFirstStep = 0.4;      // [m]
+constexpr double kLastStep = 0.5;       // [cells]
+constexpr double kMinWall = 2.0;        // that a patch must have where both have seen, to move [m]
+constexpr int kMeetingDistance = 2;     // [cells]
 constexpr std::size_t kClimbingWalls = 60;
 
 /// A wall that lies in what the other map has not seen is worth this much when a patch climbs: about what an
@@ -71,16 +72,12 @@ constexpr auto kWorth = [] {
 
 /// Calls `meet(wall, place)` for every wall that falls where the map has seen, and returns how many do not.
 template <typename Meet>
-std::size_t look_up(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls,
+std::size_t look_up(const LikelihoodField& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls,
                     Meet meet) {
   const ManyPointsTransform T_points(T_map_walls);
   std::size_t unseen = 0;
   for (const WallPoint& wall : walls) {
-    const auto [x, y] = T_points * wall.position;
-    Place place;
-    if (x >= 0.0 && y >= 0.0 && x < map.width && y < map.height)
-      place = map.places[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) +
-                         static_cast<std::size_t>(x)];
+    const Place place = map.place_at(T_points * wall.position);
     if (place.distance == kUnseen) {
       ++unseen;
     } else {
@@ -90,7 +87,8 @@ std::size_t look_up(const WallMap& map, const std::vector<WallPoint>& walls, con
   return unseen;
 }
 
-Meetings count_meetings(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls) {
+Meetings count_meetings(const LikelihoodField& map, const std::vector<WallPoint>& walls,
+                        const SE2& T_map_walls) {
   const auto& is_contrary = contrary_facings()[steps_of_turn(T_map_walls.theta)];
   Meetings meetings;
   look_up(map, walls, T_map_walls, [&](const WallPoint& wall, const Place& place) {
@@ -105,7 +103,7 @@ Meetings count_meetings(const WallMap& map, const std::vector<WallPoint>& walls,
 }
 
 /// What a patch climbs on: 1 for a wall on another one, less with their distance.
-double worth_of(const WallMap& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls) {
+double worth_of(const LikelihoodField& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls) {
   const auto& is_contrary = contrary_facings()[steps_of_turn(T_map_walls.theta)];
   double worth = 0.0;
   const std::size_t unseen = look_up(map, walls, T_map_walls, [&](const WallPoint& wall, const Place& place) {
@@ -116,7 +114,7 @@ double worth_of(const WallMap& map, const std::vector<WallPoint>& walls, const S
 
 /// The fixed map's walls by the moving map's patches, without those that lie in none: the moving map cannot
 /// have seen them.
-std::vector<std::vector<WallPoint>> cut(const WallMap& fixed, const WallPatches& moving,
+std::vector<std::vector<WallPoint>> cut(const LikelihoodField& fixed, const WallPatches& moving,
                                         const SE2& T_fixed_moving) {
   std::vector<std::vector<WallPoint>> walls(moving.size());
   const ManyPointsTransform T_moving_fixed(inverse(T_fixed_moving));
@@ -136,14 +134,15 @@ struct Patch {
 
 class PatchMatcher {
  public:
-  PatchMatcher(const WallMap& fixed, const WallMap& moving, const SE2& T_fixed_moving, double side)
+  PatchMatcher(const LikelihoodField& fixed, const LikelihoodField& moving, const SE2& T_fixed_moving,
+               double side)
       : fixed_(fixed), moving_(moving), start_(T_fixed_moving), side_(side) {}
 
   Meetings rigidly(const Patch& patch) const { return at(patch, start_); }
 
   /// `rigid` is what rigidly() says of the patch.
   Meetings locally(const Patch& patch, const Meetings& rigid) const {
-    if (patch.moving.empty() || rigid.seen * fixed_.cell < kLeastWall) return rigid;
+    if (patch.moving.empty() || rigid.seen * fixed_.cell < kMinWall) return rigid;
     return at(patch, climb(patch));
   }
 
@@ -154,11 +153,8 @@ class PatchMatcher {
     return sum;
   }
 
-  /// Steepest ascent; the step is halved whenever none helps.
   SE2 climb(const Patch& patch) const {
-    constexpr int kMaxMoves = 5;  // a step
-    constexpr std::array<std::array<double, 3>, 6> kMoves{
-        {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+    constexpr int kMaxMoves = 5;
     const std::vector<WallPoint> fixed_walls = draw_evenly(patch.fixed, kClimbingWalls);
     const std::vector<WallPoint> moving_walls = draw_evenly(patch.moving, kClimbingWalls);
     const PoseMetric metric{patch.centre, 0.4 * side_};
@@ -171,32 +167,18 @@ class PatchMatcher {
       return moving_weight * worth_of(fixed_, moving_walls, T_fixed_moving) +
              fixed_weight * worth_of(moving_, fixed_walls, inverse(T_fixed_moving));
     };
-    SE2 best = start_;
-    double most = worth_at(best);
-    for (double step = kFirstStep / fixed_.cell; step >= kLastStep; step /= 2.0) {
-      std::size_t last = kMoves.size();
-      for (int i = 0; i < kMaxMoves; ++i) {
-        const SE2 from = best;
-        const std::size_t back = last ^ 1U;  // would undo the last move
-        last = kMoves.size();
-        for (std::size_t m = 0; m < kMoves.size(); ++m) {
-          const auto& [dx, dy, turn] = kMoves[m];
-          const SE2 pose = metric.moved(from, step * dx, step * dy, step * turn / metric.radius);
-          if (m == back || metric.displacement(pose, start_) > kFarthestShift / fixed_.cell) continue;
-          const double worth = worth_at(pose);
-          if (worth <= most) continue;
-          most = worth;
-          best = pose;
-          last = m;
-        }
-        if (last == kMoves.size()) break;
-      }
-    }
-    return best;
+    double most = worth_at(start_);
+    return ascend(metric, start_, {kFirstStep / fixed_.cell, kLastStep, kMaxMoves}, [&](const SE2& pose) {
+      if (metric.displacement(pose, start_) > kFarthestShift / fixed_.cell) return false;
+      const double worth = worth_at(pose);
+      if (worth <= most) return false;
+      most = worth;
+      return true;
+    });
   }
 
-  const WallMap& fixed_;
-  const WallMap& moving_;
+  const LikelihoodField& fixed_;
+  const LikelihoodField& moving_;
   SE2 start_;
   double side_;
 };
@@ -213,9 +195,9 @@ double share(double part, double whole) {
 
 }  // namespace
 
-WallPatches::WallPatches(const WallMap& map)
+WallPatches::WallPatches(const LikelihoodField& map)
     : map_(map),
-      side_(std::max(kPatchSide / map.cell, kLeastPatchSide)),
+      side_(std::max(kPatchSide / map.cell, kMinPatchSide)),
       columns_(static_cast<std::size_t>(map.width / side_) + 1),
       rows_(static_cast<std::size_t>(map.height / side_) + 1),
       walls_(columns_ * rows_) {
@@ -236,7 +218,8 @@ Point2 WallPatches::centre(std::size_t patch) const {
           (static_cast<double>(patch / columns_) + 0.5) * side_};
 }
 
-WallsMet measure_walls_met(const WallMap& fixed, const WallPatches& moving, const SE2& T_fixed_moving_cells) {
+WallsMet measure_walls_met(const LikelihoodField& fixed, const WallPatches& moving,
+                           const SE2& T_fixed_moving_cells) {
   const std::vector<std::vector<WallPoint>> fixed_walls = cut(fixed, moving, T_fixed_moving_cells);
   const PatchMatcher matcher(fixed, moving.map(), T_fixed_moving_cells, moving.side());
   std::vector<Meetings> rigidly(moving.size()), locally(moving.size());

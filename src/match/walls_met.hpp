@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gridmerge/grid/se2.hpp"
-#include "similarity/wall_map.hpp"
+#include "similarity/likelihood_field.hpp"
 
 namespace gridmerge::internal {
 
@@ -25,9 +25,9 @@ struct WallsMet {
 class WallPatches {
  public:
   /// The map must outlive this. O(walls).
-  explicit WallPatches(const WallMap& map);
+  explicit WallPatches(const LikelihoodField& map);
 
-  const WallMap& map() const { return map_; }
+  const LikelihoodField& map() const { return map_; }
   double side() const { return side_; }  ///< [cells]
   std::size_t size() const { return walls_.size(); }
   const std::vector<WallPoint>& walls(std::size_t patch) const { return walls_[patch]; }
@@ -38,7 +38,7 @@ class WallPatches {
   std::size_t index(const Point2& point) const;
 
  private:
-  const WallMap& map_;
+  const LikelihoodField& map_;
   double side_;
   std::size_t columns_;
   std::size_t rows_;
@@ -51,6 +51,7 @@ class WallPatches {
 ///
 /// A wall meets another one within two cells, unless the two face opposite ways. Each patch climbs to its
 /// best pose within 1.2 m of the given one, which is between grid frames, in cells. O(walls + patches).
-WallsMet measure_walls_met(const WallMap& fixed, const WallPatches& moving, const SE2& T_fixed_moving_cells);
+WallsMet measure_walls_met(const LikelihoodField& fixed, const WallPatches& moving,
+                           const SE2& T_fixed_moving_cells);
 
 }  // namespace gridmerge::internal

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "gridmerge/match/match.hpp"
+#include "match/drawn_walls.hpp"
 #include "merge/pose_problem.hpp"
 #include "merge/wall_error.hpp"
 
@@ -67,15 +68,17 @@ void add_walls(const std::vector<AlignedMap>& maps, const RelativePose& relative
   const PreparedMap &fixed = *maps[relative.fixed].map, &moving = *maps[relative.moving].map;
   const double cell = working_cell(fixed, moving);
   const double sd = std::max(1.0, relative.sd_position / cell);
-  const auto add = [&](std::size_t seen, std::size_t seeing, const WallMap& seen_walls,
-                       const WallMap& walls) {
+  const auto add = [&](std::size_t seen, std::size_t seeing, const LikelihoodField& seen_walls,
+                       const LikelihoodField& walls) {
     if (walls.walls.empty()) return;
     problem.add(seen, seeing,
                 std::make_unique<WallError>(seen_walls, maps[seen].extent.centre, walls,
                                             maps[seeing].extent.centre, sd));
   };
-  add(relative.fixed, relative.moving, fixed.walls(cell), moving.walls(cell));
-  add(relative.moving, relative.fixed, moving.walls(cell), fixed.walls(cell));
+  const LikelihoodField &fixed_walls = DrawnWalls::of(fixed, cell),
+                        &moving_walls = DrawnWalls::of(moving, cell);
+  add(relative.fixed, relative.moving, fixed_walls, moving_walls);
+  add(relative.moving, relative.fixed, moving_walls, fixed_walls);
 }
 
 }  // namespace

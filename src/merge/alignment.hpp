@@ -8,7 +8,7 @@
 #include "gridmerge/match/prepared_map.hpp"
 #include "gridmerge/merge/known_pose.hpp"
 #include "gridmerge/merge/merge_result.hpp"
-#include "merge/arrangement.hpp"
+#include "merge/map_extent.hpp"
 #include "merge/pose_graph.hpp"
 
 namespace gridmerge::internal {

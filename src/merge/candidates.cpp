@@ -8,20 +8,16 @@ namespace gridmerge::internal {
 
 namespace {
 
-constexpr double kLeastProbability = 1e-3;
-constexpr double kLeastDoubt = 1e-5;  // the model is not surer of anything
-
-/// A pose is off by about so many standard deviations of the walls that agree on it: bent maps have no exact
-/// one.
-constexpr double kDeviationsOfWalls = 2.0;
+constexpr double kMinProbability = 1e-3;
+constexpr double kMinDoubt = 1e-5;  // the model is not surer of anything
 
 }  // namespace
 
 std::vector<CandidateJoin> candidate_joins(const MatchResult& match) {
   std::vector<CandidateJoin> candidates;
   for (const Hypothesis& hypothesis : match.hypotheses) {
-    if (hypothesis.probability < kLeastProbability) continue;
-    const double doubt = std::max(1.0 - hypothesis.probability, kLeastDoubt);
+    if (hypothesis.probability < kMinProbability) continue;
+    const double doubt = std::max(1.0 - hypothesis.probability, kMinDoubt);
     candidates.push_back({hypothesis.T_fixed_moving, std::log(hypothesis.probability / doubt),
                           kDeviationsOfWalls * hypothesis.figures.sigma});
   }

@@ -19,11 +19,11 @@ std::vector<std::optional<std::size_t>> places_of(const NodeGroup& group, std::s
   return places;
 }
 
-std::vector<RelativePose> measured_in(const NodeGroup& group, const ArrangementProblem& problem,
-                                      const Arrangement& arrangement) {
+std::vector<RelativePose> measured_in(const NodeGroup& group, const JoinProblem& problem,
+                                      const ConsistentSet& consistent_set) {
   const auto places = places_of(group, problem.maps.size());
   std::vector<RelativePose> measured;
-  for (const UsedCandidate& used : arrangement.used) {
+  for (const UsedCandidate& used : consistent_set.used) {
     const PairCandidates& pair = problem.pairs[used.pair];
     if (!places[pair.fixed] || !places[pair.moving]) continue;
     const CandidateJoin& candidate = pair.candidates[used.candidate];
@@ -46,8 +46,8 @@ double usual_deviation(const std::vector<RelativePose>& measured) {
 
 }  // namespace
 
-Component make_component(const NodeGroup& group, const ArrangementProblem& problem,
-                         const Arrangement& arrangement, const MergeInputs& inputs,
+Component make_component(const NodeGroup& group, const JoinProblem& problem,
+                         const ConsistentSet& consistent_set, const MergeInputs& inputs,
                          const MergeOptions& options) {
   std::vector<AlignedMap> maps;
   std::size_t first = 0;  // of the result
@@ -58,7 +58,7 @@ Component make_component(const NodeGroup& group, const ArrangementProblem& probl
     if (inputs.index[map] < inputs.index[group[first].map]) first = i;
     is_world = is_world || maps.back().is_fixed();
   }
-  const std::vector<RelativePose> measured = measured_in(group, problem, arrangement);
+  const std::vector<RelativePose> measured = measured_in(group, problem, consistent_set);
   std::vector<SE2> poses = align(maps, measured);
   const std::vector<std::optional<PoseDeviation>> deviations = find_deviations(maps, measured, first);
 

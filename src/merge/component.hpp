@@ -8,7 +8,7 @@
 #include "gridmerge/merge/known_pose.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merge_result.hpp"
-#include "merge/arrangement.hpp"
+#include "merge/consistent_set.hpp"
 
 namespace gridmerge::internal {
 
@@ -22,8 +22,8 @@ struct MergeInputs {
 
 /// One merged map of the group: its poses adjusted to all that holds it together, in the world's frame if one
 /// of them is fixed and in that of the member with the lowest index if not, and its maps fused.
-Component make_component(const NodeGroup& group, const ArrangementProblem& problem,
-                         const Arrangement& arrangement, const MergeInputs& inputs,
+Component make_component(const NodeGroup& group, const JoinProblem& problem,
+                         const ConsistentSet& consistent_set, const MergeInputs& inputs,
                          const MergeOptions& options);
 
 }  // namespace gridmerge::internal

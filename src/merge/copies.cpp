@@ -106,19 +106,16 @@ void add_copies(const std::vector<Copy>& copies, const std::vector<const Occupan
     Component* component = nullptr;
     const Member* original = find_member(result, copy.original, component);
     if (original == nullptr) {
-      const auto alone = std::lower_bound(result.left_out.begin(), result.left_out.end(), copy.original);
-      result.left_out_reasons.erase(result.left_out_reasons.begin() + (alone - result.left_out.begin()));
-      result.left_out.erase(alone);
+      std::erase_if(result.left_out, [&](const LeftOut& one) { return one.map == copy.original; });
       const PlacedMap placed{grids[copy.original], {}};
       component = &result.components.emplace_back();
-      component->members.push_back({copy.original, {}, 1.0, {}});
+      component->members.push_back({copy.original, {}, 1.0, PoseDeviation{}});  // it holds the frame
       component->fused = fuse({placed}, resolution > 0.0 ? resolution : finest_resolution({placed}));
       original = &component->members.front();
     }
     Member member = *original;
     member.map = copy.map;
     member.T_component_map = original->T_component_map * copy.T_original_map;
-    member.sd = original->sd.value_or(PoseDeviation{});
     member.deformation = seen_from(inverse(copy.T_original_map), original->deformation);
     component->members.push_back(member);
   }

@@ -12,7 +12,7 @@ namespace gridmerge::internal {
 namespace {
 
 constexpr double kCellsAlongSide = 100.0;
-constexpr std::size_t kMostCentres = 200;
+constexpr std::size_t kMaxCentres = 200;
 
 }  // namespace
 
@@ -53,14 +53,15 @@ Coverage::Coverage(const OccupancyGrid& grid)
   area_ = count * grid.resolution * grid.resolution;
 
   std::vector<Point2> centres;
+  const ManyPointsTransform T_map_grid(grid.origin);
   for (int row = 0; row < height_; ++row) {
     for (int column = 0; column < width_; ++column) {
       if (known_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
                  static_cast<std::size_t>(column)] != 0)
-        centres.push_back(grid.origin * Point2{(column + 0.5) * cell_, (row + 0.5) * cell_});
+        centres.push_back(T_map_grid * Point2{(column + 0.5) * cell_, (row + 0.5) * cell_});
     }
   }
-  const std::size_t drawn = std::min(centres.size(), kMostCentres);
+  const std::size_t drawn = std::min(centres.size(), kMaxCentres);
   for (std::size_t i = 0; i < drawn; ++i) centres_.push_back(centres[i * centres.size() / drawn]);
 }
 
@@ -78,20 +79,17 @@ InCommon Coverage::in_common(const Coverage& other, const SE2& T_this_other, con
   // No known cell is farther from the centre than the diagonal of a square about all of them.
   if (apart > std::numbers::sqrt2 * (extent_.side + other.extent_.side)) return {};
   const SE2 T_larger_smaller = other_is_smaller ? T_this_other : inverse(T_this_other);
-  const SE2 to_grid = larger.T_grid_map_ * T_larger_smaller;
-  const SE2 to_frame = other_is_smaller ? T_frame_this * T_this_other : T_frame_this;
-  const double cg = std::cos(to_grid.theta), sg = std::sin(to_grid.theta);
-  const double cf = std::cos(to_frame.theta), sf = std::sin(to_frame.theta);
+  const ManyPointsTransform to_grid(larger.T_grid_map_ * T_larger_smaller);
+  const ManyPointsTransform to_frame(other_is_smaller ? T_frame_this * T_this_other : T_frame_this);
   InCommon common;
   for (const Point2& centre : smaller.centres_) {
-    const double x = (cg * centre.x - sg * centre.y + to_grid.x) / larger.cell_;
-    const double y = (sg * centre.x + cg * centre.y + to_grid.y) / larger.cell_;
+    const Point2 p = to_grid * centre;
+    const double x = p.x / larger.cell_, y = p.y / larger.cell_;
     if (!(x >= 0.0 && y >= 0.0 && x < larger.width_ && y < larger.height_)) continue;
     const std::size_t at =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(larger.width_) + static_cast<std::size_t>(x);
     if (larger.known_[at] == 0) continue;
-    common.places.push_back(
-        {cf * centre.x - sf * centre.y + to_frame.x, sf * centre.x + cf * centre.y + to_frame.y});
+    common.places.push_back(to_frame * centre);
   }
   common.share = static_cast<double>(common.places.size()) / static_cast<double>(smaller.centres_.size());
   return common;

@@ -6,15 +6,9 @@
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "internal_export.hpp"
+#include "merge/map_extent.hpp"
 
 namespace gridmerge::internal {
-
-/// Where a map's known cells are: what it takes to say how far apart two poses put them.
-struct MapExtent {
-  Point2 centre;        ///< of the known cells [m, map frame]
-  double radius = 0.0;  ///< root mean square distance of the known cells from the centre [m]
-  double side = 0.0;    ///< of the known cells, the longer one [m]
-};
 
 /// What two maps both know.
 struct InCommon {

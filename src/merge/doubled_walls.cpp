@@ -8,6 +8,7 @@
 #include "grid/parallel.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/match/prepared_map.hpp"
+#include "match/drawn_walls.hpp"
 #include "merge/elastic_walls.hpp"
 
 namespace gridmerge {
@@ -57,7 +58,7 @@ DoubledWalls measure_doubled_walls(const std::vector<OccupancyGrid>& maps, const
   for (const auto& map : prepared) cell = std::max(cell, working_cell(*map, *map));
   std::vector<std::unique_ptr<const ElasticWalls>> walls(count);
   parallel_for(count, [&](std::size_t i) {
-    walls[i] = std::make_unique<const ElasticWalls>(prepared[i]->walls(cell));
+    walls[i] = std::make_unique<const ElasticWalls>(DrawnWalls::of(*prepared[i], cell));
   });
   std::vector<DoubledWalls> of_each(count);
   parallel_for(count, [&](std::size_t i) {

@@ -9,6 +9,7 @@
 #include "grid/parallel.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/match/match.hpp"
+#include "match/drawn_walls.hpp"
 #include "merge/elastic_system.hpp"
 
 namespace gridmerge::internal {
@@ -40,7 +41,7 @@ std::vector<Point2> sample_known(const OccupancyGrid& map) {
   for (int row = 0; row < map.height; ++row) {
     for (int column = 0; column < map.width; ++column) {
       if (map.at(column, row) == Cell::unknown) continue;
-      if (number++ % step == step / 2) known.push_back(map.cell_center(column, row));
+      if (number++ % step == step / 2) known.push_back(map.cell_centre(column, row));
     }
   }
   return known;
@@ -169,7 +170,7 @@ std::vector<BentMember> bend(const std::vector<RigidMember>& maps, double sd) {
   std::vector<SE2> straight;
   for (const RigidMember& one : maps) {
     members.push_back({ElasticSheet(one.map->known(), spacing, one.T_group_map),
-                       ElasticWalls(one.map->walls(cell)), one.held});
+                       ElasticWalls(DrawnWalls::of(*one.map, cell)), one.held});
     straight.push_back(one.T_group_map);
   }
   parallel_for(maps.size(), [&](std::size_t i) { known[i] = sample_known(maps[i].map->known()); });

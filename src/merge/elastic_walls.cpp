@@ -31,7 +31,7 @@ double squared_distance(const Point2& a, const Point2& b) {
 }
 
 /// The side a wall faces, or one of the two [map frame]. None where that is not known.
-std::optional<ElasticWall> facing_wall(const WallMap& map, const WallPoint& wall) {
+std::optional<ElasticWall> facing_wall(const LikelihoodField& map, const WallPoint& wall) {
   if (wall.facing == kNoDirection) return std::nullopt;
   const bool has_two_sides = is_axis(wall.facing);
   const int parts = has_two_sides ? wall.facing - kDirections : wall.facing;
@@ -68,7 +68,7 @@ bool faces_alike(const ElasticWall& a, const ElasticWall& b) {
   return (a.has_two_sides || b.has_two_sides ? std::abs(cosine) : cosine) > kAlike;
 }
 
-ElasticWalls::ElasticWalls(const WallMap& map) {
+ElasticWalls::ElasticWalls(const LikelihoodField& map) {
   for (const WallPoint& wall : map.walls) {
     if (const auto facing = facing_wall(map, wall)) walls_.push_back(*facing);
   }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "similarity/wall_map.hpp"
+#include "similarity/likelihood_field.hpp"
 
 namespace gridmerge::internal {
 
@@ -23,7 +23,7 @@ bool faces_alike(const ElasticWall& a, const ElasticWall& b);
 class ElasticWalls {
  public:
   /// O(walls).
-  explicit ElasticWalls(const WallMap& map);
+  explicit ElasticWalls(const LikelihoodField& map);
 
   const std::vector<ElasticWall>& walls() const { return walls_; }
 

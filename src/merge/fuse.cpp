@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "grid/logistic.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/similarity/lattice.hpp"
 #include "merge/log_odds.hpp"
@@ -78,7 +79,7 @@ FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution,
     if (total.sum[i] == 0) continue;
     const double log_odds = std::clamp(total.sum[i], -kLimit, kLimit) / kLogOddsPerNat;
     fused.grid.cells[i] = log_odds > 0.0 ? Cell::occupied : Cell::free;
-    fused.grid.probability[i] = static_cast<float>(1.0 / (1.0 + std::exp(-log_odds)));
+    fused.grid.probability[i] = static_cast<float>(logistic(log_odds));
   }
   if (!is_bent) fused.omega = measure_omega(fused.grid, inputs);
   return fused;

@@ -49,7 +49,7 @@ std::size_t nearest_member(const NodeGroup& group, std::size_t map, const SE2& T
 
 /// Puts candidates of the group in the place of those of its members.
 void say(const MatchResult& match, const NodeGroup& group, std::size_t map, const MergeInputs& inputs,
-         ArrangementProblem& problem) {
+         JoinProblem& problem) {
   const std::vector<CandidateJoin> candidates = candidate_joins(match);  // of the group's frame and the map
   const std::size_t speaker = nearest_member(group, map, match.T_fixed_moving, inputs);
   for (PairCandidates& pair : problem.pairs) {
@@ -75,9 +75,9 @@ GroupMatches::GroupMatches(const MatchOptions& options) : options_(options) {
   options_.max_hypotheses = kKeptHypotheses;
 }
 
-ArrangementProblem GroupMatches::heard(const ArrangementProblem& problem, const Arrangement& arrangement,
-                                       const MergeInputs& inputs) {
-  const std::vector<NodeGroup>& groups = arrangement.groups;
+JoinProblem GroupMatches::heard(const JoinProblem& problem, const ConsistentSet& consistent_set,
+                                const MergeInputs& inputs) {
+  const std::vector<NodeGroup>& groups = consistent_set.groups;
   std::vector<Meeting> meetings;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (groups[g].size() < 2) continue;
@@ -113,7 +113,7 @@ ArrangementProblem GroupMatches::heard(const ArrangementProblem& problem, const 
   });
   kept_ = std::move(needed);
 
-  ArrangementProblem next = problem;
+  JoinProblem next = problem;
   for (const Meeting& meeting : meetings) {
     const MatchResult& match = kept_.at(meeting.key);
     if (match.verdict == Verdict::accepted) say(match, groups[meeting.group], meeting.map, inputs, next);

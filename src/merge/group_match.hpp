@@ -22,8 +22,8 @@ class GroupMatches {
   /// says anything. Of the maps that lie alone those are asked about of which nothing is known beforehand.
   /// Matches are kept for the next call, those that it does not need are forgotten. Runs in the calling TBB
   /// arena. O(maps alone * groups) times match().
-  ArrangementProblem heard(const ArrangementProblem& problem, const Arrangement& arrangement,
-                           const MergeInputs& inputs);
+  JoinProblem heard(const JoinProblem& problem, const ConsistentSet& consistent_set,
+                    const MergeInputs& inputs);
 
   /// Of a map that has changed, or of all whose index has.
   void forget() { kept_.clear(); }

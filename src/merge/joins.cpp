@@ -36,12 +36,7 @@ Join make_join(std::size_t fixed, std::size_t moving, MatchResult match) {
   join.moving = moving;
   join.match = std::move(match);
   join.outcome = join.match.verdict == Verdict::accepted ? JoinOutcome::accepted : JoinOutcome::refused;
-  join.T_fixed_moving = join.match.T_fixed_moving;
-  join.probability = join.match.probability;
-  join.acceptance_index = join.match.acceptance_index;
-  join.agreement = join.match.agreement;
-  join.disagreement = join.match.disagreement;
-  join.overlap = join.match.overlap;
+  static_cast<PairPose&>(join) = join.match;
   return join;
 }
 
@@ -74,17 +69,17 @@ Join inverted(Join join) {
   return join;
 }
 
-std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const ArrangementProblem& problem,
-                                    const Arrangement& arrangement) {
+std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const JoinProblem& problem,
+                                    const ConsistentSet& consistent_set) {
   const auto first_input = [&](const NodeGroup& group) {
     return *std::min_element(group.begin(), group.end(), [&](const PlacedNode& x, const PlacedNode& y) {
       return index[x.map] < index[y.map];
     });
   };
   std::vector<OpenWay> ways;
-  for (const OpenJoin& open : find_open_joins(problem, arrangement, kLeastOpenProbability)) {
-    PlacedNode fixed = first_input(arrangement.groups[open.a]);
-    PlacedNode moving = first_input(arrangement.groups[open.b]);
+  for (const OpenJoin& open : find_open_joins(problem, consistent_set, kMinOpenProbability)) {
+    PlacedNode fixed = first_input(consistent_set.groups[open.a]);
+    PlacedNode moving = first_input(consistent_set.groups[open.b]);
     SE2 T = inverse(fixed.T_group_map) * open.T_a_b * moving.T_group_map;
     if (index[moving.map] < index[fixed.map]) {
       std::swap(fixed, moving);
@@ -95,13 +90,13 @@ std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const
   return ways;
 }
 
-Reason why_left_out(const std::vector<Join>& joins, std::size_t map) {
+LeftOut left_out(std::size_t map, const std::vector<Join>& joins) {
   const Join* nearest = nullptr;
   for (const Join& join : joins) {
     if (join.fixed != map && join.moving != map) continue;
     if (nearest == nullptr || join.match.probability > nearest->match.probability) nearest = &join;
   }
-  return nearest == nullptr ? Reason::nothing_to_compare : nearest->reason();
+  return {map, nearest == nullptr ? Reason::nothing_to_compare : nearest->reason()};
 }
 
 }  // namespace gridmerge::internal

@@ -7,7 +7,7 @@
 
 #include "gridmerge/merge/merge_result.hpp"
 #include "internal_export.hpp"
-#include "merge/arrangement.hpp"
+#include "merge/consistent_set.hpp"
 
 namespace gridmerge::internal {
 
@@ -23,7 +23,7 @@ Join make_join(std::size_t fixed, std::size_t moving, MatchResult match);
 
 /// What other maps have to do with a pair.
 struct Company {
-  const CandidateJoin* used = nullptr;  ///< the candidate that the arrangement agrees with, if any
+  const CandidateJoin* used = nullptr;  ///< the candidate that the consistent set agrees with, if any
   bool is_placed = false;               ///< at least one of the two maps lies together with others
 };
 
@@ -33,12 +33,12 @@ Join make_join(std::size_t fixed, std::size_t moving, MatchResult match, const C
 /// The same with the other map as the fixed one.
 Join inverted(Join join);
 
-/// The open joins of an arrangement, between the first input map of each group. `index` is that of each map
+/// The open joins of a consistent set, between the first input map of each group. `index` is that of each map
 /// of the problem among the inputs. Runs in the calling TBB arena; time as find_open_joins().
-std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const ArrangementProblem& problem,
-                                    const Arrangement& arrangement);
+std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const JoinProblem& problem,
+                                    const ConsistentSet& consistent_set);
 
-/// Why a map joined nothing: the reason of the refused join of it that was most probable.
-Reason why_left_out(const std::vector<Join>& joins, std::size_t map);
+/// A map that joined nothing, for the reason of the refused join of it that was most probable.
+LeftOut left_out(std::size_t map, const std::vector<Join>& joins);
 
 }  // namespace gridmerge::internal

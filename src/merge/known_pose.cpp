@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "gridmerge/grid/resample.hpp"
-#include "merge/arrangement.hpp"
 #include "merge/coverage.hpp"
+#include "merge/map_extent.hpp"
 #include "merge/prior.hpp"
 
 namespace gridmerge {
@@ -18,7 +18,7 @@ using namespace internal;
 namespace {
 
 constexpr double kFarthest = 1e7;  // [m]
-constexpr double kLeastDeviation = 1e-6;
+constexpr double kMinDeviation = 1e-6;
 
 struct KnownMap {
   KnownPose pose;
@@ -96,9 +96,9 @@ std::vector<UnusedPose> find_unused_poses(const std::vector<OccupancyGrid>& maps
   for (const Component& component : result.components) {
     for (const UnusedPose& one : overruled_in(component, known)) unused.push_back(one);
   }
-  for (const std::size_t map : result.left_out) {
-    if (!known.contains(map)) continue;
-    if (const std::optional<UnusedPose> one = unused_of(map, known)) unused.push_back(*one);
+  for (const LeftOut& alone : result.left_out) {
+    if (!known.contains(alone.map)) continue;
+    if (const std::optional<UnusedPose> one = unused_of(alone.map, known)) unused.push_back(*one);
   }
   std::sort(unused.begin(), unused.end(),
             [](const UnusedPose& a, const UnusedPose& b) { return a.map < b.map; });
@@ -127,7 +127,7 @@ void validate(const KnownPose& known) {
   if (!(std::abs(T.x) <= kFarthest && std::abs(T.y) <= kFarthest && std::isfinite(T.theta)))
     throw std::invalid_argument("a known pose must be finite, and within 10000 km");
   if (known.fixed) return;
-  const auto is_deviation = [](double sd) { return std::isfinite(sd) && sd >= kLeastDeviation; };
+  const auto is_deviation = [](double sd) { return std::isfinite(sd) && sd >= kMinDeviation; };
   if (!is_deviation(known.sd_position) || !is_deviation(known.sd_theta))
     throw std::invalid_argument(
         "the standard deviations of a known pose must be at least 0.000001, unless it is fixed");

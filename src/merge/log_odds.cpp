@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
 
+#include "grid/box.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 
 namespace gridmerge::internal {
@@ -22,32 +22,11 @@ constexpr double kMaxCells = 268435456.0;  // 2^28
 // cells is lost.
 constexpr double kSlack = 1e-6;
 
-struct Box {
-  double min_x = std::numeric_limits<double>::infinity();
-  double min_y = std::numeric_limits<double>::infinity();
-  double max_x = -std::numeric_limits<double>::infinity();
-  double max_y = -std::numeric_limits<double>::infinity();
-
-  bool empty() const { return min_x > max_x; }
-  void add(const Point2& p) {
-    min_x = std::min(min_x, p.x);
-    min_y = std::min(min_y, p.y);
-    max_x = std::max(max_x, p.x);
-    max_y = std::max(max_y, p.y);
-  }
-  void add(const Box& other) {
-    min_x = std::min(min_x, other.min_x);
-    min_y = std::min(min_y, other.min_y);
-    max_x = std::max(max_x, other.max_x);
-    max_y = std::max(max_y, other.max_y);
-  }
-};
-
 // The box of the input's known cells in the output frame. The extreme points of a set of cells, in any
 // direction, are corners of the first and last cells of its rows.
 Box known_box(const PlacedMap& input) {
   const OccupancyGrid& map = *input.map;
-  const SE2 T_output_grid = input.T_output_map * map.origin;
+  const ManyPointsTransform T_output_grid(input.T_output_map * map.origin);
   const auto is_known = [](Cell cell) { return cell != Cell::unknown; };
   Box box;
   for (int row = 0; row < map.height; ++row) {

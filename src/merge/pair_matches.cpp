@@ -25,7 +25,7 @@ void PairMatches::add(std::vector<Pair> pairs, const FindMap& find_map, const Ma
     const auto [fixed, moving] = pairs[i];
     MatchResult result = match(find_map(fixed), find_map(moving), options);
     const std::lock_guard lock(keeping);
-    made_[key_of(pairs[i])] = {fixed, std::move(result)};
+    keep(pairs[i], std::move(result));
     ++done;
     if (progress) progress(done, pairs.size());
   };
@@ -35,6 +35,10 @@ void PairMatches::add(std::vector<Pair> pairs, const FindMap& find_map, const Ma
     // Each pair by one thread: one that waited within a pair would begin with another one meanwhile.
     parallel_for(pairs.size(), [&](std::size_t i) { with_threads(1, [&] { match_pair(i); }); });
   }
+}
+
+void PairMatches::keep(const Pair& pair, MatchResult match) {
+  made_[key_of(pair)] = {pair.first, std::move(match)};
 }
 
 bool PairMatches::holds(MapId a, MapId b) const {
@@ -49,6 +53,12 @@ bool PairMatches::is_up_to_date(MapId a, MapId b) const {
 MatchResult PairMatches::between(MapId fixed, MapId moving) const {
   const Made& made = made_.at(key_of({fixed, moving}));
   return made.fixed == fixed ? made.match : inverse(made.match);
+}
+
+void PairMatches::for_each(const std::function<void(const Pair&, const MatchResult&)>& take) const {
+  for (const auto& [pair, made] : made_) {
+    if (!made.is_outdated) take(made.fixed == pair.first ? pair : Pair(pair.second, pair.first), made.match);
+  }
 }
 
 void PairMatches::outdate(MapId id) {

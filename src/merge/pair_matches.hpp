@@ -26,12 +26,18 @@ class PairMatches {
   void add(std::vector<Pair> pairs, const FindMap& find_map, const MatchOptions& options,
            const Progress& progress);
 
+  /// Takes a match of the pair as its maps are now.
+  void keep(const Pair& pair, MatchResult match);
+
   bool holds(MapId a, MapId b) const;
   /// Whether it holds the pair as its maps are now.
   bool is_up_to_date(MapId a, MapId b) const;
 
   /// The last match, outdated or not. Throws std::out_of_range for a pair that it does not hold.
   MatchResult between(MapId fixed, MapId moving) const;
+
+  /// Calls `take` with the pair, as it was matched, and the match of each that is up to date.
+  void for_each(const std::function<void(const Pair&, const MatchResult&)>& take) const;
 
   /// The map has changed: what is held of it serves until add() replaces it.
   void outdate(MapId id);

@@ -10,11 +10,11 @@ namespace gridmerge::internal {
 
 RelativePose measured_between(std::size_t fixed, std::size_t moving, const SE2& T_fixed_moving,
                               const MapExtent& fixed_extent, const MapExtent& moving_extent, double sd) {
-  constexpr double kLeastRadius = 1.0;  // [m]: of maps of next to nothing
+  constexpr double kMinRadius = 1.0;  // [m]: of maps of next to nothing
   const Point2 there = inverse(T_fixed_moving) * fixed_extent.centre;
   const Point2 middle{0.5 * (moving_extent.centre.x + there.x), 0.5 * (moving_extent.centre.y + there.y)};
   const double radius = std::hypot(fixed_extent.radius, moving_extent.radius) / std::sqrt(2.0);
-  return {fixed, moving, T_fixed_moving, middle, sd, sd / std::max(kLeastRadius, radius)};
+  return {fixed, moving, T_fixed_moving, middle, sd, sd / std::max(kMinRadius, radius)};
 }
 
 std::vector<SE2> adjust_poses(const std::vector<AdjustablePose>& poses,

@@ -104,7 +104,10 @@ std::vector<std::optional<PoseDeviation>> PoseProblem::deviations() {
     }
   }
   ceres::Covariance::Options options;
-  options.algorithm_type = ceres::DENSE_SVD;
+  // Of the Jacobian, not of its square: poses known to a micrometre and to a kilometre may stand in one
+  // problem.
+  options.algorithm_type = ceres::SPARSE_QR;
+  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.num_threads = 1;
   ceres::Covariance covariance(options);
   if (wanted.empty() || !covariance.Compute(wanted, &problem_)) return deviations;

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "grid/logistic.hpp"
+
 namespace gridmerge::internal {
 
 namespace {
@@ -18,11 +20,11 @@ constexpr double kKnownNats = 6.0;
 /// less likely: with "none of these", which it leaves as it was, their probabilities are one whole. So the
 /// most probable candidate at a known place is never doubted more than before.
 void weigh_again(std::vector<CandidateJoin>& candidates, const std::vector<bool>& is_near, double nats) {
-  constexpr double kLeastDoubt = 1e-9;
+  constexpr double kMinDoubt = 1e-9;
   std::vector<double> weights;
   double none = 1.0, sum = 0.0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const double probability = 1.0 / (1.0 + std::exp(-candidates[i].log_odds));
+    const double probability = logistic(candidates[i].log_odds);
     none -= probability;
     weights.push_back(probability * std::exp(is_near[i] ? nats : -nats));
     sum += weights.back();
@@ -33,7 +35,7 @@ void weigh_again(std::vector<CandidateJoin>& candidates, const std::vector<bool>
     double others = std::max(none, 0.0);
     for (std::size_t j = 0; j < candidates.size(); ++j) others += j == i ? 0.0 : weights[j];
     candidates[i].log_odds =
-        std::log(std::max(weights[i], kLeastDoubt * sum) / std::max(others, kLeastDoubt * sum));
+        std::log(std::max(weights[i], kMinDoubt * sum) / std::max(others, kMinDoubt * sum));
   }
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "gridmerge/merge/known_pose.hpp"
-#include "merge/arrangement.hpp"
+#include "merge/pair_candidates.hpp"
 
 namespace gridmerge::internal {
 

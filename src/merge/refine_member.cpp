@@ -11,13 +11,13 @@ namespace gridmerge::internal {
 
 namespace {
 
-constexpr double kMostCells = 67108864.0;  // 2^26
+constexpr double kMaxCells = 67108864.0;  // 2^26
 
 OccupancyGrid fuse_in_bounds(const std::vector<PlacedMap>& maps) {
   const double resolution = finest_resolution(maps);
   try {
     const Lattice lattice = cover(maps, resolution);
-    if (static_cast<double>(lattice.width) * lattice.height > kMostCells)
+    if (static_cast<double>(lattice.width) * lattice.height > kMaxCells)
       throw std::invalid_argument("the merged map would exceed 2^26 cells");
     return fuse(maps, resolution).grid;
   } catch (const std::invalid_argument& error) {

@@ -47,8 +47,7 @@ class PairwiseTree {
     result.joins = std::move(joins_);
     for (Group& group : groups_) {
       if (group.members.size() == 1) {
-        result.left_out.push_back(group.first());
-        result.left_out_reasons.push_back(why_left_out(result.joins, group.first()));
+        result.left_out.push_back(left_out(group.first(), result.joins));
       } else {
         const std::vector<PlacedMap> inputs = placed(group);
         FusedMap fused =

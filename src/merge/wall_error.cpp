@@ -17,14 +17,14 @@ constexpr double kUnrelated = 2.0;          // standard deviations that an unrel
 
 }  // namespace
 
-WallError::WallError(const WallMap& fixed, const Point2& fixed_middle, const WallMap& moving,
+WallError::WallError(const LikelihoodField& fixed, const Point2& fixed_middle, const LikelihoodField& moving,
                      const Point2& moving_middle, double sd)
     : fixed_(fixed),
       T_grid_fixed_(inverse(fixed.T_map_grid) * SE2{fixed_middle.x, fixed_middle.y, 0.0}),
       sd_(sd) {
+  const ManyPointsTransform T_map_grid(moving.T_map_grid);
   for (const WallPoint& wall : draw_evenly(moving.walls, kWalls)) {
-    const Point2 at =
-        moving.T_map_grid * Point2{wall.position.x * moving.cell, wall.position.y * moving.cell};
+    const Point2 at = T_map_grid * Point2{wall.position.x * moving.cell, wall.position.y * moving.cell};
     points_.push_back({at.x - moving_middle.x, at.y - moving_middle.y});
   }
   weight_ = std::sqrt(
@@ -39,8 +39,7 @@ WallError::Field WallError::field_at(double x, double y) const {
   const double column = std::floor(x - 0.5), row = std::floor(y - 0.5);
   if (!(column >= 0.0 && row >= 0.0 && column + 1.0 < fixed_.width && row + 1.0 < fixed_.height))
     return unseen;
-  const std::size_t at = static_cast<std::size_t>(row) * static_cast<std::size_t>(fixed_.width) +
-                         static_cast<std::size_t>(column);
+  const std::size_t at = fixed_.index(static_cast<int>(column), static_cast<int>(row));
   const auto distance = [&](std::size_t i) { return fixed_.places[i].distance; };
   const std::size_t above = at + static_cast<std::size_t>(fixed_.width);
   if (distance(at) == kUnseen || distance(at + 1) == kUnseen || distance(above) == kUnseen ||
@@ -58,13 +57,14 @@ bool WallError::Evaluate(const double* const* poses, double* residuals, double**
   const double cf = std::cos(fixed[2]), sf = std::sin(fixed[2]);
   const double cm = std::cos(moving[2]), sm = std::sin(moving[2]);
   const double cg = std::cos(T_grid_fixed_.theta), sg = std::sin(T_grid_fixed_.theta);
+  const ManyPointsTransform T_grid_fixed(T_grid_fixed_);
   const double flattened = kFlattened * sd_;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     // m: the point turned with the moving map; u: in the fixed map's frame; q: in its grid, in cells.
     const double mx = cm * points_[i].x - sm * points_[i].y, my = sm * points_[i].x + cm * points_[i].y;
     const double wx = mx + moving[0] - fixed[0], wy = my + moving[1] - fixed[1];
     const double ux = cf * wx + sf * wy, uy = -sf * wx + cf * wy;
-    const Point2 q = T_grid_fixed_ * Point2{ux, uy};
+    const Point2 q = T_grid_fixed * Point2{ux, uy};
     const Field field = field_at(q.x / fixed_.cell, q.y / fixed_.cell);
     const double root = std::sqrt(field.distance * field.distance + flattened * flattened);
     residuals[i] = weight_ * flattened * field.distance / root / sd_;

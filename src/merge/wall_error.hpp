@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "similarity/wall_map.hpp"
+#include "similarity/likelihood_field.hpp"
 
 namespace gridmerge::internal {
 
@@ -20,7 +20,7 @@ class WallError : public ceres::CostFunction {
  public:
   /// Both maps must have cells of one size; `fixed` must outlive this. The poses are of frames whose origins
   /// are at the given points of the map frames [m]. Distances of `sd` [cells] are usual.
-  WallError(const WallMap& fixed, const Point2& fixed_middle, const WallMap& moving,
+  WallError(const LikelihoodField& fixed, const Point2& fixed_middle, const LikelihoodField& moving,
             const Point2& moving_middle, double sd);
 
   bool Evaluate(const double* const* poses, double* residuals, double** jacobians) const override;
@@ -32,7 +32,7 @@ class WallError : public ceres::CostFunction {
   };
   Field field_at(double x, double y) const;
 
-  const WallMap& fixed_;
+  const LikelihoodField& fixed_;
   SE2 T_grid_fixed_;            // from the fixed map's frame [m]
   std::vector<Point2> points_;  // of the moving map [m, its frame]
   double sd_;                   // [cells]

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "grid/logistic.hpp"
 #include "merge/join_weights.hpp"
 
 namespace gridmerge::internal {
@@ -18,9 +19,9 @@ constexpr double kOddsAmongMany = 0.4;
 constexpr double kRepeats = 0.005;
 
 /// So many poses are weighed in full for two groups: those with which most pairs agree.
-constexpr std::size_t kMostProposals = 50;
+constexpr std::size_t kMaxProposals = 50;
 /// Candidates less likely than this propose no join, though they may agree with one.
-constexpr double kLeastLogOdds = -6.0;
+constexpr double kMinLogOdds = -6.0;
 /// Poses nearer to each other than this many tolerances are one way to join: the same candidate may agree
 /// with both.
 constexpr double kDistinct = 2.0;
@@ -64,26 +65,21 @@ std::vector<SE2> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) 
     SE2 T_a_b;
     double agreement = 0.0;
   };
+  const std::vector<Across> across = pairs_across(a, b);
   std::vector<Proposal> all;
-  for (const PlacedNode& in_a : a) {
-    for (const PlacedNode& in_b : b) {
-      const std::optional<std::size_t>& index = pair_of(in_a.map, in_b.map);
-      if (!index) continue;
-      const PairCandidates& pair = problem_.pairs[*index];
-      for (const CandidateJoin& candidate : pair.candidates) {
-        if (candidate.log_odds < kLeastLogOdds) continue;
-        const SE2 T = pair.fixed == in_a.map ? candidate.T_fixed_moving : inverse(candidate.T_fixed_moving);
-        all.push_back({in_a.T_group_map * T * inverse(in_b.T_group_map)});
-      }
+  for (const Across& one : across) {
+    const PairCandidates& pair = problem_.pairs[one.pair];
+    for (const CandidateJoin& candidate : pair.candidates) {
+      if (candidate.log_odds < kMinLogOdds) continue;
+      const SE2 T = pair.fixed == a[one.a].map ? candidate.T_fixed_moving : inverse(candidate.T_fixed_moving);
+      all.push_back({a[one.a].T_group_map * T * inverse(b[one.b].T_group_map)});
     }
   }
   for (Proposal& proposal : all) {
-    for (const PlacedNode& in_a : a) {
-      const SE2 T_map_b = inverse(in_a.T_group_map) * proposal.T_a_b;
-      for (const PlacedNode& in_b : b) {
-        if (const auto agreement = find_agreement(in_a.map, in_b.map, T_map_b * in_b.T_group_map))
-          proposal.agreement += agreement->worth;
-      }
+    for (const Across& one : across) {
+      const SE2 T_map_b = inverse(a[one.a].T_group_map) * proposal.T_a_b;
+      if (const auto agreement = find_agreement(one.pair, a[one.a].map, T_map_b * b[one.b].T_group_map))
+        proposal.agreement += agreement->worth;
     }
   }
   std::stable_sort(all.begin(), all.end(),
@@ -96,19 +92,19 @@ std::vector<SE2> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) 
       return difference(of_a, of_b, proposal.T_a_b, other) < distinct;
     });
     if (is_new) kept.push_back(proposal.T_a_b);
-    if (kept.size() == kMostProposals) break;
+    if (kept.size() == kMaxProposals) break;
   }
   return kept;
 }
 
 /// Two maps alone lie as their pair says, which has weighed all that there is.
 std::vector<WeighedJoin> JoinWeights::ways_of_pair(const PlacedNode& a, const PlacedNode& b) const {
-  const std::optional<std::size_t>& index = pair_of(a.map, b.map);
+  const std::optional<std::size_t> index = pair_of(a.map, b.map);
   if (!index) return {};
   const PairCandidates& pair = problem_.pairs[*index];
   const bool of_many = problem_.maps.size() > 2;
   const auto probability = [&](const CandidateJoin& candidate) {
-    const double p = 1.0 / (1.0 + std::exp(-candidate.log_odds));
+    const double p = logistic(candidate.log_odds);
     if (!of_many || candidate.is_known) return p;
     const double odds = kOddsAmongMany * p / (1.0 - p + kRepeats);
     return odds / (1.0 + odds);

@@ -6,8 +6,6 @@
 #include <numeric>
 #include <optional>
 
-#include "merge/arrangement.hpp"
-
 namespace gridmerge::internal {
 
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gridmerge/grid/se2.hpp"
-#include "merge/coverage.hpp"
+#include "merge/map_extent.hpp"
 
 namespace gridmerge::internal {
 

@@ -14,8 +14,8 @@ namespace {
 /// A map goes on from another one when it has kept most of what that knew, in the same place. Free space
 /// agrees with free space in most poses, so that most has to be nearly all of it. A map that a closed loop
 /// bent may fail too: then its pose is searched anew, which does no harm.
-constexpr double kLeastKept = 0.5;
-constexpr double kLeastAgreement = 0.9;
+constexpr double kMinKept = 0.5;
+constexpr double kMinAgreement = 0.9;
 
 }  // namespace
 
@@ -34,7 +34,7 @@ MapChange change_between(const OccupancyGrid& before, const OccupancyGrid& after
   const double both = static_cast<double>(counts.both_known()) * cell;
   const double equal = static_cast<double>(counts.agreement) * cell;
   const double share = 1.0 - equal / std::max(known_before, known_after);
-  return {std::clamp(share, 0.0, 1.0), both < kLeastKept * known_before || equal < kLeastAgreement * both};
+  return {std::clamp(share, 0.0, 1.0), both < kMinKept * known_before || equal < kMinAgreement * both};
 }
 
 bool are_equal(const OccupancyGrid& a, const OccupancyGrid& b) {

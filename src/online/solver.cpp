@@ -50,7 +50,7 @@ TeamSolver::TeamSolver(const TeamOptions& options)
 }
 
 void TeamSolver::take(News news) {
-  for (auto& [name, one] : news) add_news(pending_[name], std::move(one));
+  for (auto& entry : news) add_news(pending_[entry.first], std::move(entry.second));
 }
 
 TeamAnswer TeamSolver::solve(Effort effort) {
@@ -74,7 +74,7 @@ TeamAnswer TeamSolver::solve(Effort effort) {
     answer.problem = error.what();
     answer.components = told_components_;
   }
-  tell_robots(answer);
+  for (const auto& [name, robot] : robots_) answer.robots.push_back(status_of(name, robot, answer));
   tell_events(answer);
   told_ = placements_.groups();
   told_components_ = answer.components;
@@ -125,9 +125,13 @@ void TeamSolver::set_map(const std::string& name, std::shared_ptr<const Occupanc
     return;
   }
   if (are_equal(*robot.map, *map)) return;
-  const bool other_frame = change_between(*robot.map, *map).other_frame;
+  const MapChange change = change_between(*robot.map, *map);
+  const bool other_frame = change.other_frame;
   const double searched_from = options_.search_again * (is_placed(name) ? 1.0 : kSooner);
-  const bool searches = other_frame || change_between(*robot.searched, *map).share >= searched_from;
+  // Mostly the map before is the one that was searched last.
+  const double unsearched =
+      robot.searched == robot.map ? change.share : change_between(*robot.searched, *map).share;
+  const bool searches = other_frame || unsearched >= searched_from;
   const MapExtent extent = extent_of(*map);
   if (other_frame) {
     merger_.update(*robot.id, *map);
@@ -189,8 +193,7 @@ void TeamSolver::propose(const MergeResult& result, Placements::Weight weight) {
     proposed.push_back(std::move(group));
   }
   left_out_.clear();
-  for (std::size_t i = 0; i < result.left_out.size(); ++i)
-    left_out_[names[result.left_out[i]]] = result.left_out_reasons[i];
+  for (const LeftOut& one : result.left_out) left_out_[names[one.map]] = one.reason;
   std::map<std::string, MapExtent> extents;
   for (const auto& [name, robot] : robots_) {
     if (robot.id) extents[name] = robot.extent;
@@ -231,36 +234,34 @@ void TeamSolver::tell_components(MergeResult result, TeamAnswer& answer) const {
             });
 }
 
-void TeamSolver::tell_robots(TeamAnswer& answer) const {
-  const std::vector<RobotGroup>& groups = placements_.groups();
+RobotStatus TeamSolver::status_of(const std::string& name, const Robot& robot,
+                                  const TeamAnswer& answer) const {
   const auto maps =
       std::count_if(robots_.begin(), robots_.end(), [](const auto& one) { return one.second.map; });
-  for (const auto& [name, robot] : robots_) {
-    RobotStatus status;
-    status.name = name;
-    status.maps_heard = robot.maps_heard;
-    status.heard_first = robot.since;
-    const auto group = std::find_if(groups.begin(), groups.end(),
-                                    [&](const RobotGroup& one) { return one.robots.contains(name); });
-    if (group != groups.end()) {
-      status.state = RobotState::placed;
-      status.T_world_map = group->robots.at(name).T_group_map;
-      status.probability = group->robots.at(name).probability;
-      const auto component =
-          std::find_if(answer.components.begin(), answer.components.end(), [&](const TeamComponent& one) {
-            return std::binary_search(one.robots.begin(), one.robots.end(), name);
-          });
-      if (component != answer.components.end())
-        status.component = static_cast<std::size_t>(component - answer.components.begin());
-    } else if (const auto reason = left_out_.find(name); robot.map && maps > 1 && reason != left_out_.end()) {
-      status.state = RobotState::left_out;
-      status.reason = reason->second;
+  RobotStatus status;
+  status.name = name;
+  status.maps_heard = robot.maps_heard;
+  status.heard_first = robot.since;
+  const std::vector<RobotGroup>& groups = placements_.groups();
+  const auto group = std::find_if(groups.begin(), groups.end(),
+                                  [&](const RobotGroup& one) { return one.robots.contains(name); });
+  if (group != groups.end()) {
+    status.state = RobotState::placed;
+    status.why = say_placed(name, *group);
+    status.T_world_map = group->robots.at(name).T_group_map;
+    status.probability = group->robots.at(name).probability;
+    for (std::size_t i = 0; i < answer.components.size(); ++i) {
+      const std::vector<std::string>& robots = answer.components[i].robots;
+      if (std::binary_search(robots.begin(), robots.end(), name)) status.component = i;
     }
-    status.why = group != groups.end()                  ? say_placed(name, *group)
-                 : status.state == RobotState::left_out ? say_left_out(status.reason)
-                                                        : say_waiting(robot.map != nullptr, maps > 1);
-    answer.robots.push_back(std::move(status));
+  } else if (const auto reason = left_out_.find(name); robot.map && maps > 1 && reason != left_out_.end()) {
+    status.state = RobotState::left_out;
+    status.reason = reason->second;
+    status.why = say_left_out(status.reason);
+  } else {
+    status.why = say_waiting(robot.map != nullptr, maps > 1);
   }
+  return status;
 }
 
 void TeamSolver::tell_events(TeamAnswer& answer) const {

@@ -77,7 +77,7 @@ class TeamSolver {
   void search_what_changed();
   void propose(const MergeResult& result, Placements::Weight weight);
   void tell_components(MergeResult result, TeamAnswer& answer) const;
-  void tell_robots(TeamAnswer& answer) const;
+  RobotStatus status_of(const std::string& name, const Robot& robot, const TeamAnswer& answer) const;
   void tell_events(TeamAnswer& answer) const;
   const std::string& first_heard(const std::map<std::string, Placement>& robots) const;
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "merge/arrangement.hpp"
 #include "merge/left_out.hpp"
+#include "merge/map_extent.hpp"
 
 namespace gridmerge::internal {
 

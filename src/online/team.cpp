@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <deque>
+#include <map>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -13,6 +15,13 @@
 #include "online/solver.hpp"
 
 namespace gridmerge {
+
+namespace {
+
+/// A team that nobody asks keeps so many events. Each is a line for people: more than they read at once.
+constexpr std::size_t kEventsKept = 1000;
+
+}  // namespace
 
 using namespace internal;
 
@@ -114,6 +123,13 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
     return answer_;
   }
 
+  std::vector<TeamEvent> take_events() {
+    const std::lock_guard lock(mutex_);
+    std::vector<TeamEvent> events(events_.begin(), events_.end());
+    events_.clear();
+    return events;
+  }
+
   bool wait_until_settled(std::chrono::milliseconds longest) const {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, longest,
@@ -158,6 +174,11 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
     changed_.notify_all();
   }
 
+  void keep_events(const std::vector<TeamEvent>& events) {
+    events_.insert(events_.end(), events.begin(), events.end());
+    while (events_.size() > kEventsKept) events_.pop_front();
+  }
+
   void work() {
     std::unique_lock lock(mutex_);
     while (!ends_) {
@@ -186,6 +207,7 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
       has_unfinished_ = !answer;
       if (answer) {
         is_all_done_ = answer->settled || is_quiet;
+        keep_events(answer->events);
         answer_ = std::move(answer);
       }
       changed_.notify_all();
@@ -217,7 +239,8 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
   mutable std::condition_variable changed_;
   News news_;
   std::map<std::string, std::shared_ptr<OccupancyGrid>> newest_;
-  std::set<std::string> known_;  // robots that were named
+  std::deque<TeamEvent> events_;  // not taken yet
+  std::set<std::string> known_;   // robots that were named
   std::chrono::steady_clock::time_point heard_ = std::chrono::steady_clock::now();
   std::shared_ptr<const TeamAnswer> answer_ = std::make_shared<const TeamAnswer>();
   bool ends_ = false, is_at_work_ = false, may_be_cancelled_ = true, has_unfinished_ = false;
@@ -256,6 +279,10 @@ void Team::set_known_pose(const std::string& robot, std::optional<KnownPose> kno
 
 std::shared_ptr<const TeamAnswer> Team::answer() const {
   return worker_->answer();
+}
+
+std::vector<TeamEvent> Team::take_events() {
+  return worker_->take_events();
 }
 
 bool Team::wait_until_settled(std::chrono::milliseconds longest) const {

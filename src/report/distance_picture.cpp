@@ -9,7 +9,7 @@ namespace gridmerge::internal {
 
 namespace {
 
-constexpr int kMostNumbered = 40;  // cells a side: fills a screen
+constexpr int kMaxNumbered = 40;   // cells a side: fills a screen
 constexpr int kNumberedCell = 24;  // pixels: three digits fit
 constexpr int kLine = 1;           // between magnified cells
 
@@ -41,7 +41,7 @@ void write_number(Canvas& canvas, int x, int y, std::uint16_t distance, Colour b
 }  // namespace
 
 std::string distance_map_png(const DistanceMap& map) {
-  const bool numbered = std::max(map.width, map.height) <= kMostNumbered;
+  const bool numbered = std::max(map.width, map.height) <= kMaxNumbered;
   const int cell = numbered ? kNumberedCell : 1;
   const int line = numbered ? kLine : 0;
   const int most = farthest(map);

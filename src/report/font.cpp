@@ -72,9 +72,9 @@ char32_t take_character(std::string_view& text) {
     text.remove_prefix(1);
     ++taken;
   }
-  constexpr std::array<char32_t, 4> kLeast{0x80, 0x80, 0x800, 0x10000};  // shorter ones are written shorter
-  return more > 0 && taken == more && character >= kLeast[static_cast<std::size_t>(more)] ? character
-                                                                                          : kReplacement;
+  constexpr std::array<char32_t, 4> kMin{0x80, 0x80, 0x800, 0x10000};  // shorter ones are written shorter
+  return more > 0 && taken == more && character >= kMin[static_cast<std::size_t>(more)] ? character
+                                                                                        : kReplacement;
 }
 
 std::vector<Glyph> glyphs_of(std::string_view text) {

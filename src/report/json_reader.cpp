@@ -39,8 +39,8 @@ double JsonReader::number_in(double least, double most) const {
 }
 
 std::int64_t JsonReader::count() const {
-  constexpr std::int64_t kMost = std::int64_t{1} << 53;
-  if (value_.is_number_unsigned() && value_.get<std::uint64_t>() <= static_cast<std::uint64_t>(kMost))
+  constexpr std::int64_t kMax = std::int64_t{1} << 53;
+  if (value_.is_number_unsigned() && value_.get<std::uint64_t>() <= static_cast<std::uint64_t>(kMax))
     return value_.get<std::int64_t>();
   fail("is no whole number from 0 to 2^53");
 }

@@ -27,16 +27,11 @@ Json hypotheses_json(const std::vector<Hypothesis>& hypotheses) {
   return list;
 }
 
-Json hypotheses_json(const Join& join) {
-  constexpr std::size_t kMost = 3;
-  constexpr double kLeastProbability = 0.01;
-  if (join.outcome != JoinOutcome::refused) return hypotheses_json(join.match.hypotheses);
-  std::vector<Hypothesis> kept;
-  for (const Hypothesis& hypothesis : join.match.hypotheses) {
-    if (kept.empty() || (kept.size() < kMost && hypothesis.probability >= kLeastProbability))
-      kept.push_back(hypothesis);
-  }
-  return hypotheses_json(kept);
+Json common_json(const PairPose& pose) {
+  return {{"acceptance_index", number_json(pose.acceptance_index)},
+          {"agreement", pose.agreement},
+          {"disagreement", pose.disagreement},
+          {"overlap", number_json(pose.overlap)}};
 }
 
 Json reason_json(Reason reason) {

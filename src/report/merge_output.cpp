@@ -139,25 +139,23 @@ void prepare_merge_output(const fs::path& directory, const std::vector<fs::path>
 }
 
 void write_merge_output(const fs::path& directory, const std::vector<fs::path>& inputs,
-                        const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
-                        const MergeResult& result) {
+                        const NamedMerge& merge) {
   FileSet files(directory, FileSet::IfMissing::make);
   protect(inputs, directory);
-  for (std::size_t i = 0; i < result.components.size(); ++i)
-    add_map(files, result.components[i].fused.grid, component_file(i));
-  files.add(kPreview, preview_png(names, maps, result));
-  files.add(kReport, report_page(names, maps, result));
-  files.add(kTransforms, transforms_json(names, result));
-  remove_stale_maps(files, directory, result.components.size());
+  const std::vector<Component>& components = merge.result.components;
+  for (std::size_t i = 0; i < components.size(); ++i)
+    add_map(files, components[i].fused.grid, component_file(i));
+  files.add(kPreview, preview_png(merge));
+  files.add(kReport, report_page(merge));
+  files.add(kTransforms, transforms_json(merge.names, merge.result));
+  remove_stale_maps(files, directory, components.size());
   files.commit();
 }
 
-void write_report(const fs::path& directory, const std::vector<fs::path>& inputs,
-                  const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
-                  const MergeResult& result) {
+void write_report(const fs::path& directory, const std::vector<fs::path>& inputs, const NamedMerge& merge) {
   FileSet files(directory);
   protect(inputs, directory);
-  files.add(kReport, report_page(names, maps, result));
+  files.add(kReport, report_page(merge));
   files.commit();
 }
 

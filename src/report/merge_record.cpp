@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -15,6 +17,7 @@
 #include "io/file_reader.hpp"
 #include "report/json_reader.hpp"
 #include "report/json_values.hpp"
+#include "report/told_joins.hpp"
 
 namespace gridmerge {
 
@@ -25,8 +28,8 @@ namespace {
 constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 constexpr double kFarthest =
     1e12;  // [m]: maps' origins are within 1e9, and poses were multiplied a few times
-constexpr std::size_t kMostEqual = 100;  // of one name: what is said of them is looked for among all pairs
-constexpr double kRounding = 1e-9;       // probabilities are differences, too
+constexpr std::size_t kMaxEqual = 100;  // of one name: what is said of them is looked for among all pairs
+constexpr double kRounding = 1e-9;      // probabilities are differences, too
 constexpr double kInfinity = std::numeric_limits<double>::max();
 
 double share(const JsonReader& json) {
@@ -55,6 +58,7 @@ class RecordReader {
     read_names(json.at("maps"));
     read_components(json.at("components"));
     read_joins(json.at("joins"));
+    if (json.has("refused")) read_refused(json.at("refused"));  // of many maps
     read_left_out(json);
     if (json.has("open_ways")) read_open_ways(json.at("open_ways"));
     // Not in what earlier versions wrote, nor where the tree was asked for.
@@ -72,7 +76,7 @@ class RecordReader {
       const std::string name = json.at(i).text();
       if (name.empty() || name.find('\0') != std::string::npos) json.at(i).fail("is no name of a file");
       named_[name].push_back(i);
-      if (named_[name].size() > kMostEqual) json.at(i).fail("is there too often: '" + name + "'");
+      if (named_[name].size() > kMaxEqual) json.at(i).fail("is there too often: '" + name + "'");
       record_.names.push_back(name);
     }
     is_placed_.assign(record_.names.size(), false);
@@ -176,6 +180,68 @@ class RecordReader {
     for (std::size_t i = 0; i < json.size(); ++i) record_.result.joins.push_back(read_join(json.at(i)));
   }
 
+  /// Those that have no row are counted alone.
+  void read_refused(const JsonReader& json) {
+    const JsonReader columns = json.at("columns");
+    std::array<std::size_t, 7> place{};  // of the columns that a row needs; others are passed over
+    constexpr std::array kColumns{"fixed", "moving", "reason", "probability", "x", "y", "theta"};
+    for (std::size_t c = 0; c < kColumns.size(); ++c) {
+      while (columns.at(place[c]).text() != kColumns[c]) {
+        if (++place[c] == columns.size()) columns.fail(std::string("has no '") + kColumns[c] + "'");
+      }
+    }
+    std::map<Reason, std::size_t> rows;
+    const JsonReader table = json.at("rows");
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      const JsonReader row = table.at(i);
+      Join join;
+      join.fixed = map_number(row.at(place[0]));
+      join.moving = map_number(row.at(place[1]));
+      if (join.fixed == join.moving) row.fail("is of a map and itself");
+      join.match.reason = read_reason(row.at(place[2]));
+      if (join.match.reason == Reason::none) row.at(place[2]).fail("is none");
+      join.probability = share(row.at(place[3]));
+      join.T_fixed_moving = {row.at(place[4]).number_in(-kFarthest, kFarthest),
+                             row.at(place[5]).number_in(-kFarthest, kFarthest),
+                             row.at(place[6]).number_in(-std::numbers::pi, std::numbers::pi)};
+      static_cast<PairPose&>(join.match) = join;
+      join.match.hypotheses = {{join.T_fixed_moving, 0.0, join.probability}};
+      ++rows[join.match.reason];
+      record_.result.joins.push_back(std::move(join));
+    }
+    // In the order in which the merge compared them.
+    std::stable_sort(record_.result.joins.begin(), record_.result.joins.end(),
+                     [](const Join& a, const Join& b) {
+                       return std::pair(a.fixed, a.moving) < std::pair(b.fixed, b.moving);
+                     });
+    read_more_refused(json, rows);
+  }
+
+  void read_more_refused(const JsonReader& json, const std::map<Reason, std::size_t>& rows) {
+    std::size_t counted = 0, in_rows = 0;
+    const JsonReader reasons = json.at("reasons");
+    for (int i = 0; i <= static_cast<int>(Reason::contradicts_others); ++i) {
+      const auto reason = static_cast<Reason>(i);
+      if (reason == Reason::none || !reasons.has(name_of(reason))) continue;
+      const JsonReader count = reasons.at(name_of(reason));
+      const std::size_t all = static_cast<std::size_t>(count.count());
+      const std::size_t told = rows.count(reason) > 0 ? rows.at(reason) : 0;
+      if (all < told) count.fail("is less than its rows");
+      counted += all;
+      in_rows += told;
+      if (all > told) record_.result.refused_more.push_back({reason, all - told});
+    }
+    if (static_cast<std::size_t>(json.at("count").count()) != counted)
+      json.at("count").fail("is not the sum of the reasons");
+    if (in_rows != json.at("rows").size()) json.at("rows").fail("has a reason that is not counted");
+  }
+
+  std::size_t map_number(const JsonReader& json) const {
+    const std::int64_t number = json.count();
+    if (number >= static_cast<std::int64_t>(record_.names.size())) json.fail("is no number of a map");
+    return static_cast<std::size_t>(number);
+  }
+
   /// The maps of a join. Of equal ones those that are next in the order of joins: ascending, fixed < moving.
   std::pair<std::size_t, std::size_t> pair_of(const JsonReader& json) const {
     using Maps = std::pair<std::size_t, std::size_t>;
@@ -202,21 +268,28 @@ class RecordReader {
                                      JoinOutcome::rejected, JoinOutcome::known});
     if (json.at("verdict").text() != name_of(join.verdict()))
       json.at("verdict").fail("does not go with the outcome");
-    join.T_fixed_moving = json.at("transform").transform(kFarthest);
-    join.probability = share(json.at("probability"));
-    join.match = read_match(json);
+    static_cast<PairPose&>(join) = read_pair_pose(json);
+    join.match = read_match(json, join);
+    // Where it is known, and not in what earlier versions wrote.
+    if (join.used() && json.has("sd")) set_deviation(join, json.at("sd").number_in(0.0, kInfinity));
     const JsonReader reason = json.at("reason");
     const Reason told = reason.is_null() ? Reason::none : read_reason(reason);
     if (told != join.reason() && json.has("by_themselves")) reason.fail("does not go with the outcome");
-    join.acceptance_index = join.match.acceptance_index;
-    join.agreement = join.match.agreement;
-    join.disagreement = join.match.disagreement;
-    join.overlap = join.match.overlap;
     return join;
   }
 
-  static MatchResult read_match(const JsonReader& json) {
+  static PairPose read_pair_pose(const JsonReader& json) {
+    return {json.at("transform").transform(kFarthest), share(json.at("probability")),
+            share(json.at("acceptance_index")),        json.at("agreement").count(),
+            json.at("disagreement").count(),           share(json.at("overlap"))};
+  }
+
+  /// What the two say by themselves. What they have in common is told of the join's pose alone.
+  static MatchResult read_match(const JsonReader& json, const PairPose& of_join) {
     MatchResult match;
+    static_cast<PairPose&>(match) = of_join;
+    match.T_fixed_moving = {};
+    match.probability = 0.0;
     // Earlier versions told the reason of the two alone as that of the join.
     const JsonReader own = json.has("by_themselves") ? json.at("by_themselves") : json;
     const JsonReader reason = own.at("reason");
@@ -224,10 +297,6 @@ class RecordReader {
     match.reason = reason.is_null() ? Reason::none : read_reason(reason);
     if (json.has("by_themselves") && own.at("verdict").text() != name_of(match.verdict))
       own.at("verdict").fail("does not go with the reason");
-    match.acceptance_index = share(json.at("acceptance_index"));
-    match.agreement = json.at("agreement").count();
-    match.disagreement = json.at("disagreement").count();
-    match.overlap = share(json.at("overlap"));
     const JsonReader hypotheses = json.at("hypotheses");
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
       const JsonReader hypothesis = hypotheses.at(i);
@@ -248,16 +317,16 @@ class RecordReader {
     const bool has_objects = json.has("left_out_maps");
     const JsonReader reasons = json.at(has_objects ? "left_out_maps" : "left_out_reasons");
     if (maps.size() != reasons.size()) reasons.fail("does not go with left_out");
-    std::vector<std::size_t>& left_out = record_.result.left_out;
+    std::vector<LeftOut>& left_out = record_.result.left_out;
     for (std::size_t i = 0; i < maps.size(); ++i) {
-      left_out.push_back(place(maps.at(i), i > 0 ? left_out.back() : 0));
-      if (i > 0 && left_out[i - 1] > left_out[i]) maps.at(i).fail("is not in the order of the maps");
+      left_out.push_back({place(maps.at(i), i > 0 ? left_out.back().map : 0)});
+      if (i > 0 && left_out[i - 1].map > left_out[i].map) maps.at(i).fail("is not in the order of the maps");
     }
     for (std::size_t i = 0; i < maps.size(); ++i) {
       const JsonReader reason = reasons.at(i);
-      if (has_objects && reason.at("source").text() != record_.names[left_out[i]])
+      if (has_objects && reason.at("source").text() != record_.names[left_out[i].map])
         reason.at("source").fail("does not go with left_out");
-      record_.result.left_out_reasons.push_back(read_reason(has_objects ? reason.at("reason") : reason));
+      left_out[i].reason = read_reason(has_objects ? reason.at("reason") : reason);
     }
   }
 

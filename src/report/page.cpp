@@ -46,14 +46,12 @@ std::string assemble(std::string_view connect_source, const Json& data) {
 
 }  // namespace
 
-std::string report_page(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
-                        const MergeResult& result) {
-  return assemble("'none'", page_data(names, maps, result));
+std::string report_page(const NamedMerge& merge) {
+  return assemble("'none'", page_data(merge));
 }
 
-std::string live_report_page(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
-                             const MergeResult& result) {
-  Json data = page_data(names, maps, result);
+std::string live_report_page(const NamedMerge& merge) {
+  Json data = page_data(merge);
   data["live"] = true;
   return assemble("'self'", data);
 }

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "gridmerge/merge/merge_result.hpp"
+#include "gridmerge/report/named_merge.hpp"
 #include "internal_export.hpp"
 
 namespace gridmerge::internal {
@@ -13,17 +12,13 @@ namespace gridmerge::internal {
 /// and shows the figures behind every join, from the data block that the page holds. A policy in the page
 /// lets the browser run that script alone and fetch nothing.
 ///
-/// `names[i]` is what to call map i; names may hold any bytes and are data only (what is not UTF-8 appears as
-/// U+FFFD). `maps` and `result` as given to and returned by merge(); a fused map that is empty (0 x 0) is
-/// shown as a component without cells. Depends on nothing else: the same input gives the same bytes. Throws
-/// std::out_of_range when there are fewer names than maps. O(cells): about 0.1 s for a map of 4000 x 4000.
-std::string report_page(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
-                        const MergeResult& result);
+/// Names may hold any bytes and are data only (what is not UTF-8 appears as U+FFFD). A fused map that is
+/// empty (0 x 0) is shown as a component without cells. Depends on nothing else: the same input gives the
+/// same bytes. O(cells): about 0.1 s for a map of 4000 x 4000.
+std::string report_page(const NamedMerge& merge);
 
 /// The same for a server that answers what the page asks: its data says that it is `live`, and the policy
 /// lets it talk to where it came from. Throws as report_page().
-GRIDMERGE_INTERNAL_EXPORT std::string live_report_page(const std::vector<std::string>& names,
-                                                       const std::vector<OccupancyGrid>& maps,
-                                                       const MergeResult& result);
+GRIDMERGE_INTERNAL_EXPORT std::string live_report_page(const NamedMerge& merge);
 
 }  // namespace gridmerge::internal

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "grid/parallel.hpp"
@@ -11,11 +14,18 @@
 #include "gridmerge/report/preview.hpp"
 #include "gridmerge/version.hpp"
 #include "report/shown_map.hpp"
+#include "report/told_joins.hpp"
 #include "report/wording.hpp"
 
 namespace gridmerge::internal {
 
 namespace {
+
+/// Of more maps than this the page takes so many bytes at most for the maps, and so many for the merged ones.
+constexpr std::size_t kMaxMapsInFull = 50;
+constexpr std::size_t kMostBytesOfMaps = 10'000'000;
+constexpr std::size_t kMostBytesOfMerged = 4'000'000;
+constexpr std::size_t kAnyBytes = std::numeric_limits<std::size_t>::max();
 
 Json grid_json(const ShownMap& map) {
   return {{"width", map.width},
@@ -53,63 +63,110 @@ Json component_json(std::size_t index, const Component& component, const ShownMa
   return json;
 }
 
-Json join_json(const Join& join) {
-  return {{"fixed", join.fixed},
-          {"moving", join.moving},
-          {"outcome", name_of(join.outcome)},
-          {"reason", reason_json(join.reason())},
-          {"by_themselves", own_verdict_json(join.match)},
-          {"transform", transform_json(join.T_fixed_moving)},
-          {"probability", number_json(join.probability)},
-          {"acceptance_index", number_json(join.acceptance_index)},
-          {"agreement", join.agreement},
-          {"disagreement", join.disagreement},
-          {"overlap", number_json(join.overlap)},
-          {"hypotheses", hypotheses_json(join)}};
+Json join_json(const Join& join, bool in_full) {
+  Json json{{"fixed", join.fixed},
+            {"moving", join.moving},
+            {"outcome", name_of(join.outcome)},
+            {"reason", reason_json(join.reason())},
+            {"by_themselves", own_verdict_json(join.match)},
+            {"transform", transform_json(join.T_fixed_moving)},
+            {"probability", number_json(join.probability)}};
+  json.update(common_json(join));
+  json["hypotheses"] = hypotheses_json(told_hypotheses(join, in_full));
+  return json;
 }
 
-/// All maps, bent as they lie, then all fused ones: what takes time is done for several at once.
-std::vector<ShownMap> show_all(const std::vector<OccupancyGrid>& maps, const MergeResult& result) {
-  std::vector<const OccupancyGrid*> grids;
-  grids.reserve(maps.size() + result.components.size());
-  for (const OccupancyGrid& map : maps) grids.push_back(&map);
-  std::vector<const Deformation*> deformations(maps.size(), nullptr);
+/// The refused joins of many maps, as transforms.json has them.
+Json refused_json(const MergeResult& result, const ToldJoins& told) {
+  std::size_t count = 0;
+  for (const RefusedCount& refused : told.counts) count += refused.count;
+  Json rows = Json::array();
+  for (const std::size_t i : told.rows) {
+    const Join& join = result.joins[i];
+    const SE2& T = join.T_fixed_moving;
+    rows.push_back(
+        Json::array({join.fixed, join.moving, name_of(join.reason()), number_json(join.probability),
+                     number_json(T.x), number_json(T.y), number_json(T.theta)}));
+  }
+  return {{"count", count}, {"rows", std::move(rows)}};
+}
+
+/// The maps that are bent, as they lie; nothing for the others.
+std::vector<std::optional<OccupancyGrid>> bent_maps(const std::vector<OccupancyGrid>& maps,
+                                                    const MergeResult& result) {
+  std::vector<const Member*> members;
   for (const Component& component : result.components) {
-    grids.push_back(&component.fused.grid);
     for (const Member& member : component.members) {
-      if (!member.deformation.is_identity()) deformations.at(member.map) = &member.deformation;
+      if (!member.deformation.is_identity()) members.push_back(&member);
     }
   }
-  std::vector<ShownMap> shown(grids.size());
-  parallel_for(grids.size(), [&](std::size_t i) {
-    const bool is_bent = i < maps.size() && deformations[i] != nullptr;
-    shown[i] = is_bent ? show_map(bent_map(*grids[i], *deformations[i])) : show_map(*grids[i]);
+  std::vector<std::optional<OccupancyGrid>> bent(maps.size());
+  parallel_for(members.size(), [&](std::size_t i) {
+    bent[members[i]->map] = bent_map(maps.at(members[i]->map), members[i]->deformation);
   });
-  return shown;
+  return bent;
+}
+
+/// What takes time is done for several at once. If they take more than `bytes`, the largest are shown
+/// coarser.
+std::vector<ShownMap> show_all(const std::vector<const OccupancyGrid*>& grids, std::size_t bytes) {
+  std::vector<ShownMap> shown(grids.size());
+  std::vector<std::size_t> made_with(grids.size(), 0);
+  std::size_t max_cells = kMaxShownCells;
+  while (true) {
+    parallel_for(grids.size(), [&](std::size_t i) {
+      const bool is_as_before = made_with[i] != 0 && grids[i]->cells.size() <= max_cells;
+      if (!is_as_before) shown[i] = show_map(*grids[i], max_cells);
+      made_with[i] = max_cells;
+    });
+    std::size_t sum = 0, most = 0;
+    for (const ShownMap& map : shown) {
+      sum += map.cells.size();
+      most = std::max(most, static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height));
+    }
+    if (sum <= bytes || most <= 1) return shown;
+    max_cells = most / 2;
+  }
 }
 
 }  // namespace
 
-Json page_data(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
-               const MergeResult& result) {
-  const std::vector<ShownMap> shown = show_all(maps, result);
+Json page_data(const NamedMerge& merge) {
+  const auto& [names, maps, result] = merge;
+  const bool is_small = maps.size() <= kMaxMapsInFull;
+  const std::vector<std::optional<OccupancyGrid>> bent = bent_maps(maps, result);
+  std::vector<const OccupancyGrid*> grids;
+  for (std::size_t i = 0; i < maps.size(); ++i) grids.push_back(bent[i] ? &*bent[i] : &maps[i]);
+  const std::vector<ShownMap> shown = show_all(grids, is_small ? kAnyBytes : kMostBytesOfMaps);
+  grids.clear();
+  for (const Component& component : result.components) grids.push_back(&component.fused.grid);
+  const std::vector<ShownMap> shown_fused = show_all(grids, is_small ? kAnyBytes : kMostBytesOfMerged);
   Json shown_maps = Json::array();
   for (std::size_t i = 0; i < maps.size(); ++i) shown_maps.push_back(map_json(names.at(i), i, shown[i]));
   Json components = Json::array();
   for (std::size_t i = 0; i < result.components.size(); ++i)
-    components.push_back(component_json(i, result.components[i], shown[maps.size() + i]));
+    components.push_back(component_json(i, result.components[i], shown_fused[i]));
   Json joins = Json::array();
-  for (const Join& join : result.joins) joins.push_back(join_json(join));
+  const ToldJoins told = tell_joins(result);
+  for (const std::size_t i : told.objects) joins.push_back(join_json(result.joins[i], told.in_full));
+  Json open_ways = Json::array();
+  for (const OpenWay& way : result.open_ways)
+    open_ways.push_back({{"fixed", way.fixed},
+                         {"moving", way.moving},
+                         {"transform", transform_json(way.T_fixed_moving)},
+                         {"probability", number_json(way.probability)}});
   Json left_out = Json::array();
-  for (std::size_t i = 0; i < result.left_out.size(); ++i) {
-    const Reason reason = result.left_out_reasons.at(i);
-    left_out.push_back({{"map", result.left_out[i]},
-                        {"reason", name_of(reason)},
-                        {"explanation", explain_left_out(result, i)}});
-  }
-  return {{"version", kVersion},           {"live", false},
-          {"maps", std::move(shown_maps)}, {"components", std::move(components)},
-          {"joins", std::move(joins)},     {"left_out", std::move(left_out)}};
+  for (const LeftOut& one : result.left_out)
+    left_out.push_back(
+        {{"map", one.map}, {"reason", name_of(one.reason)}, {"explanation", explain_left_out(result, one)}});
+  return {{"version", kVersion},
+          {"live", false},
+          {"maps", std::move(shown_maps)},
+          {"components", std::move(components)},
+          {"joins", std::move(joins)},
+          {"refused", refused_json(result, told)},
+          {"left_out", std::move(left_out)},
+          {"open_ways", std::move(open_ways)}};
 }
 
 }  // namespace gridmerge::internal

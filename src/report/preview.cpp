@@ -25,7 +25,7 @@ constexpr int kLegendGap = 6;  // between its lines [pixels]
 constexpr int kPageMinWidth = 1000, kPageMaxWidth = 2400;
 constexpr int kComponentMinSide = 1400, kComponentMaxSide = kPageMaxWidth - 2 * kGap;
 constexpr int kLeftOutMinSide = 280, kLeftOutMaxSide = 560;
-constexpr std::size_t kMostLeftOutPanels = 12;
+constexpr std::size_t kMaxLeftOutPanels = 12;
 
 MapPanel component_panel(const std::vector<OccupancyGrid>& maps, const MergeResult& result,
                          std::size_t index) {
@@ -156,8 +156,8 @@ Colour map_colour(std::size_t map) {
   return {shade(colour.red), shade(colour.green), shade(colour.blue)};
 }
 
-std::string preview_png(const std::vector<std::string>& names, const std::vector<OccupancyGrid>& maps,
-                        const MergeResult& result) {
+std::string preview_png(const NamedMerge& merge) {
+  const auto& [names, maps, result] = merge;
   const std::vector<std::string> called = short_names(names);
   const TextSize size = result.components.empty() ? TextSize::small : TextSize::large;
   std::vector<Canvas> blocks;
@@ -170,8 +170,9 @@ std::string preview_png(const std::vector<std::string>& names, const std::vector
   if (!entries.empty()) blocks.push_back(flow(entries, width, kLegendGap));
 
   std::vector<Canvas> left_out;
-  for (const std::size_t map : result.left_out) {
-    if (left_out.size() == kMostLeftOutPanels) break;
+  for (const LeftOut& one : result.left_out) {
+    if (left_out.size() == kMaxLeftOutPanels) break;
+    const std::size_t map = one.map;
     left_out.push_back(draw_panel(left_out_panel(called.at(map), maps.at(map), map), TextSize::small));
   }
   if (!left_out.empty()) {

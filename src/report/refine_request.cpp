@@ -13,12 +13,12 @@ namespace gridmerge::internal {
 
 namespace {
 
-constexpr double kFarthest = 1e7;      // [m]
-constexpr double kMostTurned = 100.0;  // [rad]: a page may have counted whole turns
+constexpr double kFarthest = 1e7;     // [m]
+constexpr double kMaxTurned = 100.0;  // [rad]: a page may have counted whole turns
 
 SE2 read_pose(const JsonReader& json) {
   return {json.at("x").number_in(-kFarthest, kFarthest), json.at("y").number_in(-kFarthest, kFarthest),
-          normalize_angle(json.at("theta").number_in(-kMostTurned, kMostTurned))};
+          normalize_angle(json.at("theta").number_in(-kMaxTurned, kMaxTurned))};
 }
 
 std::size_t read_map(const JsonReader& json, std::size_t maps) {
@@ -55,15 +55,12 @@ RefineRequest parse_refine_request(std::string_view text, std::size_t maps) {
 }
 
 std::string refined_pose_json(const RefinedPose& pose) {
-  const Json json{{"transform", transform_json(pose.T_fixed_moving)},
-                  {"score", number_json(pose.score)},
-                  {"probability", number_json(pose.probability)},
-                  {"acceptance_index", number_json(pose.acceptance_index)},
-                  {"agreement", pose.agreement},
-                  {"disagreement", pose.disagreement},
-                  {"overlap", number_json(pose.overlap)},
-                  {"start_score", number_json(pose.start_score)},
-                  {"moved", number_json(pose.moved)}};
+  Json json{{"transform", transform_json(pose.T_fixed_moving)},
+            {"score", number_json(pose.score)},
+            {"probability", number_json(pose.probability)}};
+  json.update(common_json(pose));
+  json["start_score"] = number_json(pose.start_score);
+  json["moved"] = number_json(pose.moved);
   return text_of(json, -1) + "\n";
 }
 

@@ -9,7 +9,7 @@
 namespace gridmerge::internal {
 
 /// Browsers draw no larger maps at once.
-inline constexpr std::size_t kMostShownCells = std::size_t{1} << 25;
+inline constexpr std::size_t kMaxShownCells = std::size_t{1} << 25;
 
 /// The grid, or where it has more than `max_cells` cells, the grid with cells of twice the side, as often as
 /// it takes: occupied where any of the four cells is, else free where any is. `max_cells` is at least 1.
@@ -27,7 +27,7 @@ struct ShownMap {
   std::string cells;
 };
 
-/// Of a grid of any size, 0 x 0 too; large ones are shown coarser (at_most(), kMostShownCells). O(cells).
-ShownMap show_map(const OccupancyGrid& grid);
+/// Of a grid of any size, 0 x 0 too; large ones are shown coarser (at_most(), kMaxShownCells). O(cells).
+ShownMap show_map(const OccupancyGrid& grid, std::size_t max_cells = kMaxShownCells);
 
 }  // namespace gridmerge::internal

@@ -5,11 +5,10 @@
 
 namespace gridmerge::internal {
 
-const char* explain_left_out(const MergeResult& result, std::size_t index) {
-  const Reason reason = result.left_out_reasons.at(index);
+const char* explain_left_out(const MergeResult& result, const LeftOut& one) {
   const bool alone = result.components.empty() && result.left_out.size() == 1;
-  if (alone && reason == Reason::nothing_to_compare) return "there is no other map to merge it with";
-  return explain_left_out(reason);
+  if (alone && one.reason == Reason::nothing_to_compare) return "there is no other map to merge it with";
+  return explain_left_out(one.reason);
 }
 
 }  // namespace gridmerge::internal

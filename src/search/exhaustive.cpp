@@ -17,11 +17,11 @@ namespace {
 constexpr double kScale = 6.0;           // score units a nat
 constexpr std::size_t kPilotMargin = 4;  // see foreseen_score()
 /// Shifts at which fewer than this share of the samples could lie on the fixed map are not looked at.
-constexpr double kLeastMet = 0.08;
+constexpr double kMinMet = 0.08;
 static_assert(kMaxSearchSamples * kMaxCorrelated < 32767);
 
 /// The evidence of a wall in each coarse cell of the fixed map.
-EvidenceImage make_evidence_image(const WallMap& fixed, const SearchFrame& frame,
+EvidenceImage make_evidence_image(const LikelihoodField& fixed, const SearchFrame& frame,
                                   const ExhaustiveSearchOptions& options) {
   const auto table = evidence_table({options.sigma, options.outliers}, fixed.background);
   std::vector<float> sums(static_cast<std::size_t>(frame.fixed_width) * frame.fixed_height, 0.0F);
@@ -29,7 +29,7 @@ EvidenceImage make_evidence_image(const WallMap& fixed, const SearchFrame& frame
     throw_if_cancelled();
     const std::size_t line = static_cast<std::size_t>(y / options.coarse_factor) * frame.fixed_width;
     for (int x = 0; x < fixed.width; ++x) {
-      const int distance = fixed.places[static_cast<std::size_t>(y) * fixed.width + x].distance;
+      const int distance = fixed.places[fixed.index(x, y)].distance;
       if (distance == kUnseen) continue;
       sums[line + x / options.coarse_factor] += table[encounter(distance, kUnclearFacing)];
     }
@@ -55,7 +55,7 @@ class PeakFinder {
              const EvidenceImage& pooled)
       : frame_(frame),
         walls_(walls),
-        least_met_(1 + static_cast<std::size_t>(kLeastMet * static_cast<double>(walls.size()))),
+        least_met_(1 + static_cast<std::size_t>(kMinMet * static_cast<double>(walls.size()))),
         evidence_(evidence),
         pooled_(pooled) {}
 
@@ -90,7 +90,7 @@ class PeakFinder {
 
 }  // namespace
 
-std::vector<PoseCandidate> search_all_poses(const WallMap& fixed, const WallMap& moving,
+std::vector<PoseCandidate> search_all_poses(const LikelihoodField& fixed, const LikelihoodField& moving,
                                             const ExhaustiveSearchOptions& options) {
   check_search(fixed, moving, options, kMaxSearchSamples);
   const SearchFrame frame = make_search_frame(fixed, moving, options.coarse_factor, options.rotations);

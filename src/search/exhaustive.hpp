@@ -4,22 +4,22 @@
 #include <cstddef>
 #include <vector>
 
-#include "similarity/wall_map.hpp"
+#include "similarity/likelihood_field.hpp"
 
 namespace gridmerge::internal {
 
 /// A pose that a search proposes.
 struct PoseCandidate {
-  SE2 T_fixed_moving;  ///< between the grid frames of two wall maps, in cells
+  SE2 T_fixed_moving;  ///< between the grid frames of two likelihood fields, in cells
   int score = 0;       ///< the search's own measure; larger is better
 };
 
 struct ExhaustiveSearchOptions {
-  int coarse_factor = 5;      ///< cells of the wall maps to a cell of the search, along a side
+  int coarse_factor = 5;      ///< cells of the likelihood fields to a cell of the search, along a side
   int rotations = 180;        ///< evenly spaced over the full turn
   std::size_t samples = 128;  ///< wall points of the moving map that are scored, at most kMaxSearchSamples
   std::size_t max_candidates = 2500;
-  double sigma = 3.2;     ///< tolerance of the score [cells of the wall maps]
+  double sigma = 3.2;     ///< tolerance of the score [cells of the likelihood fields]
   double outliers = 0.5;  ///< see ErrorModel: generous, since only the ranking matters here
 };
 
@@ -33,7 +33,7 @@ inline constexpr std::size_t kMaxSearchSamples = 240;
 /// machine and for any number of threads. Shifts that by a bound cannot reach the score of the last candidate
 /// are passed over (branch and bound, Lawler and Wood 1966, of one level), which changes nothing in the
 /// result. Runs in the calling TBB arena. O(rotations * samples * translations).
-std::vector<PoseCandidate> search_all_poses(const WallMap& fixed, const WallMap& moving,
+std::vector<PoseCandidate> search_all_poses(const LikelihoodField& fixed, const LikelihoodField& moving,
                                             const ExhaustiveSearchOptions& options = {});
 
 }  // namespace gridmerge::internal

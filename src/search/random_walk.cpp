@@ -106,7 +106,7 @@ class Poses {
 };
 
 /// So many steps make a covariance of three numbers.
-constexpr std::size_t kLeastMemory = 4;
+constexpr std::size_t kMinMemory = 4;
 
 /// Normal proposals, learnt from the last accepted steps.
 class Proposals {
@@ -148,7 +148,7 @@ class Proposals {
     scale_ = 1.0;
     steps_.push_back(accepted);
     if (steps_.size() > options_.memory) steps_.pop_front();
-    if (steps_.size() < kLeastMemory) return;
+    if (steps_.size() < kMinMemory) return;
     const double count = static_cast<double>(steps_.size());
     mean_.setZero();
     for (const Step& step : steps_) mean_ += step / count;
@@ -208,8 +208,8 @@ void validate(const StartPoseOptions& options) {
   if (options.offsets < 0) throw std::invalid_argument("the number of start offsets must not be negative");
   if (!(options.offset >= 0.0 && std::isfinite(options.offset)))
     throw std::invalid_argument("the start offset must not be negative");
-  constexpr double kMostPoses = 1e6;
-  if (options.rotations * std::pow(2.0 * options.offsets + 1.0, 2) > kMostPoses)
+  constexpr double kMaxPoses = 1e6;
+  if (options.rotations * std::pow(2.0 * options.offsets + 1.0, 2) > kMaxPoses)
     throw std::invalid_argument("the lattice of starts has more than a million poses");
 }
 
@@ -217,7 +217,7 @@ void validate(const RandomWalkOptions& options) {
   const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
   if (!(options.c_lock >= 0.0 && std::isfinite(options.c_lock)))
     throw std::invalid_argument("c_lock must be a number, and not negative");
-  if (options.memory < kLeastMemory)
+  if (options.memory < kMinMemory)
     throw std::invalid_argument("the walk must remember at least four samples");
   if (!positive(options.smallest_step) || !positive(options.largest_step) ||
       !(options.first_step >= options.smallest_step && options.first_step <= options.largest_step))

@@ -43,7 +43,8 @@ SE2 SearchFrame::pose(const Peak& peak) const {
   return {(peak.x - 0.5 * box) * factor - turned.x, (peak.y - 0.5 * box) * factor - turned.y, rotate.theta};
 }
 
-SearchFrame make_search_frame(const WallMap& fixed, const WallMap& moving, int coarse_factor, int rotations) {
+SearchFrame make_search_frame(const LikelihoodField& fixed, const LikelihoodField& moving, int coarse_factor,
+                              int rotations) {
   const double factor = coarse_factor;
   const auto coarse = [&](double cells) { return static_cast<int>(std::ceil(cells / factor)); };
   SearchFrame frame{factor, rotations,           {0.5 * moving.width, 0.5 * moving.height},
@@ -52,9 +53,10 @@ SearchFrame make_search_frame(const WallMap& fixed, const WallMap& moving, int c
   return frame;
 }
 
-void check_search(const WallMap& fixed, const WallMap& moving, const ExhaustiveSearchOptions& options,
-                  std::size_t most_samples) {
-  if (fixed.cell != moving.cell) throw std::invalid_argument("both wall maps must have cells of one size");
+void check_search(const LikelihoodField& fixed, const LikelihoodField& moving,
+                  const ExhaustiveSearchOptions& options, std::size_t most_samples) {
+  if (fixed.cell != moving.cell)
+    throw std::invalid_argument("both likelihood fields must have cells of one size");
   if (options.coarse_factor < 1) throw std::invalid_argument("coarse_factor must be at least 1");
   if (options.rotations < 1) throw std::invalid_argument("rotations must be at least 1");
   if (options.samples > most_samples)

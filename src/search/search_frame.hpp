@@ -8,7 +8,7 @@
 
 #include "search/correlate.hpp"
 #include "search/exhaustive.hpp"
-#include "similarity/wall_map.hpp"
+#include "similarity/likelihood_field.hpp"
 
 namespace gridmerge::internal {
 
@@ -41,11 +41,12 @@ struct SearchFrame {
   SE2 pose(const Peak& peak) const;
 };
 
-SearchFrame make_search_frame(const WallMap& fixed, const WallMap& moving, int coarse_factor, int rotations);
+SearchFrame make_search_frame(const LikelihoodField& fixed, const LikelihoodField& moving, int coarse_factor,
+                              int rotations);
 
-/// Throws std::invalid_argument for wall maps that do not go together and options that make no sense.
-void check_search(const WallMap& fixed, const WallMap& moving, const ExhaustiveSearchOptions& options,
-                  std::size_t most_samples);
+/// Throws std::invalid_argument for likelihood fields that do not go together and options that make no sense.
+void check_search(const LikelihoodField& fixed, const LikelihoodField& moving,
+                  const ExhaustiveSearchOptions& options, std::size_t most_samples);
 
 /// The turned wall points, and the shifts at which enough of them can meet the fixed map.
 struct TurnedWalls {

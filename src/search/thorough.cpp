@@ -20,7 +20,7 @@ namespace {
 constexpr double kScale = 6.0;           // units of evidence a nat
 constexpr std::size_t kPilotMargin = 6;  // see foreseen_score()
 constexpr std::size_t kSeenStep = 4;     // every 4th sample tells how much is seen
-static_assert(kMostThoroughSamples * kMaxCorrelated < 32767);
+static_assert(kMaxThoroughSamples * kMaxCorrelated < 32767);
 
 /// One image of evidence for the walls that face one way: sectors of two directions, of two axes, and one for
 /// what faces no known way.
@@ -36,7 +36,7 @@ using BySector = std::array<float, kSectors>;
 
 /// The evidence of a wall of each sector in each coarse cell of the fixed map: means over its cells and over
 /// the facings of the sector.
-EvidenceImage make_evidence(const WallMap& fixed, const SearchFrame& frame,
+EvidenceImage make_evidence(const LikelihoodField& fixed, const SearchFrame& frame,
                             const ThoroughSearchOptions& options) {
   const auto table = evidence_table({options.sigma, options.outliers}, fixed.background);
   std::vector<BySector> nats(static_cast<std::size_t>(kFacingCodes) * kDistanceBins, BySector{});
@@ -63,7 +63,7 @@ EvidenceImage make_evidence(const WallMap& fixed, const SearchFrame& frame,
     for (int y = row * options.coarse_factor; y < std::min(fixed.height, (row + 1) * options.coarse_factor);
          ++y) {
       for (int x = 0; x < fixed.width; ++x) {
-        const Place& place = fixed.places[static_cast<std::size_t>(y) * fixed.width + x];
+        const Place& place = fixed.places[fixed.index(x, y)];
         if (place.distance == kUnseen) continue;
         const BySector& met = nats[static_cast<std::size_t>(place.facing) * kDistanceBins + place.distance];
         BySector& sum = sums[x / options.coarse_factor];
@@ -82,10 +82,10 @@ EvidenceImage make_evidence(const WallMap& fixed, const SearchFrame& frame,
 
 /// How much of each coarse cell the fixed map has seen, kMaxCorrelated for all of it, as means of 2 x 2 cells
 /// in the planes of pool_pairs().
-EvidenceImage make_seen_pairs(const WallMap& fixed, const SearchFrame& frame, int factor) {
+EvidenceImage make_seen_pairs(const LikelihoodField& fixed, const SearchFrame& frame, int factor) {
   std::vector<int> counts(static_cast<std::size_t>(frame.fixed_width) * frame.fixed_height, 0);
   for (int y = 0; y < fixed.height; ++y) {
-    const Place* const row = fixed.places.data() + static_cast<std::size_t>(y) * fixed.width;
+    const Place* const row = fixed.places.data() + fixed.index(0, y);
     int* const sums = counts.data() + static_cast<std::size_t>(y / factor) * frame.fixed_width;
     for (int x = 0; x < fixed.width; ++x) sums[x / factor] += row[x].distance != kUnseen;
   }
@@ -109,8 +109,8 @@ EvidenceImage make_seen_pairs(const WallMap& fixed, const SearchFrame& frame, in
 /// kSpread n^kSpreadPower.
 constexpr double kMean = 0.37;
 constexpr double kSpread = 0.48;
-constexpr double kUnits = 256.0;      // of a score, a standard deviation
-constexpr double kMostScore = 120.0;  // standard deviations: keeps 16 bits from overflowing
+constexpr double kUnits = 256.0;     // of a score, a standard deviation
+constexpr double kMaxScore = 120.0;  // standard deviations: keeps 16 bits from overflowing
 
 /// Turns sums of evidence into scores, by what is seen: in units of the image of seen places.
 class Normal {
@@ -121,7 +121,7 @@ class Normal {
     const std::size_t most = looked_up * kMaxCorrelated;
     for (std::size_t seen = 0; seen <= most; ++seen) {
       const double n = weight * static_cast<double>(seen) / kMaxCorrelated;
-      const bool is_enough = n >= kLeastSeenSamples;
+      const bool is_enough = n >= kMinSeenSamples;
       const double per_unit = is_enough ? kUnits / (kScale * kSpread * std::pow(n, kSpreadPower)) : 0.0;
       mean_.push_back(static_cast<float>(-kScale * kMean * n));
       per_unit_.push_back(static_cast<float>(per_unit));
@@ -130,7 +130,7 @@ class Normal {
 
   std::int16_t score(int sum, int seen) const {
     const float score = (static_cast<float>(sum) - mean_[seen]) * per_unit_[seen];
-    return static_cast<std::int16_t>(std::clamp(score, 0.0F, static_cast<float>(kMostScore * kUnits)));
+    return static_cast<std::int16_t>(std::clamp(score, 0.0F, static_cast<float>(kMaxScore * kUnits)));
   }
 
   /// From how much seen on there is a score at all.
@@ -191,7 +191,7 @@ class PeakFinder {
     // How far the bounds lie above what is asked for, which depends on what is seen.
     for_each_looked_at(bounded, bounds_, [&](std::int16_t& bound, int x, int y) {
       const int above = bound - least_sums_[static_cast<std::size_t>(seen_at(x, y))];
-      bound = static_cast<std::int16_t>(std::clamp(above, int{kNotLookedAt}, kMostSum));
+      bound = static_cast<std::int16_t>(std::clamp(above, int{kNotLookedAt}, kMaxSum));
     });
     resize(scores_, turned_.shifts_x, turned_.shifts_y);
     return best_of(correlate_where(searched_.evidence, turned_.samples, bounds_, 0, scores_), rotation,
@@ -199,12 +199,12 @@ class PeakFinder {
   }
 
  private:
-  static constexpr int kMostSum = 32767;
+  static constexpr int kMaxSum = 32767;
 
   /// Turns the walls, and sees how many of them meet what the fixed map has seen.
   void turn(int rotation) {
     const std::vector<WallPoint>& walls = searched_.walls;
-    const std::size_t least = std::min(walls.size(), static_cast<std::size_t>(kLeastSeenSamples));
+    const std::size_t least = std::min(walls.size(), static_cast<std::size_t>(kMinSeenSamples));
     turned_ = turn_walls(walls, searched_.frame, rotation, least);
     std::vector<Sample> some;
     for (std::size_t i = 0; i < walls.size(); i += kSeenStep) some.push_back(turned_.samples[i]);
@@ -248,9 +248,9 @@ class PeakFinder {
 
 }  // namespace
 
-std::vector<PoseCandidate> search_thoroughly(const WallMap& fixed, const WallMap& moving,
+std::vector<PoseCandidate> search_thoroughly(const LikelihoodField& fixed, const LikelihoodField& moving,
                                              const ThoroughSearchOptions& options) {
-  check_search(fixed, moving, options, kMostThoroughSamples);
+  check_search(fixed, moving, options, kMaxThoroughSamples);
   std::vector<WallPoint> walls = draw_evenly(moving.walls, options.samples);
   if (walls.empty() || fixed.walls.empty()) return {};
   const SearchFrame frame = make_search_frame(fixed, moving, options.coarse_factor, options.rotations);

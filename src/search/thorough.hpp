@@ -11,21 +11,21 @@ namespace gridmerge::internal {
 /// As of search_all_poses(), with defaults of its own.
 struct ThoroughSearchOptions : ExhaustiveSearchOptions {
   ThoroughSearchOptions() {
-    samples = 512;  // at most kMostThoroughSamples
+    samples = 512;  // at most kMaxThoroughSamples
     max_candidates = 600;
     sigma = 4.0;
   }
 };
 
 /// Keeps the 16-bit sums of the search from overflowing.
-inline constexpr std::size_t kMostThoroughSamples = 2000;
+inline constexpr std::size_t kMaxThoroughSamples = 2000;
 
 /// The score of unrelated poses spreads as this power of the walls that are seen: neighbouring walls tell
 /// nearly the same, so more than the square root.
 inline constexpr double kSpreadPower = 0.75;
 
 /// Samples that lie where the fixed map has seen, from which on a pose is looked at.
-inline constexpr double kLeastSeenSamples = 25.0;
+inline constexpr double kMinSeenSamples = 25.0;
 
 /// As search_all_poses(), for maps that share little. Two things differ.
 /// - Facings count: the evidence of a wall depends on which way its free side looks (evidence_table()), in
@@ -35,11 +35,11 @@ inline constexpr double kLeastSeenSamples = 25.0;
 ///     (S + 0.37 n) / (0.48 n^0.75),
 ///   S the sum of the evidence [nats], n the samples that fall where the fixed map has seen, by every fourth
 ///   of them and by means of 2 x 2 shifts. Unrelated poses of laser maps have that mean and that spread
-///   (kSpreadPower). Poses of n below kLeastSeenSamples are not looked at.
+///   (kSpreadPower). Poses of n below kMinSeenSamples are not looked at.
 /// PoseCandidate::score is in 256ths of a standard deviation. The same bits on every machine and for any
 /// number of threads. Throws std::invalid_argument for options that make no sense. Runs in the calling TBB
 /// arena. O(rotations * samples * translations).
-std::vector<PoseCandidate> search_thoroughly(const WallMap& fixed, const WallMap& moving,
+std::vector<PoseCandidate> search_thoroughly(const LikelihoodField& fixed, const LikelihoodField& moving,
                                              const ThoroughSearchOptions& options = {});
 
 }  // namespace gridmerge::internal

@@ -118,7 +118,7 @@ namespace {
 
 /// Adds up distances, the bytes of each apart, in 16 bits a lane: 256 columns at most.
 struct ColumnSum {
-  static constexpr int kMost = 256;
+  static constexpr int kMax = 256;
 
   inline __attribute__((always_inline)) void add(const Column& distance, const std::uint8_t* cells,
                                                  std::uint8_t value) {
@@ -161,7 +161,7 @@ std::uint64_t sweep_left_and_sum(const std::uint16_t* strip, int columns, int fi
   std::uint64_t sum = 0;
   while (x >= first) {
     ColumnSum block;
-    for (const int last = std::max(first, x + 1 - ColumnSum::kMost); x >= last; --x) {
+    for (const int last = std::max(first, x + 1 - ColumnSum::kMax); x >= last; --x) {
       sweep_to(x);
       block.add(nearest, cells + static_cast<std::size_t>(x - first) * kStripRows, value);
     }
@@ -176,7 +176,7 @@ std::uint64_t sum_where(const std::uint16_t* distances, const std::uint8_t* cell
   std::uint64_t sum = 0;
   std::size_t i = 0;
   while (i + kStripRows <= count) {
-    constexpr std::size_t kBlock = std::size_t{ColumnSum::kMost} * kStripRows;
+    constexpr std::size_t kBlock = std::size_t{ColumnSum::kMax} * kStripRows;
     const std::size_t last = std::min(i + kBlock, count - (count - i) % kStripRows);
     ColumnSum block;
     for (; i < last; i += kStripRows) {

@@ -213,7 +213,7 @@ std::vector<WallPoint> draw_evenly(const std::vector<WallPoint>& points, std::si
   return drawn;
 }
 
-WallEvidence::LookUp::LookUp(const WallMap& map)
+WallEvidence::LookUp::LookUp(const LikelihoodField& map)
     : walls(map.walls),
       row_of_tiles(tiles_along(map.width, kTileColumns)),
       last_x(static_cast<float>(map.width - 1)),
@@ -222,7 +222,7 @@ WallEvidence::LookUp::LookUp(const WallMap& map)
   const unsigned rows_of_tiles = tiles_along(map.height, kTileRows);
   places.resize(static_cast<std::size_t>(row_of_tiles) * rows_of_tiles * kTileColumns * kTileRows);
   for (int y = 0; y < map.height; ++y) {
-    const Place* const row = map.places.data() + static_cast<std::size_t>(y) * map.width;
+    const Place* const row = map.places.data() + map.index(0, y);
     for (int x = 0; x < map.width; ++x) {
       const Place& place = row[x];
       const int distance = place.distance == kUnseen ? kEncounters : place.distance;
@@ -243,7 +243,8 @@ WallEvidence::Points::Points(const std::vector<WallPoint>& walls, std::size_t ma
   weight = drawn.empty() ? 0.0F : static_cast<float>(walls.size()) / static_cast<float>(drawn.size());
 }
 
-WallEvidence::WallEvidence(const WallMap& fixed, const WallMap& moving, std::size_t max_points)
+WallEvidence::WallEvidence(const LikelihoodField& fixed, const LikelihoodField& moving,
+                           std::size_t max_points)
     : fixed_(std::make_shared<LookUp>(fixed)),
       moving_(std::make_shared<LookUp>(moving)),
       fixed_walls_(fixed.walls, max_points),
@@ -268,12 +269,12 @@ WallEvidence::Histogram WallEvidence::count_encounters(const LookUp& map, const 
   // Several counters, because neighbouring walls often meet the same: adding to one twice in a row would
   // wait. Short ones, because to clear and to sum them takes as long as to count a hundred walls.
   constexpr std::size_t kCounters = 4;
-  constexpr std::size_t kMostCounted = 65535 / kBlock * kBlock;
+  constexpr std::size_t kMaxCounted = 65535 / kBlock * kBlock;
   using Counts = std::array<std::uint16_t, kEncounters + 1>;
   Histogram histogram{};
   std::array<int, kBlock> at;
-  for (std::size_t begin = 0; begin < points.x.size(); begin += kMostCounted) {
-    const std::size_t end = std::min(points.x.size(), begin + kMostCounted);
+  for (std::size_t begin = 0; begin < points.x.size(); begin += kMaxCounted) {
+    const std::size_t end = std::min(points.x.size(), begin + kMaxCounted);
     std::array<Counts, kCounters> counts{};
     for (std::size_t first = begin; first < end; first += kBlock) {
       const std::size_t count = std::min(kBlock, end - first);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "internal_export.hpp"
-#include "similarity/wall_map.hpp"
+#include "similarity/likelihood_field.hpp"
 
 namespace gridmerge::internal {
 
@@ -69,7 +69,7 @@ class WallEvidence {
  public:
   /// Both maps must have cells of the same size, and outlive this. Uses at most `max_points` wall points of
   /// each map, evenly drawn, each standing for its share of the walls. O(cells of both).
-  WallEvidence(const WallMap& fixed, const WallMap& moving, std::size_t max_points);
+  WallEvidence(const LikelihoodField& fixed, const LikelihoodField& moving, std::size_t max_points);
 
   /// The same with another number of points. O(points).
   WallEvidence with_points(std::size_t max_points) const;
@@ -84,7 +84,7 @@ class WallEvidence {
 
   /// A map made for looking walls up in: places as numbers that need no case distinctions.
   struct LookUp {
-    explicit LookUp(const WallMap& map);
+    explicit LookUp(const LikelihoodField& map);
 
     const std::vector<WallPoint>& walls;
     unsigned row_of_tiles;              // how many tiles of places lie in a row
@@ -116,7 +116,7 @@ class WallEvidence {
 /// Log-likelihood ratio [nats] of the area that both maps know, from how much of it agrees. Maps of one place
 /// disagree in few of these cells, maps laid over each other by chance in more, even where walls happen to
 /// meet. Neighbouring cells tell nearly the same, so an area counts for less than the sum of its cells. Areas
-/// in cells of the wall maps.
+/// in cells of the likelihood fields.
 double area_evidence(double agreement, double disagreement);
 
 /// At most `count` of the points, evenly spaced along the list.

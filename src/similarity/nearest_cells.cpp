@@ -7,6 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "grid/box.hpp"
 #include "grid/multiversion.hpp"
 
 namespace gridmerge::internal {
@@ -103,15 +104,10 @@ bool is_within_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, dou
 CellBox box_on_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution) {
   if (!is_within_lattice(grid, T_lattice_grid, lattice_resolution))
     throw std::invalid_argument("the maps are more than a million cells large or apart");
-  double left = kFarthest, right = -kFarthest, bottom = kFarthest, top = -kFarthest;
-  for (const Point2& corner : corners_on_lattice(grid, T_lattice_grid, lattice_resolution)) {
-    left = std::min(left, corner.x);
-    right = std::max(right, corner.x);
-    bottom = std::min(bottom, corner.y);
-    top = std::max(top, corner.y);
-  }
-  return {static_cast<int>(std::floor(left)), static_cast<int>(std::floor(bottom)),
-          static_cast<int>(std::floor(right)) + 1, static_cast<int>(std::floor(top)) + 1};
+  Box box;
+  for (const Point2& corner : corners_on_lattice(grid, T_lattice_grid, lattice_resolution)) box.add(corner);
+  return {static_cast<int>(std::floor(box.min_x)), static_cast<int>(std::floor(box.min_y)),
+          static_cast<int>(std::floor(box.max_x)) + 1, static_cast<int>(std::floor(box.max_y)) + 1};
 }
 
 CellBox intersect(const CellBox& a, const CellBox& b) {

@@ -38,15 +38,14 @@ int turn_between(int a, int b, int full_turn) {
 
 /// The moving map's walls that lie on walls of the fixed one which face the same side [cells, fixed grid
 /// frame].
-std::vector<MetPoint> find_met_walls(const WallMap& fixed, const WallMap& moving, const SE2& T) {
+std::vector<MetPoint> find_met_walls(const LikelihoodField& fixed, const LikelihoodField& moving,
+                                     const SE2& T) {
   const int turn = steps_of_turn(T.theta);
   const ManyPointsTransform T_points(T);
   std::vector<MetPoint> met;
   for (const WallPoint& wall : moving.walls) {
     const Point2 p = T_points * wall.position;
-    if (!(p.x >= 0.0 && p.y >= 0.0 && p.x < fixed.width && p.y < fixed.height)) continue;
-    const Place& place = fixed.places[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(fixed.width) +
-                                      static_cast<std::size_t>(p.x)];
+    const Place place = fixed.place_at(p);
     if (place.distance == kUnseen || place.distance > kMeetingDistance) continue;
     if (wall.facing == kNoDirection || place.facing == kNoDirection) continue;
     const std::uint8_t facing = turned(wall.facing, turn);
@@ -148,7 +147,7 @@ double count_lines(std::vector<MetPoint> points, double diagonal) {
 
 }  // namespace
 
-WallSupport measure_wall_support(const WallMap& fixed, const WallMap& moving,
+WallSupport measure_wall_support(const LikelihoodField& fixed, const LikelihoodField& moving,
                                  const SE2& T_fixed_moving_cells) {
   const std::vector<MetPoint> points = find_met_walls(fixed, moving, T_fixed_moving_cells);
   return {count_lines(points, std::hypot(fixed.width, fixed.height)), static_cast<double>(points.size()),

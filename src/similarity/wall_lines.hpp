@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "similarity/wall_map.hpp"
+#include "similarity/likelihood_field.hpp"
 
 namespace gridmerge::internal {
 
@@ -21,7 +21,7 @@ struct WallSupport {
 /// A line is a side of a wall (two sides of a thin one are two lines), given by the direction it faces and
 /// its distance from the origin; lines are taken off greedily, most points first (Hough voting). `T` is
 /// between grid frames, in cells. O(lines * (walls + diagonal of the fixed map)).
-WallSupport measure_wall_support(const WallMap& fixed, const WallMap& moving,
+WallSupport measure_wall_support(const LikelihoodField& fixed, const LikelihoodField& moving,
                                  const SE2& T_fixed_moving_cells);
 
 }  // namespace gridmerge::internal

@@ -78,9 +78,11 @@ OccupancyGrid draw_building(const Building& building, double resolution) {
   };
   OccupancyGrid grid =
       make_grid(cells(building.width), cells(building.height), resolution, {-kMargin, -kMargin, 0.0});
+  const ManyPointsTransform T_building_grid(grid.origin);
   for (int row = 0; row < grid.height; ++row) {
     for (int column = 0; column < grid.width; ++column) {
-      const int cell = plan.cell_at(grid.cell_center(column, row));
+      const int cell =
+          plan.cell_at(T_building_grid * Point2{(column + 0.5) * resolution, (row + 0.5) * resolution});
       if (cell >= 0 && plan.is_free(cell)) grid.at(column, row) = Cell::free;
     }
   }

@@ -12,14 +12,14 @@ void Draughtsman::polygon(const std::vector<Point2>& corners, double echo) {
   }
 }
 
-void Draughtsman::box(Point2 center, double length, double width, Point2 direction, double echo) {
+void Draughtsman::box(Point2 centre, double length, double width, Point2 direction, double echo) {
   const double norm = std::sqrt(direction.x * direction.x + direction.y * direction.y);
   const Point2 u{direction.x / norm * length / 2.0, direction.y / norm * length / 2.0};
   const Point2 v{-direction.y / norm * width / 2.0, direction.x / norm * width / 2.0};
-  polygon({{center.x - u.x - v.x, center.y - u.y - v.y},
-           {center.x + u.x - v.x, center.y + u.y - v.y},
-           {center.x + u.x + v.x, center.y + u.y + v.y},
-           {center.x - u.x + v.x, center.y - u.y + v.y}},
+  polygon({{centre.x - u.x - v.x, centre.y - u.y - v.y},
+           {centre.x + u.x - v.x, centre.y + u.y - v.y},
+           {centre.x + u.x + v.x, centre.y + u.y + v.y},
+           {centre.x - u.x + v.x, centre.y - u.y + v.y}},
           echo);
 }
 
@@ -55,35 +55,35 @@ void Draughtsman::window_front(Point2 from, Point2 to) {
   for (int i = 0; i < pieces; ++i) wall(at(i), at(i + 1), {}, i % 2 == 0 ? 1.0 : kGlass);
 }
 
-void Draughtsman::pillar(Point2 center, double radius) {
+void Draughtsman::pillar(Point2 centre, double radius) {
   constexpr double kDiagonal = 0.7071067811865476;
   std::vector<Point2> corners;
   for (const Point2& c : {Point2{1.0, 0.0}, Point2{kDiagonal, kDiagonal}, Point2{0.0, 1.0},
                           Point2{-kDiagonal, kDiagonal}, Point2{-1.0, 0.0}, Point2{-kDiagonal, -kDiagonal},
                           Point2{0.0, -1.0}, Point2{kDiagonal, -kDiagonal}}) {
-    corners.push_back({center.x + radius * c.x, center.y + radius * c.y});
+    corners.push_back({centre.x + radius * c.x, centre.y + radius * c.y});
   }
   polygon(corners);
 }
 
-void Draughtsman::table(Point2 center, double length, double width) {
+void Draughtsman::table(Point2 centre, double length, double width) {
   for (const double x : {-0.5, 0.5}) {
     for (const double y : {-0.5, 0.5}) {
-      box({center.x + x * (length - 0.1), center.y + y * (width - 0.1)}, 0.06, 0.06);
+      box({centre.x + x * (length - 0.1), centre.y + y * (width - 0.1)}, 0.06, 0.06);
     }
   }
 }
 
-void Draughtsman::chair(Point2 center) {
+void Draughtsman::chair(Point2 centre) {
   for (const Point2& foot : {Point2{0.0, 0.22}, Point2{0.2, -0.1}, Point2{-0.2, -0.1}}) {
-    box({center.x + foot.x, center.y + foot.y}, 0.05, 0.05);
+    box({centre.x + foot.x, centre.y + foot.y}, 0.05, 0.05);
   }
 }
 
-void Draughtsman::desk(Point2 center, int side, int front) {
-  table(center, 1.6, 0.8);
-  box({center.x + side * 0.5, center.y}, 0.42, 0.58);
-  chair({center.x - side * 0.2, center.y + front * 0.7});
+void Draughtsman::desk(Point2 centre, int side, int front) {
+  table(centre, 1.6, 0.8);
+  box({centre.x + side * 0.5, centre.y}, 0.42, 0.58);
+  chair({centre.x - side * 0.2, centre.y + front * 0.7});
 }
 
 }  // namespace gridmerge::internal

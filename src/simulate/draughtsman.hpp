@@ -23,8 +23,8 @@ class Draughtsman {
 
   void polygon(const std::vector<Point2>& corners, double echo = 1.0);
 
-  /// A box around `center`, its length along `direction` (any length but zero).
-  void box(Point2 center, double length, double width, Point2 direction = {1.0, 0.0}, double echo = 1.0);
+  /// A box around `centre`, its length along `direction` (any length but zero).
+  void box(Point2 centre, double length, double width, Point2 direction = {1.0, 0.0}, double echo = 1.0);
 
   /// A wall 0.16 m thick. Doors come in the order of `at`, and do not overlap.
   void wall(Point2 from, Point2 to, const std::vector<Door>& doors = {}, double echo = 1.0);
@@ -33,16 +33,16 @@ class Draughtsman {
   void window_front(Point2 from, Point2 to);
 
   /// An octagon.
-  void pillar(Point2 center, double radius);
+  void pillar(Point2 centre, double radius);
 
   /// Four legs: all that a laser near the floor sees of a table.
-  void table(Point2 center, double length, double width);
+  void table(Point2 centre, double length, double width);
 
-  void chair(Point2 center);
+  void chair(Point2 centre);
 
   /// A table with a drawer unit under one end (`side` 1 right, -1 left) and a chair in front (`front` 1
   /// above, -1 below).
-  void desk(Point2 center, int side, int front);
+  void desk(Point2 centre, int side, int front);
 };
 
 }  // namespace gridmerge::internal

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <limits>
 
+#include "grid/logistic.hpp"
+#include "gridmerge/grid/message_values.hpp"
 #include "gridmerge/grid/resample.hpp"
 
 namespace gridmerge::internal {
@@ -14,9 +16,7 @@ namespace {
 
 constexpr float kHit = 0.85F;
 constexpr float kMiss = -0.5F;
-constexpr float kMost = 4.0F;  // either way
-constexpr double kOccupied = 0.65;
-constexpr double kFree = 0.196;
+constexpr float kMax = 4.0F;  // either way
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void Mapper::update(int column, int row, float evidence) {
   row += half_;
   if (column < 0 || row < 0 || column >= side_ || row >= side_) return;
   float& cell = log_odds_[static_cast<std::size_t>(row) * side_ + column];
-  cell = std::clamp((std::isnan(cell) ? 0.0F : cell) + evidence, -kMost, kMost);
+  cell = std::clamp((std::isnan(cell) ? 0.0F : cell) + evidence, -kMax, kMax);
 }
 
 void Mapper::add_beam(Point2 from, Point2 to, bool hits) {
@@ -67,10 +67,10 @@ OccupancyGrid Mapper::grid() const {
   grid.probability.assign(grid.cells.size(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < log_odds_.size(); ++i) {
     if (std::isnan(log_odds_[i])) continue;
-    const double probability = 1.0 / (1.0 + std::exp(-static_cast<double>(log_odds_[i])));
+    const double probability = logistic(static_cast<double>(log_odds_[i]));
     grid.probability[i] = static_cast<float>(probability);
-    if (probability > kOccupied) grid.cells[i] = Cell::occupied;
-    if (probability < kFree) grid.cells[i] = Cell::free;
+    if (probability > kOccupiedThreshold) grid.cells[i] = Cell::occupied;
+    if (probability < kFreeThreshold) grid.cells[i] = Cell::free;
   }
   return crop_to_known(grid);
 }

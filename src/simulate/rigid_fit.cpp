@@ -26,8 +26,9 @@ RigidFit fit_rigid(const std::vector<PointPair>& points) {
   fit.T_a_b.x = a.x - turned.x;
   fit.T_a_b.y = a.y - turned.y;
   double sum = 0.0;
+  const ManyPointsTransform T_a_b(fit.T_a_b);
   for (const PointPair& point : points) {
-    const Point2 at = fit.T_a_b * point.in_b;
+    const Point2 at = T_a_b * point.in_b;
     sum += (at.x - point.in_a.x) * (at.x - point.in_a.x) + (at.y - point.in_a.y) * (at.y - point.in_a.y);
   }
   fit.rms = std::sqrt(sum / count);

@@ -28,8 +28,8 @@ bool is_between(double value, double low, double high) {
 }
 
 /// How one robot maps.
-void check_mapping(const SimulateOptions& options) {
-  options.sensor.validate();
+void validate_mapping(const SimulateOptions& options) {
+  validate(options.sensor);
   require(is_between(options.robot_radius, 0.05, 5.0), "a robot's radius must be between 0.05 and 5 metres");
   require(is_between(options.scan_every, 0.02, 10.0), "scans must be between 0.02 and 10 metres apart");
   require(is_between(options.drift, 0.0, 10.0), "drift must be between 0 and 10");
@@ -40,8 +40,8 @@ void check_mapping(const SimulateOptions& options) {
   require(!options.tidy || is_between(*options.tidy, 0.0, 1.0), "walls can be made thicker by 0 to 1 metres");
 }
 
-void check(const SimulateOptions& options) {
-  check_mapping(options);
+void validate(const SimulateOptions& options) {
+  validate_mapping(options);
   require(options.robots >= 1 && options.robots <= 1000, "there must be between 1 and 1000 robots");
   require(!options.overlap || is_between(*options.overlap, 0.0, 1.0), "overlap must lie in [0, 1]");
   require(!options.overlap || options.robots >= 2, "an overlap takes two robots");
@@ -54,17 +54,20 @@ void check(const SimulateOptions& options) {
   require(options.threads >= 0, "threads must not be negative");
 }
 
-/// How much wall of the moving map lies where the fixed one knows, and how much of it meets wall there.
-char tier_of(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SimulatedPair& pair,
-             double bend) {
+/// Fills in how much wall of the moving map lies where the fixed one knows, and the tier, which also asks
+/// how much of it meets wall there.
+void measure_shared_wall(const OccupancyGrid& fixed, const OccupancyGrid& moving, double bend,
+                         SimulatedPair& pair) {
   constexpr double kNear = 0.1;  // [m]
   const int reach = static_cast<int>(std::ceil((kNear + bend) / fixed.resolution));
-  const SE2 T_grid_moving = inverse(fixed.origin) * pair.T_fixed_moving;
+  const ManyPointsTransform T_map_grid(moving.origin);
+  const ManyPointsTransform T_grid_moving(inverse(fixed.origin) * pair.T_fixed_moving);
   int shared = 0, matching = 0;
   for (int row = 0; row < moving.height; ++row) {
     for (int column = 0; column < moving.width; ++column) {
       if (moving.at(column, row) != Cell::occupied) continue;
-      const Point2 p = T_grid_moving * moving.cell_center(column, row);
+      const Point2 p = T_grid_moving * (T_map_grid * Point2{(column + 0.5) * moving.resolution,
+                                                            (row + 0.5) * moving.resolution});
       const int x = static_cast<int>(std::floor(p.x / fixed.resolution));
       const int y = static_cast<int>(std::floor(p.y / fixed.resolution));
       if (!fixed.contains(x, y) || fixed.at(x, y) == Cell::unknown) continue;
@@ -77,18 +80,19 @@ char tier_of(const OccupancyGrid& fixed, const OccupancyGrid& moving, const Simu
       matching += meets ? 1 : 0;
     }
   }
-  const double walls = shared * moving.resolution / 0.05;
+  pair.shared_wall = shared * moving.resolution;
+  const double walls = pair.shared_wall / 0.05;
   const double match = shared > 0 ? static_cast<double>(matching) / shared : 0.0;
-  if (walls >= 400.0 && match >= 0.8) return 'A';
-  return walls >= 150.0 && match >= 0.6 ? 'B' : 'C';
+  pair.tier = walls >= 400.0 && match >= 0.8 ? 'A' : walls >= 150.0 && match >= 0.6 ? 'B' : 'C';
 }
 
 /// Root mean square distance between where two transforms put a map's places [m].
 double difference(const DrawnPlaces& places, const SE2& a, const SE2& b) {
   double sum = 0.0;
   const std::vector<PointPair> all = places.building_and_map();
+  const ManyPointsTransform T_a(a), T_b(b);
   for (const PointPair& place : all) {
-    const Point2 at_a = a * place.in_b, at_b = b * place.in_b;
+    const Point2 at_a = T_a * place.in_b, at_b = T_b * place.in_b;
     sum += (at_a.x - at_b.x) * (at_a.x - at_b.x) + (at_a.y - at_b.y) * (at_a.y - at_b.y);
   }
   return all.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(all.size()));
@@ -102,22 +106,21 @@ SimulatedPair make_pair(const std::vector<Survey>& surveys, std::size_t fixed, s
   // Bent maps have a transform for what they share and another one for all of them; an estimate may be
   // nearer to either.
   const double doubt = difference(m.places, fit.T_a_b, inverse(f.map.T_building_map) * m.map.T_building_map);
-  pair.tolerance = std::max(kLeastTolerance, 0.3 + 2.0 * fit.rms + doubt);
+  pair.tolerance = std::max(kMinTolerance, 0.3 + 2.0 * fit.rms + doubt);
   pair.overlap =
       static_cast<double>(common.size()) / std::max(1, std::min(f.places.count(), m.places.count()));
-  pair.tier = tier_of(f.map.grid, m.map.grid, pair, fit.rms);
+  measure_shared_wall(f.map.grid, m.map.grid, fit.rms, pair);
   return pair;
 }
 
 void list_pairs(const std::vector<Survey>& surveys, Simulation& simulation) {
-  constexpr double kLeastShared = 1.0;  // [m^2]: less is next to nothing, but not nothing
+  constexpr double kMinShared = 1.0;  // [m^2]: less is next to nothing, but not nothing
   std::vector<double> largest(surveys.size(), 0.0);
   for (std::size_t i = 0; i < surveys.size(); ++i) {
     for (std::size_t k = i + 1; k < surveys.size(); ++k) {
       const std::vector<PointPair> common = common_places(surveys[i].places, surveys[k].places);
       if (common.empty()) simulation.strangers.emplace_back(i, k);
-      if (static_cast<double>(common.size()) * DrawnPlaces::kCell * DrawnPlaces::kCell < kLeastShared)
-        continue;
+      if (static_cast<double>(common.size()) * DrawnPlaces::kCell * DrawnPlaces::kCell < kMinShared) continue;
       simulation.pairs.push_back(make_pair(surveys, i, k, common));
       for (const std::size_t map : {i, k})
         largest[map] = std::max(largest[map], simulation.pairs.back().overlap);
@@ -206,20 +209,20 @@ Simulation simulate_in_arena(const SimulateOptions& options) {
 
 }  // namespace
 
-void RangeFinder::validate() const {
+void validate(const RangeFinder& sensor) {
   const auto is_share = [](double value) { return value >= 0.0 && value <= 1.0; };
-  require(field_of_view > 0.0 && field_of_view <= 2.0 * std::numbers::pi + 1e-9,
+  require(sensor.field_of_view > 0.0 && sensor.field_of_view <= 2.0 * std::numbers::pi + 1e-9,
           "the field of view must be between 0 and 360 degrees");
-  require(angular_step >= 1e-4 && angular_step <= field_of_view,
+  require(sensor.angular_step >= 1e-4 && sensor.angular_step <= sensor.field_of_view,
           "the angular step must be positive, and not above the field of view");
-  require(range >= 0.2 && range <= 200.0, "the range must be between 0.2 and 200 metres");
-  require(noise >= 0.0 && noise <= 10.0, "the noise must be between 0 and 10 metres");
-  require(is_share(stray_share) && is_share(missed_share) && is_share(cleared_share),
+  require(sensor.range >= 0.2 && sensor.range <= 200.0, "the range must be between 0.2 and 200 metres");
+  require(sensor.noise >= 0.0 && sensor.noise <= 10.0, "the noise must be between 0 and 10 metres");
+  require(is_share(sensor.stray_share) && is_share(sensor.missed_share) && is_share(sensor.cleared_share),
           "shares of beams must lie in [0, 1]");
 }
 
 Simulation simulate(const SimulateOptions& options) {
-  check(options);
+  validate(options);
   Simulation simulation;
   with_threads(options.threads, [&] { simulation = simulate_in_arena(options); });
   return simulation;
@@ -227,7 +230,7 @@ Simulation simulate(const SimulateOptions& options) {
 
 SimulatedMap simulate_way(const Building& building, std::span<const Point2> way,
                           const SimulateOptions& options) {
-  check_mapping(options);
+  validate_mapping(options);
   require(!way.empty(), "a way must have a point");
   const RayCaster walls(building.edges);
   std::vector<SE2> path{{way.front().x, way.front().y, 0.0}};

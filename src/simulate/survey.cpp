@@ -121,20 +121,26 @@ Survey survey(const SimulateOptions& options, const Building& building, const Vi
   Scanner scanner(options.sensor, visit.caster, walkers, noise);
   Mapper mapper(options.resolution, farthest(path) + options.sensor.range + 5.0);
   const int beams = static_cast<int>(options.sensor.field_of_view / options.sensor.angular_step) + 1;
+  std::vector<Point2> directions;  // of the beams, in the robot's frame
+  for (int i = 0; i < beams; ++i) {
+    const double angle = -0.5 * options.sensor.field_of_view + i * options.sensor.angular_step;
+    directions.push_back({std::cos(angle), std::sin(angle)});
+  }
   const auto drawn = [&] { return options.tidy ? tidied(mapper.grid(), *options.tidy) : mapper.grid(); };
   for (std::size_t scan = 0; scan < path.size(); ++scan) {
     throw_if_cancelled();
     const SE2& pose = path[scan];
     const SE2 T_map_robot = T_map_building * belief.follow(pose);
-    for (int i = 0; i < beams; ++i) {
-      const double angle = -0.5 * options.sensor.field_of_view + i * options.sensor.angular_step;
-      const Point2 u{std::cos(angle), std::sin(angle)};
-      const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+    const ManyPointsTransform to_building(pose), to_map(T_map_robot);
+    const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+    for (const Point2& u : directions) {
       const Beam beam = scanner.beam({pose.x, pose.y}, {c * u.x - s * u.y, s * u.x + c * u.y});
-      mapper.add_beam({T_map_robot.x, T_map_robot.y},
-                      T_map_robot * Point2{beam.range * u.x, beam.range * u.y}, beam.hits);
-      for (double at = beam.range; at > 0.0; at -= kPlaceEvery)
-        result.places.add(pose * Point2{at * u.x, at * u.y}, T_map_robot * Point2{at * u.x, at * u.y});
+      mapper.add_beam({T_map_robot.x, T_map_robot.y}, to_map * Point2{beam.range * u.x, beam.range * u.y},
+                      beam.hits);
+      for (double at = beam.range; at > 0.0; at -= kPlaceEvery) {
+        const Point2 place{at * u.x, at * u.y};
+        result.places.add(to_building * place, to_map * place);
+      }
     }
     walkers.walk();
     // A short way has several moments at one scan.

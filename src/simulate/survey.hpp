@@ -32,8 +32,8 @@ class DrawnPlaces {
     double building_x = 0.0, building_y = 0.0, x = 0.0, y = 0.0;
     int count = 0;
   };
-  bool is_drawn(const Sum& sum) const { return sum.count >= kLeast; }
-  static constexpr int kLeast = 3;  // beams; fewer leave a cell unknown
+  bool is_drawn(const Sum& sum) const { return sum.count >= kMin; }
+  static constexpr int kMin = 3;  // beams; fewer leave a cell unknown
 
   double margin_;
   int width_;

@@ -58,8 +58,8 @@ std::vector<Edge> scatter(const FloorPlan& clear, int pieces, Random& random) {
 
 Visit make_visit(const std::vector<Edge>& building, const FloorPlan& plan, double robot_radius, int start,
                  double clutter, Random& random) {
-  constexpr double kClear = 0.7;       // a doorway is narrower than twice that [m]
-  constexpr double kLeastLeft = 0.85;  // of the floor
+  constexpr double kClear = 0.7;     // a doorway is narrower than twice that [m]
+  constexpr double kMinLeft = 0.85;  // of the floor
   const FloorPlan clear(building, kClear);
   int pieces = static_cast<int>(clutter * area_of(plan) / 25.0 + random.uniform());
   if (clear.count_free() == 0) pieces = 0;
@@ -68,7 +68,7 @@ Visit make_visit(const std::vector<Edge>& building, const FloorPlan& plan, doubl
     const std::vector<Edge> clutter_edges = scatter(clear, pieces, random);
     edges.insert(edges.end(), clutter_edges.begin(), clutter_edges.end());
     FloorPlan cluttered(edges, robot_radius);
-    if (pieces == 0 || (cluttered.is_free(start) && cluttered.count_free() > kLeastLeft * plan.count_free()))
+    if (pieces == 0 || (cluttered.is_free(start) && cluttered.count_free() > kMinLeft * plan.count_free()))
       return {RayCaster(std::move(edges)), std::move(cluttered)};
     pieces = 4 * pieces / 5;
   }

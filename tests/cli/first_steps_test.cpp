@@ -8,6 +8,7 @@
 #include <regex>
 #include <sstream>
 
+#include "bag/bag_builder.hpp"
 #include "fixture.hpp"
 
 namespace gridmerge::test {
@@ -23,10 +24,15 @@ class FirstSteps : public testing::Test {
   void make_maps(const std::vector<std::string>& names) const {
     const OccupancyGrid building = draw_building(1);
     const SE2 T_first_building{-3.0, 2.0, 0.4};
-    write_map(directory, names[0], map_part(building, {0, 0, 13, 13}, T_first_building));
-    write_map(directory, names[1],
-              map_part(building, {5, 0, 18, 13}, inverse(T_first_second) * T_first_building));
-    write_map(directory, names[2], map_part(building, {2, 0, 16, 13}, {4.0, 1.0, 2.0}));
+    const std::vector<OccupancyGrid> maps{
+        map_part(building, {0, 0, 13, 13}, T_first_building),
+        map_part(building, {5, 0, 18, 13}, inverse(T_first_second) * T_first_building),
+        map_part(building, {2, 0, 16, 13}, {4.0, 1.0, 2.0})};
+    for (std::size_t i = 0; i < maps.size(); ++i) write_map(directory, names[i], maps[i]);
+    // Recordings too, of the first robot and of all.
+    directory.write(names[0] + ".mcap", mcap_file({record("/map", 1, maps[0])}));
+    directory.write("team.mcap", mcap_file({record("/tb1/map", 1, maps[0]), record("/tb2/map", 2, maps[1]),
+                                            record("/tb3/map", 3, maps[2])}));
     write_map(directory, "other", draw_building(2));
     const std::string first = names[0] + ".yaml", second = names[1] + ".yaml";
     directory.write("poses.tsv",
@@ -57,6 +63,14 @@ class FirstSteps : public testing::Test {
       RunningProgram view(words);
       EXPECT_NE(view.read_line().find("http://127.0.0.1:"), std::string::npos);
       EXPECT_EQ(view.end_with(SIGINT).exit_code, 0);
+      return;
+    }
+    if (words.front() == "node") {  // likewise; robots are none here, and it looks for none elsewhere
+      RunOptions options;
+      options.environment = {"ROS_LOCALHOST_ONLY=1"};
+      RunningProgram node(words, options);
+      EXPECT_EQ(node.read_line().find("hears a map"), 0u);
+      EXPECT_EQ(node.end_with(SIGINT).exit_code, 0);
       return;
     }
     const Outcome outcome = run(words);

@@ -11,8 +11,12 @@
 namespace gridmerge::test {
 namespace {
 
-const std::vector<std::string> kCommands = {"info",   "match", "measure",  "merge",
-                                            "report", "view",  "evaluate", "simulate"};
+const std::vector<std::string> kCommands = {
+    "info", "match", "measure", "merge", "report", "view", "evaluate", "simulate",
+#ifdef GRIDMERGE_HAS_NODE
+    "node",
+#endif
+};
 
 class WrongUsage : public testing::TestWithParam<std::vector<std::string>> {};
 
@@ -25,6 +29,21 @@ TEST_P(WrongUsage, IsOneLineAndExitCodeTwo) {
 }
 
 using Words = std::vector<std::string>;
+#ifdef GRIDMERGE_HAS_NODE
+INSTANTIATE_TEST_SUITE_P(
+    Node, WrongUsage,
+    testing::Values(Words{"node", "a"}, Words{"node", "--pattern", "map"},
+                    Words{"node", "--pattern", "/a//b"}, Words{"node", "--pattern", "/*/map/"},
+                    Words{"node", "--robot", "tb1"}, Words{"node", "--robot", "tb1="},
+                    Words{"node", "--robot", "tb1=map"}, Words{"node", "--robot", "a=/m", "--robot", "a=/n"},
+                    Words{"node", "--robot", "a=/m", "--robot", "b=/m"},
+                    Words{"node", "--robot", "a=/m", "--fix", "b"}, Words{"node", "--wait", "-1"},
+                    Words{"node", "--wait", "nan"}, Words{"node", "--tf", "both"},
+                    Words{"node", "--world", ""}, Words{"node", "--world", "the world"},
+                    Words{"node", "--name", "a b"}, Words{"node", "--output", "merged"},
+                    Words{"node", "--accept", "2"}, Words{"node", "--output-resolution", "0"}));
+#endif
+
 INSTANTIATE_TEST_SUITE_P(
     Cli, WrongUsage,
     testing::Values(
@@ -115,7 +134,7 @@ TEST(Usage, HelpHasOptionsOfTheWalkBehindAllOthers) {
 
 TEST(Usage, HelpOfEvaluateNamesTheColumnsOfItsTables) {
   const std::string help = run({"evaluate", "--help"}).out;
-  for (const char* columns : {"fixed moving x y theta tolerance, and optionally tier and overlap",
+  for (const char* columns : {"fixed moving x y theta tolerance, and optionally tier, overlap, shared_wall",
                               "fixed moving\n", "set map x y theta tolerance\n"}) {
     EXPECT_NE(help.find(columns), std::string::npos) << columns;
   }

@@ -155,7 +155,7 @@ TEST_F(Sets, ATurnOnTheSpotIsWrong) {
   MergeResult result;
   const SE2 about_centroid = SE2{1, 2, 0} * SE2{0, 0, 0.3} * SE2{-1, -2, 0};
   result.components = {component_of({{0, truth_[0]}, {1, truth_[1]}, {2, truth_[2] * about_centroid}})};
-  result.left_out = {3};
+  result.left_out = {{3}};
   expect(judge_set(set_, moments_, result), 2, 1, 1);
 }
 
@@ -173,7 +173,7 @@ TEST_F(Sets, ComponentsAreJudgedEachByItself) {
 TEST_F(Sets, AMapAloneIsLeftOut) {
   MergeResult result;
   result.components = {component_of({{0, truth_[0]}, {1, truth_[1]}}), component_of({{2, truth_[2]}})};
-  result.left_out = {3};
+  result.left_out = {{3}};
   expect(judge_set(set_, moments_, result), 2, 0, 2);
   expect(judge_set(set_, moments_, MergeResult{}), 0, 0, 4);
 }

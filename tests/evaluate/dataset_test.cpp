@@ -32,7 +32,7 @@ SimulateOptions quick(int robots) {
 TEST(TruthText, ReadsBackToTheSameValues) {
   const test::TemporaryDirectory directory;
   const std::vector<TruePair> pairs{
-      {{"a.yaml", {}}, {"b c.yaml", {}}, {0.1, -2.0 / 3.0, 3.0}, 0.7, "B", 0.123}};
+      {{"a.yaml", {}}, {"b c.yaml", {}}, {0.1, -2.0 / 3.0, 3.0}, 0.7, "B", 0.123, 7.65}};
   const std::vector<TruePair> read = read_pairs(directory.write("pairs.tsv", format_pairs(pairs)));
   ASSERT_EQ(read.size(), 1U);
   EXPECT_EQ(read[0].moving.name, "b c.yaml");
@@ -40,6 +40,7 @@ TEST(TruthText, ReadsBackToTheSameValues) {
   EXPECT_EQ(read[0].tolerance, 0.7);
   EXPECT_EQ(read[0].tier, "B");
   EXPECT_EQ(read[0].overlap, 0.123);
+  EXPECT_EQ(read[0].shared_wall, 7.65);
 
   const auto negatives =
       read_negatives(directory.write("negatives.tsv", format_negatives({{{"a.yaml", {}}, {"x.yaml", {}}}})));
@@ -90,7 +91,7 @@ TEST(Dataset, HoldsMapsAndTruthThatBelongTogether) {
     const SimulatedMap &first = simulation.maps[0], &map = simulation.maps[i];
     const TrueMember& member = sets[0].members[i];
     EXPECT_EQ(member.map.name, "robot_" + std::to_string(i + 1) + ".yaml");
-    EXPECT_EQ(member.tolerance, std::max(kLeastTolerance, 0.3 + 2.0 * (first.bend + map.bend)));
+    EXPECT_EQ(member.tolerance, std::max(kMinTolerance, 0.3 + 2.0 * (first.bend + map.bend)));
     const SE2 T = inverse(first.T_building_map) * map.T_building_map;
     EXPECT_NEAR(member.T_set_map.x, T.x, 1e-12);
     EXPECT_NEAR(member.T_set_map.y, T.y, 1e-12);

@@ -15,7 +15,7 @@ double brute_force(const OccupancyGrid& map, const SE2& T_estimate, const SE2& T
   for (int row = 0; row < map.height; ++row) {
     for (int column = 0; column < map.width; ++column) {
       if (map.at(column, row) == Cell::unknown) continue;
-      const Point2 p = map.cell_center(column, row);
+      const Point2 p = map.cell_centre(column, row);
       const Point2 a = T_estimate * p, b = T_truth * p;
       sum += (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
       count += 1.0;

@@ -43,12 +43,12 @@ TEST(OccupancyGrid, ContainsItsCellsOnly) {
   EXPECT_FALSE(grid.contains(0, -1));
 }
 
-TEST(OccupancyGrid, CellCentersFollowTheOrigin) {
+TEST(OccupancyGrid, CellCentresFollowTheOrigin) {
   const OccupancyGrid grid = make_grid(4, 4, 2.0, {10.0, 20.0, std::numbers::pi / 2});
-  const Point2 center =
-      grid.cell_center(2, 0);  // 5 m along the grid's x axis, which points along the map's y
-  EXPECT_NEAR(center.x, 9.0, 1e-12);
-  EXPECT_NEAR(center.y, 25.0, 1e-12);
+  const Point2 centre =
+      grid.cell_centre(2, 0);  // 5 m along the grid's x axis, which points along the map's y
+  EXPECT_NEAR(centre.x, 9.0, 1e-12);
+  EXPECT_NEAR(centre.y, 25.0, 1e-12);
 }
 
 TEST(OccupancyGrid, CountsCells) {

@@ -27,7 +27,7 @@ Cell cell_under(const OccupancyGrid& grid, const Point2& p_map) {
 bool shows_the_cells_of(const OccupancyGrid& b, const OccupancyGrid& a, const SE2& T_b_a) {
   for (int row = 0; row < a.height; ++row) {
     for (int column = 0; column < a.width; ++column) {
-      if (cell_under(b, T_b_a * a.cell_center(column, row)) != a.at(column, row)) return false;
+      if (cell_under(b, T_b_a * a.cell_centre(column, row)) != a.at(column, row)) return false;
     }
   }
   return true;
@@ -141,12 +141,12 @@ RC_GTEST_PROP(TransformGrid, TakesTheCellUnderEachCentre, (const OccupancyGrid& 
   validate(moved);
   for (int row = 0; row < moved.height; ++row) {
     for (int column = 0; column < moved.width; ++column) {
-      const Point2 center = inverse(T) * moved.cell_center(column, row);
-      const Point2 p = inverse(grid.origin) * center;
+      const Point2 centre = inverse(T) * moved.cell_centre(column, row);
+      const Point2 p = inverse(grid.origin) * centre;
       const double x = p.x / grid.resolution, y = p.y / grid.resolution;
       // On a border between cells either is right.
       if (std::abs(x - std::round(x)) < 1e-6 || std::abs(y - std::round(y)) < 1e-6) continue;
-      RC_ASSERT(moved.at(column, row) == cell_under(grid, center));
+      RC_ASSERT(moved.at(column, row) == cell_under(grid, centre));
     }
   }
 }
@@ -156,7 +156,7 @@ RC_GTEST_PROP(TransformGrid, HoldsTheWholeMap, (const OccupancyGrid& grid, const
   const OccupancyGrid moved = transform_grid(grid, T, resolution);
   for (const int column : {0, grid.width - 1}) {
     for (const int row : {0, grid.height - 1}) {
-      const Point2 p = T * grid.cell_center(column, row);
+      const Point2 p = T * grid.cell_centre(column, row);
       RC_ASSERT(p.x > moved.origin.x && p.x < moved.origin.x + moved.width * resolution);
       RC_ASSERT(p.y > moved.origin.y && p.y < moved.origin.y + moved.height * resolution);
     }
@@ -185,7 +185,7 @@ RC_GTEST_PROP(QuarterTurned, KeepsEveryCellWhereItIsInTheMapFrame, ()) {
   const SE2 T_grid_map = inverse(grid.origin);
   for (int row = 0; row < turned.height; ++row) {
     for (int column = 0; column < turned.width; ++column) {
-      const Point2 at = T_grid_map * turned.cell_center(column, row);
+      const Point2 at = T_grid_map * turned.cell_centre(column, row);
       const int x = static_cast<int>(std::floor(at.x / grid.resolution));
       const int y = static_cast<int>(std::floor(at.y / grid.resolution));
       RC_ASSERT(grid.contains(x, y));

@@ -97,14 +97,14 @@ TEST_P(BmpRefuses, AndSaysWhy) {
   EXPECT_TRUE(contains(test::message_of<ParseError>([&] { decode(GetParam().bmp); }), GetParam().message));
 }
 
-constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+constexpr std::int32_t kMin = std::numeric_limits<std::int32_t>::min();
 
 INSTANTIATE_TEST_SUITE_P(
     BadFiles, BmpRefuses,
     testing::Values(
         BadBmp{"HugeSizes", {.width = 65536, .height = 65536, .palette = {}, .rows = {}}, "exceed the limit"},
         BadBmp{
-            "TheLowestHeight", {.width = 1, .height = kLeast, .palette = {}, .rows = {}}, "exceed the limit"},
+            "TheLowestHeight", {.width = 1, .height = kMin, .palette = {}, .rows = {}}, "exceed the limit"},
         BadBmp{"NegativeWidth", {.width = -1, .palette = {}, .rows = {}}, "width is negative"},
         BadBmp{"NoPixels", {.width = 0, .palette = {}, .rows = {}}, "no pixels"},
         BadBmp{"CutShort", {.width = 2, .palette = {}, .rows = bytes({1, 2, 3, 4, 5, 6, 0})}, "end early"},

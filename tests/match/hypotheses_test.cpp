@@ -173,7 +173,7 @@ TEST(Weigh, PutsTheMostProbableFirstAndSaysByHowMuch) {
   weigh(hypotheses, maps);
   EXPECT_LT(std::hypot(hypotheses[0].T_fixed_moving.x, hypotheses[0].T_fixed_moving.y), 0.01);
   EXPECT_GT(hypotheses[0].probability, 0.9);
-  EXPECT_GT(hypotheses[0].figures.lead, 0.0);
+  EXPECT_GT(hypotheses[0].figures.score_margin, 0.0);
   double sum = 0.0;
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     sum += hypotheses[i].probability;

@@ -11,7 +11,7 @@
 
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/resample.hpp"
-#include "similarity/wall_map.hpp"
+#include "match/drawn_walls.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {
@@ -61,8 +61,8 @@ TEST(PreparedMap, CanBeCancelledWhileItIsMadeAndDrawn) {
   const PreparedMap prepared(building);
   const std::atomic<bool> cancelled{true};
   EXPECT_THROW(with_cancellation(cancelled, [&] { const PreparedMap another(building); }), Cancelled);
-  EXPECT_THROW(with_cancellation(cancelled, [&] { prepared.walls(0.1); }), Cancelled);
-  EXPECT_EQ(prepared.walls(0.1).cell, 0.1);  // another time it is drawn
+  EXPECT_THROW(with_cancellation(cancelled, [&] { DrawnWalls::of(prepared, 0.1); }), Cancelled);
+  EXPECT_EQ(DrawnWalls::of(prepared, 0.1).cell, 0.1);  // another time it is drawn
 }
 
 TEST(Match, JoinsPartsThatOverlap) {

@@ -14,7 +14,7 @@ using namespace internal;
 namespace {
 
 TEST(PoseMetric, DisplacementIsTheRmsOverAllWalls) {
-  const WallMap map = make_wall_map(test::draw_building(1), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::draw_building(1), 0.1);
   const PoseMetric metric = make_pose_metric(map);
   const SE2 a{3.0, -2.0, 0.4};
   const SE2 b{5.0, 1.0, -0.3};
@@ -38,7 +38,7 @@ TEST(PoseMetric, MovesShiftThePivotAndTurnAboutIt) {
 }
 
 TEST(Refine, ClimbsBackToTheTruthAndKeepsHypothesesApart) {
-  const WallMap map = make_wall_map(test::draw_building(1), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::draw_building(1), 0.1);
   const PoseMetric metric = make_pose_metric(map);
   RefineOptions options;
   std::vector<PoseCandidate> candidates;
@@ -73,7 +73,7 @@ TEST(RankOf, IsTheScoreOrWhatItIsForTheWallsSeen) {
 // Of many candidates with much in common, as many poses come out as were asked for, at a distance from each
 // other, whichever way they are ranked: the true one first.
 TEST(Refine, KeepsAsManyDistinctPosesAsWereAskedFor) {
-  const WallMap map = make_wall_map(test::draw_building(1), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::draw_building(1), 0.1);
   const PoseMetric metric = make_pose_metric(map);
   const WallEvidence evidence(map, map, std::numeric_limits<std::size_t>::max());
   std::vector<PoseCandidate> candidates;
@@ -106,7 +106,7 @@ TEST(Refine, KeepsAsManyDistinctPosesAsWereAskedFor) {
 
 // Each result is at the top of its hill, as far as steps of a cell show.
 TEST(Climb, EndsWhereNoStepHelps) {
-  const WallMap map = make_wall_map(test::draw_building(2), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::draw_building(2), 0.1);
   const PoseMetric metric = make_pose_metric(map);
   const WallEvidence evidence(map, map, 500);
   for (const SE2& start : {SE2{3.0, -2.0, 0.01}, SE2{30.0, 12.0, 1.0}, SE2{-9.0, 4.0, -0.3}}) {
@@ -123,7 +123,7 @@ TEST(Climb, EndsWhereNoStepHelps) {
 }
 
 TEST(Refine, NoCandidatesNoPoses) {
-  const WallMap map = make_wall_map(test::draw_building(1), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::draw_building(1), 0.1);
   EXPECT_TRUE(refine(WallEvidence(map, map, 1000), map, {}, {}).empty());
 }
 

@@ -23,7 +23,7 @@ namespace {
 PoseFigures clear_pose() {
   PoseFigures figures;
   figures.score = 6000.0;
-  figures.lead = 40.0;
+  figures.score_margin = 40.0;
   figures.stands_out = 20.0;
   figures.wall_score = 5800.0;
   figures.seen_walls = 240.0;
@@ -136,7 +136,7 @@ TEST(ProbabilitiesOf, RiseWithWhatSpeaksForThePose) {
 PoseFigures corner_pose() {
   PoseFigures corner = changed(&PoseFigures::wall_lines, 2.0);
   corner.seen_walls = 8.0;
-  corner.lead = 5.0;
+  corner.score_margin = 5.0;
   corner.stands_out = 1.0;  // other corners are nearly as good
   corner.seen_things = 0.0;
   corner.next_acceptance_index = 0.97;
@@ -153,16 +153,16 @@ TEST(ProbabilitiesOf, ALeadSpeaksForBentMapsOnly) {
   bent.walls_met_locally = 0.75;
   bent.things_met = 0.5;
   bent.acceptance_index = 0.95;
-  bent.lead = 50.0;
+  bent.score_margin = 50.0;
   bent.stands_out = 4.0;
   bent.sigma = 0.25;
   EXPECT_GT(alone(bent), 0.95);
   PoseFigures crisp = bent;
   crisp.sigma = 0.05;  // the walls that do meet lie on each other: so should the others
   EXPECT_LT(alone(crisp), 0.95);
-  PoseFigures bent_without_lead = bent;
-  bent_without_lead.lead = 15.0;  // unrelated maps have as much
-  EXPECT_LT(alone(bent_without_lead), 0.95);
+  PoseFigures bent_without_margin = bent;
+  bent_without_margin.score_margin = 15.0;  // unrelated maps have as much
+  EXPECT_LT(alone(bent_without_margin), 0.95);
 }
 
 TEST(ProbabilitiesOf, MoreThanNearlyAllCellsTellsNothing) {
@@ -177,16 +177,16 @@ TEST(CompareRivals, GivesEachItsLeadOverTheBestOther) {
     poses[i].acceptance_index = 0.9 + 0.02 * i;
   }
   compare_rivals(poses);
-  EXPECT_DOUBLE_EQ(poses[2].lead, 100.0 / std::sqrt(300.0));
-  EXPECT_DOUBLE_EQ(poses[0].lead, -200.0 / std::sqrt(100.0));
+  EXPECT_DOUBLE_EQ(poses[2].score_margin, 100.0 / std::sqrt(300.0));
+  EXPECT_DOUBLE_EQ(poses[0].score_margin, -200.0 / std::sqrt(100.0));
   EXPECT_DOUBLE_EQ(poses[2].next_acceptance_index, 0.92);
   EXPECT_DOUBLE_EQ(poses[0].next_acceptance_index, 0.94);
   // A lower maximum beside a pose is no rival of it, but it has the pose for one.
   const auto last_two = [](std::size_t a, std::size_t b) { return a + b == 3; };
   compare_rivals(poses, last_two);
-  EXPECT_DOUBLE_EQ(poses[2].lead, 200.0 / std::sqrt(300.0));
+  EXPECT_DOUBLE_EQ(poses[2].score_margin, 200.0 / std::sqrt(300.0));
   EXPECT_DOUBLE_EQ(poses[2].next_acceptance_index, 0.0);  // what is left has a third of its score
-  EXPECT_DOUBLE_EQ(poses[1].lead, -100.0 / std::sqrt(200.0));
+  EXPECT_DOUBLE_EQ(poses[1].score_margin, -100.0 / std::sqrt(200.0));
   std::vector<PoseFigures> alone_here(1, clear_pose());
   compare_rivals(alone_here);
   EXPECT_EQ(alone_here[0].next_acceptance_index, 0.0);
@@ -290,7 +290,7 @@ TEST(ExplainRefusal, NamesWhatHoldsThePairBack) {
   contradicting.walls_met = contradicting.walls_met_locally = 0.45;
   contradicting.acceptance_index = 0.88;
   contradicting.things_met = 0.1;
-  contradicting.lead = 8.0;
+  contradicting.score_margin = 8.0;
   EXPECT_EQ(reason({contradicting}), Reason::contradiction);
 
   const PoseFigures corner = corner_pose();
@@ -309,7 +309,7 @@ TEST(ExplainRefusal, NamesWhatHoldsThePairBack) {
 TEST(ExplainRefusal, MapsThatSlideAreAmbiguous) {
   PoseFigures corridor = changed(&PoseFigures::wall_lines, 3.0);
   corridor.held = 0.0;
-  corridor.lead = 2.0;
+  corridor.score_margin = 2.0;
   corridor.stands_out = 1.0;
   EXPECT_EQ(explain_refusal(std::vector{corridor}, 0.95), Reason::ambiguous);
 }

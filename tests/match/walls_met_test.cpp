@@ -29,8 +29,8 @@ OccupancyGrid bend(const OccupancyGrid& map, double metres) {
 }
 
 WallsMet measure(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& T_cells = {}) {
-  const WallMap moving_walls = make_wall_map(moving, kCell);
-  return measure_walls_met(make_wall_map(fixed, kCell), WallPatches(moving_walls), T_cells);
+  const LikelihoodField moving_walls = make_likelihood_field(moving, kCell);
+  return measure_walls_met(make_likelihood_field(fixed, kCell), WallPatches(moving_walls), T_cells);
 }
 
 TEST(WallsMet, AreAllOfThemWhereAMapLiesOnItself) {
@@ -100,7 +100,8 @@ TEST(WallsMet, AWallSeenFromBehindIsNotMet) {
     }
     from_left.at(30, row) = from_right.at(30, row) = Cell::occupied;
   }
-  const WallMap a = make_wall_map(from_left, kCell), b = make_wall_map(from_right, kCell);
+  const LikelihoodField a = make_likelihood_field(from_left, kCell),
+                        b = make_likelihood_field(from_right, kCell);
   const SE2 T = inverse(a.T_map_grid) * b.T_map_grid;
   const WallsMet met = measure_walls_met(a, WallPatches(b), {T.x / kCell, T.y / kCell, T.theta});
   EXPECT_LT(met.rigidly, 0.1);
@@ -112,7 +113,8 @@ TEST(WallsMet, AWallSeenFromBehindIsNotMet) {
 TEST(WallsMet, WhatTheOtherMapHasNotSeenNeitherDrawsNorHolds) {
   const OccupancyGrid building = test::draw_building(1);
   const OccupancyGrid part = test::map_part(building, {0, 0, 7, 13}, {});
-  const WallMap fixed = make_wall_map(part, kCell), moving = make_wall_map(bend(building, 1.0), kCell);
+  const LikelihoodField fixed = make_likelihood_field(part, kCell),
+                        moving = make_likelihood_field(bend(building, 1.0), kCell);
   const SE2 T = inverse(fixed.T_map_grid) * moving.T_map_grid;
   const SE2 T_cells{T.x / kCell, T.y / kCell, T.theta};
   const WallsMet met = measure_walls_met(fixed, WallPatches(moving), T_cells);

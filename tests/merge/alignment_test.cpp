@@ -98,6 +98,21 @@ TEST(FindDeviations, OfAKnownPoseAreThoseThatAreSaid) {
   EXPECT_NEAR(deviations[1]->theta, 0.05, 1e-6);
 }
 
+TEST(FindDeviations, AreKnownWhereOnePoseIsABillionTimesSurerThanAnother) {
+  const Blank blank;
+  for (const double sure : {1e-6, 1e3}) {
+    const double unsure = sure == 1e3 ? 1e-6 : 1e3;
+    std::vector<AlignedMap> maps(3, {&blank.prepared, {}, blank.extent, {}});
+    maps[0].known_pose = KnownPose{{}, 0.0, 0.0, true};
+    maps[1].known_pose = KnownPose{{}, sure, 1e-6, false};
+    maps[2].known_pose = KnownPose{{}, unsure, 1e-6, false};
+    const auto deviations = find_deviations(maps, {}, 0);
+    ASSERT_TRUE(deviations[1] && deviations[2]) << sure;
+    EXPECT_NEAR(deviations[1]->position / (sure * std::sqrt(2.0)), 1.0, 1e-6);
+    EXPECT_NEAR(deviations[2]->position / (unsure * std::sqrt(2.0)), 1.0, 1e-6);
+  }
+}
+
 TEST(Align, DrawsTheWallsOfTheMapsToEachOther) {
   const OccupancyGrid building = test::draw_building(1);
   const PreparedMap prepared(building);
@@ -112,10 +127,10 @@ TEST(Align, DrawsTheWallsOfTheMapsToEachOther) {
 }
 
 TEST(WallError, ItsDerivativesAreThoseOfItsResiduals) {
-  const WallMap fixed = make_wall_map(test::draw_building(1), 0.1);
+  const LikelihoodField fixed = make_likelihood_field(test::draw_building(1), 0.1);
   OccupancyGrid elsewhere = test::draw_building(1);
   elsewhere.origin = {3.0, -1.0, 0.7};
-  const WallMap moving = make_wall_map(elsewhere, 0.1);
+  const LikelihoodField moving = make_likelihood_field(elsewhere, 0.1);
   const Point2 fixed_middle{1.0, 2.0}, moving_middle{-3.0, 0.5};
   const WallError error(fixed, fixed_middle, moving, moving_middle, 2.0);
   const auto count = static_cast<std::size_t>(error.num_residuals());

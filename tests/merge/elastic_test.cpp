@@ -123,7 +123,7 @@ MeanLinear mean_linear(const BentTeam& team, const std::vector<BentMember>& bent
     for (int row = 0; row < map.height; ++row) {
       for (int column = 0; column < map.width; ++column) {
         if (map.at(column, row) == Cell::unknown) continue;
-        const Point2 p = map.cell_center(column, row), s = bent[i].T_group_map * p,
+        const Point2 p = map.cell_centre(column, row), s = bent[i].T_group_map * p,
                      b = bent[i].T_group_map * bent[i].deformation.bend(p);
         points.push_back({s.x, s.y, b.x - s.x, b.y - s.y});
         n += 1.0;

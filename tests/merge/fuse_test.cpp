@@ -210,7 +210,7 @@ RC_GTEST_PROP(Fuse, EqualsTheNaiveSum, ()) {
       double sum = 0.0;
       for (const PlacedMap& input : inputs) {
         const Point2 p =
-            inverse(input.T_output_map * input.map->origin) * fused.grid.cell_center(column, row);
+            inverse(input.T_output_map * input.map->origin) * fused.grid.cell_centre(column, row);
         const int x = static_cast<int>(std::floor(p.x / input.map->resolution + 1e-6));
         const int y = static_cast<int>(std::floor(p.y / input.map->resolution + 1e-6));
         if (!input.map->contains(x, y) || input.map->at(x, y) == Cell::unknown) continue;
@@ -252,7 +252,7 @@ RC_GTEST_PROP(Fuse, BentMapsAreLookedUpWhereTheyComeFrom, ()) {
   int compared = 0;
   for (int row = 0; row < fused.height; ++row) {
     for (int column = 0; column < fused.width; ++column) {
-      const Point2 in_map = deformation.straighten(inverse(T) * fused.cell_center(column, row));
+      const Point2 in_map = deformation.straighten(inverse(T) * fused.cell_centre(column, row));
       const Point2 q = T_grid_map * in_map;
       const double x = q.x / map.resolution, y = q.y / map.resolution;
       const auto is_in_the_middle = [](double v) { return std::abs(v - std::floor(v) - 0.5) < 0.1; };
@@ -267,7 +267,7 @@ RC_GTEST_PROP(Fuse, BentMapsAreLookedUpWhereTheyComeFrom, ()) {
   for (int row = 0; row < map.height; ++row) {
     for (int column = 0; column < map.width; ++column) {
       if (map.at(column, row) == Cell::unknown) continue;
-      const Point2 p = inverse(fused.origin) * (T * deformation.bend(map.cell_center(column, row)));
+      const Point2 p = inverse(fused.origin) * (T * deformation.bend(map.cell_centre(column, row)));
       RC_ASSERT(fused.contains(static_cast<int>(std::floor(p.x / resolution)),
                                static_cast<int>(std::floor(p.y / resolution))));
     }

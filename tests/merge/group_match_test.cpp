@@ -50,7 +50,7 @@ class GroupMatchesTest : public testing::Test {
       for (std::size_t j = i + 1; j < pieces_.size(); ++j) problem_.pairs.push_back({i, j, {}});
     }
     problem_.pairs.front().candidates.push_back({between(0, 1), 6.0, 0.1});
-    arrangement_.groups = {{{0, {}}, {1, between(0, 1)}}, {{2, {}}}, {{3, {}}}};
+    consistent_set_.groups = {{{0, {}}, {1, between(0, 1)}}, {{2, {}}}, {{3, {}}}};
   }
 
   void add(const OccupancyGrid& building, const test::Window& window, const SE2& T_map_building) {
@@ -62,15 +62,15 @@ class GroupMatchesTest : public testing::Test {
   }
 
   std::vector<std::unique_ptr<const Piece>> pieces_;
-  ArrangementProblem problem_;
-  Arrangement arrangement_;
+  JoinProblem problem_;
+  ConsistentSet consistent_set_;
   MergeInputs inputs_;
 };
 
 TEST_F(GroupMatchesTest, PlaceAMapThatFitsTheWholeGroup) {
   GroupMatches groups({});
-  const ArrangementProblem heard = groups.heard(problem_, arrangement_, inputs_);
-  const Arrangement after = arrange(heard, 0.95);
+  const JoinProblem heard = groups.heard(problem_, consistent_set_, inputs_);
+  const ConsistentSet after = find_consistent_set(heard, 0.95);
   ASSERT_EQ(after.groups.size(), 2U);
   ASSERT_EQ(after.groups[0].size(), 3U);
   EXPECT_LT(displacement(problem_.maps[2], after.groups[0][2].T_group_map, between(0, 2)), 0.1);
@@ -79,7 +79,7 @@ TEST_F(GroupMatchesTest, PlaceAMapThatFitsTheWholeGroup) {
 
 TEST_F(GroupMatchesTest, SpeakOncePerGroup) {
   GroupMatches groups({});
-  const ArrangementProblem heard = groups.heard(problem_, arrangement_, inputs_);
+  const JoinProblem heard = groups.heard(problem_, consistent_set_, inputs_);
   const std::vector<CandidateJoin>& first = heard.pairs[1].candidates;   // of maps 0 and 2
   const std::vector<CandidateJoin>& second = heard.pairs[3].candidates;  // of maps 1 and 2
   ASSERT_FALSE(first.empty());
@@ -91,7 +91,7 @@ TEST_F(GroupMatchesTest, SpeakOncePerGroup) {
 TEST_F(GroupMatchesTest, LeaveMapsAloneOfWhichSomethingIsKnownBeforehand) {
   inputs_.known_poses[2] = KnownPose{};
   GroupMatches groups({});
-  for (const PairCandidates& pair : groups.heard(problem_, arrangement_, inputs_).pairs) {
+  for (const PairCandidates& pair : groups.heard(problem_, consistent_set_, inputs_).pairs) {
     if (pair.moving == 2) {
       EXPECT_TRUE(pair.candidates.empty());
     }
@@ -100,8 +100,8 @@ TEST_F(GroupMatchesTest, LeaveMapsAloneOfWhichSomethingIsKnownBeforehand) {
 
 TEST_F(GroupMatchesTest, AreTheSameWhenAskedAgain) {
   GroupMatches groups({});
-  const ArrangementProblem once = groups.heard(problem_, arrangement_, inputs_);
-  const ArrangementProblem again = groups.heard(problem_, arrangement_, inputs_);
+  const JoinProblem once = groups.heard(problem_, consistent_set_, inputs_);
+  const JoinProblem again = groups.heard(problem_, consistent_set_, inputs_);
   ASSERT_EQ(once.pairs.size(), again.pairs.size());
   for (std::size_t i = 0; i < once.pairs.size(); ++i) {
     ASSERT_EQ(once.pairs[i].candidates.size(), again.pairs[i].candidates.size());

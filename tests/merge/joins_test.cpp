@@ -114,10 +114,10 @@ TEST(WhyLeftOut, IsTheReasonOfTheMostProbableJoinOfThatMap) {
   const std::vector<Join> joins{join(0, 1, 0.2, Reason::ambiguous), join(1, 2, 0.4, Reason::contradiction),
                                 join(0, 3, 0.9, Reason::several),
                                 join(1, 4, 0.3, Reason::too_little_overlap)};
-  EXPECT_EQ(why_left_out(joins, 1), Reason::contradiction);
-  EXPECT_EQ(why_left_out(joins, 0), Reason::several);
-  EXPECT_EQ(why_left_out(joins, 4), Reason::too_little_overlap);
-  EXPECT_EQ(why_left_out(joins, 7), Reason::nothing_to_compare);
+  EXPECT_EQ(left_out(1, joins), (LeftOut{1, Reason::contradiction}));
+  EXPECT_EQ(left_out(0, joins), (LeftOut{0, Reason::several}));
+  EXPECT_EQ(left_out(4, joins), (LeftOut{4, Reason::too_little_overlap}));
+  EXPECT_EQ(left_out(7, joins), (LeftOut{7, Reason::nothing_to_compare}));
 }
 
 TEST(FinestResolution, IsTheLeast) {

@@ -15,7 +15,7 @@ struct Rooms {
     Component component;
     for (std::size_t i = 0; i < 3; ++i) component.members.push_back({i, at(i)});
     result.components.push_back(std::move(component));
-    result.left_out = {3};
+    result.left_out = {{3}};
     for (std::size_t i = 0; i < 4; ++i) known.push_back(KnownPose{T_world * at(i), 0.1, 0.01});
   }
 

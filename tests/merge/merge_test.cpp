@@ -12,48 +12,17 @@
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/merge/merger.hpp"
+#include "merge/maps_left_out.hpp"
+#include "merge/team.hpp"
 #include "support/building.hpp"
 #include "support/effort.hpp"
 
 namespace gridmerge {
+
+using test::expect_same;
+using test::Team;
+
 namespace {
-
-/// Robots that each saw a part of one building, 18 m x 13 m, from frames of their own; the last map is of
-/// another building.
-struct Team {
-  Team() {
-    const OccupancyGrid building = test::draw_building(1);
-    const std::vector<test::Window> windows{{0, 0, 11, 13}, {5, 0, 18, 13}, {0, 4, 18, 13}, {0, 0, 18, 8}};
-    for (std::size_t i = 0; i < windows.size(); ++i) {
-      T_map_building.push_back({3.0 * static_cast<double>(i), -2.0, 0.7 * static_cast<double>(i) - 1.0});
-      maps.push_back(test::map_part(building, windows[i], T_map_building.back()));
-    }
-    maps.push_back(test::draw_building(2));
-  }
-
-  SE2 T(std::size_t fixed, std::size_t moving) const {
-    return T_map_building[fixed] * inverse(T_map_building[moving]);
-  }
-
-  /// All but the last in one component, where they belong.
-  void expect_merged(const MergeResult& result, double tolerance = 0.1) const {
-    ASSERT_EQ(result.components.size(), 1u);
-    const std::vector<Member>& members = result.components[0].members;
-    ASSERT_EQ(members.size(), 4u);
-    const SE2 T_frame_first = members[0].T_component_map;
-    for (const Member& member : members) {
-      const SE2 found = inverse(T_frame_first) * member.T_component_map;
-      const SE2 expected = T(members[0].map, member.map);
-      EXPECT_NEAR(found.x, expected.x, tolerance);
-      EXPECT_NEAR(found.y, expected.y, tolerance);
-      EXPECT_NEAR(normalize_angle(found.theta - expected.theta), 0.0, 0.02);
-    }
-    EXPECT_EQ(result.left_out, std::vector<std::size_t>{4});
-  }
-
-  std::vector<OccupancyGrid> maps;
-  std::vector<SE2> T_map_building;
-};
 
 /// The map on a large sheet that is black where the map knows nothing, as hand-edited maps are.
 OccupancyGrid painted_black(const OccupancyGrid& map) {
@@ -67,32 +36,12 @@ OccupancyGrid painted_black(const OccupancyGrid& map) {
   return sheet;
 }
 
-void expect_same(const MergeResult& a, const MergeResult& b) {
-  ASSERT_EQ(a.components.size(), b.components.size());
-  for (std::size_t i = 0; i < a.components.size(); ++i) {
-    ASSERT_EQ(a.components[i].members.size(), b.components[i].members.size());
-    for (std::size_t k = 0; k < a.components[i].members.size(); ++k) {
-      const Member &one = a.components[i].members[k], &two = b.components[i].members[k];
-      EXPECT_EQ(one.map, two.map);
-      EXPECT_EQ(one.T_component_map, two.T_component_map);
-      EXPECT_EQ(one.probability, two.probability);
-    }
-    EXPECT_EQ(a.components[i].fused.grid.cells, b.components[i].fused.grid.cells);
-  }
-  ASSERT_EQ(a.joins.size(), b.joins.size());
-  for (std::size_t i = 0; i < a.joins.size(); ++i) {
-    EXPECT_EQ(a.joins[i].outcome, b.joins[i].outcome);
-    EXPECT_EQ(a.joins[i].T_fixed_moving, b.joins[i].T_fixed_moving);
-  }
-  EXPECT_EQ(a.left_out, b.left_out);
-}
-
 TEST(Merge, PutsEveryMapWhereItBelongsAndLeavesOutTheStranger) {
   const Team team;
   const MergeResult result = merge(team.maps);
   team.expect_merged(result);
   EXPECT_EQ(result.joins.size(), 10u);
-  EXPECT_EQ(result.left_out_reasons.size(), 1u);
+  EXPECT_EQ(result.left_out.size(), 1u);
   EXPECT_EQ(result.components[0].members[0].T_component_map, SE2{});
   for (const Member& member : result.components[0].members) {
     EXPECT_GE(member.probability.value(), 0.8);
@@ -106,8 +55,8 @@ TEST(Merge, OfNoneOneOrTheSameMap) {
   const Team team;
   const MergeResult none = merge({});
   EXPECT_TRUE(none.components.empty() && none.joins.empty() && none.left_out.empty());
-  EXPECT_EQ(merge({team.maps[0]}).left_out, std::vector<std::size_t>{0});
-  EXPECT_EQ(merge({team.maps[0]}).left_out_reasons, std::vector<Reason>{Reason::nothing_to_compare});
+  EXPECT_EQ(test::maps_left_out(merge({team.maps[0]})), std::vector<std::size_t>{0});
+  EXPECT_EQ(merge({team.maps[0]}).left_out.front().reason, Reason::nothing_to_compare);
   const MergeResult same = merge({team.maps[0], team.maps[0], team.maps[0]});
   ASSERT_EQ(same.components.size(), 1u);
   EXPECT_EQ(same.components[0].members.size(), 3u);
@@ -166,7 +115,7 @@ TEST(Merge, OrderOfTheMapsDecidesNothingButTheFrame) {
   std::vector<OccupancyGrid> reversed(team.maps.rbegin(), team.maps.rend());
   const MergeResult result = merge(reversed), usual = merge(team.maps);
   ASSERT_EQ(result.components.size(), 1u);
-  EXPECT_EQ(result.left_out, std::vector<std::size_t>{0});
+  EXPECT_EQ(test::maps_left_out(result), std::vector<std::size_t>{0});
   const auto pose = [](const MergeResult& of, std::size_t map) {
     const std::vector<Member>& members = of.components[0].members;
     return std::find_if(members.begin(), members.end(),
@@ -294,144 +243,6 @@ TEST(Merge, RefusesWhatMakesNoSense) {
   }
 }
 
-TEST(Merger, OneByOneGivesWhatAllAtOnceGives) {
-  const Team team;
-  Merger merger;
-  for (const OccupancyGrid& map : team.maps) {
-    merger.add(map);
-    merger.solve();
-  }
-  expect_same(merger.solve(), merge(team.maps));
-}
-
-TEST(Merger, MatchesOnlyWhatHasChanged) {
-  const Team team;
-  std::vector<std::size_t> totals;
-  MergeOptions options;
-  options.progress = [&](std::size_t done, std::size_t total) {
-    if (done == total) totals.push_back(total);
-  };
-  Merger merger(options);
-  const auto first = merger.add(team.maps[0]);
-  merger.add(team.maps[1]);
-  const auto third = merger.add(team.maps[4]);
-  merger.solve();
-  merger.solve();
-  // Three pairs, and a second look at the two that a stranger is in.
-  EXPECT_EQ(totals, (std::vector<std::size_t>{3, 2}));
-
-  merger.update(third, team.maps[2]);  // the robot was elsewhere after all
-  expect_same(merger.solve(), merge({team.maps[0], team.maps[1], team.maps[2]}));
-  EXPECT_EQ(totals, (std::vector<std::size_t>{3, 2, 2}));
-
-  merger.remove(first);
-  expect_same(merger.solve(), merge({team.maps[1], team.maps[2]}));
-  EXPECT_EQ(totals.size(), 3u);
-  EXPECT_EQ(merger.maps(), (std::vector<Merger::MapId>{1, 2}));
-}
-
-TEST(Merger, AMapThatGrowsKeepsItsMatchesUntilItIsSearchedAgain) {
-  const Team team;
-  std::size_t matched = 0;
-  MergeOptions options;
-  options.progress = [&](std::size_t, std::size_t) { ++matched; };
-  Merger merger(options);
-  merger.add(team.maps[0]);
-  const auto grows = merger.add(team.maps[1]);
-  merger.add(team.maps[2]);
-  merger.solve();
-  const std::size_t first = matched;
-  OccupancyGrid grown = team.maps[1];
-  std::fill_n(grown.cells.begin(), grown.cells.size() / 50, Cell::unknown);
-  merger.grow(grows, grown);
-  const MergeResult followed = merger.solve();
-  EXPECT_EQ(matched, first);
-  // The maps are the new ones all the same.
-  const std::vector<OccupancyGrid> maps{team.maps[0], grown, team.maps[2]};
-  ASSERT_EQ(followed.components.size(), 1u);
-  std::vector<PlacedMap> placed;
-  for (const Member& member : followed.components[0].members)
-    placed.push_back({&maps[member.map], member.T_component_map});
-  EXPECT_EQ(followed.components[0].fused.grid.cells, fuse(placed, maps[0].resolution).grid.cells);
-
-  merger.search_again(grows);
-  expect_same(merger.solve(), merge(maps));
-  EXPECT_EQ(matched, first + 2);
-  EXPECT_THROW(merger.grow(grows + 7, grown), std::out_of_range);
-  EXPECT_THROW(merger.search_again(grows + 7), std::out_of_range);
-}
-
-TEST(Merger, SoonAndBitByBitItIsTheSameInTheEnd) {
-  const Team team;
-  std::vector<std::size_t> totals;
-  MergeOptions options;
-  options.progress = [&](std::size_t done, std::size_t total) {
-    if (done == total) totals.push_back(total);
-  };
-  Merger merger(options);
-  for (const std::size_t map : {0u, 1u, 4u}) merger.add(team.maps[map]);
-  merger.solve_soon(0);
-  EXPECT_FALSE(merger.is_complete());
-  EXPECT_EQ(totals, (std::vector<std::size_t>{3}));
-  merger.solve_soon(1);
-  EXPECT_FALSE(merger.is_complete());
-  const MergeResult result = merger.solve_soon(1);
-  EXPECT_TRUE(merger.is_complete());
-  EXPECT_EQ(totals, (std::vector<std::size_t>{3, 1, 1}));
-  expect_same(result, merge({team.maps[0], team.maps[1], team.maps[4]}));
-}
-
-TEST(Merger, WhatWasMatchedBeforeItWasCancelledIsKept) {
-  const Team team;
-  std::atomic<bool> cancelled = false;
-  std::vector<std::size_t> totals;
-  MergeOptions options;
-  options.match.threads = 1;
-  options.progress = [&](std::size_t done, std::size_t total) {
-    totals.push_back(total);
-    if (done == 2) cancelled = true;
-  };
-  Merger merger(options);
-  for (std::size_t i = 0; i < 4; ++i) merger.add(team.maps[i]);
-  EXPECT_THROW(with_cancellation(cancelled, [&] { merger.solve(); }), Cancelled);
-  const std::size_t done = totals.size();
-  expect_same(merger.solve(), merge({team.maps.begin(), team.maps.begin() + 4}));
-  EXPECT_GE(done, 2u);
-  EXPECT_EQ(totals.at(done), 6 - done);
-}
-
-TEST(Merger, TakesAKnownPoseLater) {
-  const OccupancyGrid building = test::draw_building(1);
-  const std::vector<OccupancyGrid> maps{test::map_part(building, {0, 0, 8, 13}, {}),
-                                        test::map_part(building, {10, 0, 18, 13}, {})};
-  const KnownPose first{{5.0, 5.0, 0.0}, 0.1, 0.01}, second{{5.2, 5.0, 0.0}, 0.1, 0.01};
-  Merger merger;
-  const auto a = merger.add(maps[0]), b = merger.add(maps[1]);
-  EXPECT_EQ(merger.solve().left_out.size(), 2u);
-  merger.set_known_pose(a, first);
-  merger.set_known_pose(b, second);
-  expect_same(merger.solve(), merge(maps, {}, {first, second}));
-  EXPECT_EQ(merger.solve().components.size(), 1u);
-  merger.set_known_pose(b, std::nullopt);
-  EXPECT_EQ(merger.solve().left_out.size(), 2u);
-  EXPECT_THROW(merger.set_known_pose(b + 7, first), std::out_of_range);
-}
-
-TEST(Merger, IsAsItWasAfterAnError) {
-  const Team team;
-  Merger merger;
-  const auto id = merger.add(team.maps[0]);
-  OccupancyGrid broken = team.maps[1];
-  broken.cells.pop_back();
-  EXPECT_THROW(merger.add(broken), std::invalid_argument);
-  EXPECT_THROW(merger.update(id, broken), std::invalid_argument);
-  EXPECT_THROW(merger.update(id + 7, team.maps[1]), std::out_of_range);
-  EXPECT_THROW(merger.remove(id + 7), std::out_of_range);
-  EXPECT_THROW(merger.set_known_pose(id, KnownPose{{}, 0.0, 0.0}), std::invalid_argument);
-  EXPECT_EQ(merger.maps(), std::vector<Merger::MapId>{id});
-  EXPECT_EQ(merger.solve().left_out, std::vector<std::size_t>{0});
-}
-
 TEST(Merge, BlackPaintHidesNothingThatOthersHaveSeen) {
   Team team;
   team.maps.pop_back();
@@ -452,6 +263,20 @@ OccupancyGrid saved_again(const OccupancyGrid& map) {
   OccupancyGrid copy = quarter_turned(map, 1);
   copy.origin = SE2{4.0, -7.0, 0.4} * copy.origin;
   return copy;
+}
+
+TEST(Merge, AMapThatIsJoinedToItsCopyAloneHoldsTheFrame) {
+  OccupancyGrid map = make_grid(4, 4, 0.1, {});
+  for (std::size_t i = 0; i < map.cells.size(); ++i) map.cells[i] = i % 3 == 0 ? Cell::occupied : Cell::free;
+  const std::vector<OccupancyGrid> maps{map, saved_again(map)};
+  const MergeResult result = merge(maps);
+  ASSERT_EQ(result.components.size(), 1U);
+  ASSERT_EQ(result.components[0].members.size(), 2U);
+  for (const Member& member : result.components[0].members) {
+    ASSERT_TRUE(member.sd) << member.map;
+    EXPECT_EQ(member.sd->position, 0.0);
+    EXPECT_EQ(member.probability, 1.0);
+  }
 }
 
 TEST(Merge, AMapGivenTwiceCountsOnce) {
@@ -525,8 +350,7 @@ TEST(Merge, OfAMapAndItsCopiesIsThatMap) {
   EXPECT_EQ(result.components[0].members.size(), 3U);
   EXPECT_EQ(result.components[0].members[0].T_component_map, SE2{});
   EXPECT_EQ(result.components[0].members[2].T_component_map, SE2{});
-  EXPECT_EQ(result.left_out, std::vector<std::size_t>{1});
-  EXPECT_EQ(result.left_out_reasons.size(), 1U);
+  EXPECT_EQ(test::maps_left_out(result), std::vector<std::size_t>{1});
   EXPECT_EQ(result.joins.size(), 6U);
 }
 

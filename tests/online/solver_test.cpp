@@ -109,7 +109,7 @@ TEST(TeamSolver, ASettledAnswerIsThatOfMerge) {
     EXPECT_EQ(robot.T_world_map, member.T_component_map);
     EXPECT_EQ(robot.probability, member.probability);
   }
-  EXPECT_EQ(status_of(answer, "dora").reason, merged.left_out_reasons.at(0));
+  EXPECT_EQ(status_of(answer, "dora").reason, merged.left_out.at(0).reason);
 }
 
 /// Soon and further come to the same as all at once.

@@ -22,6 +22,7 @@ const std::vector<std::string> kNames{"anna", "bert", "carl", "dora"};
 
 TEST(Team, SettlesOnWhatMergeSaysHoweverFastMapsCome) {
   const Explorers explorers;
+  const int count = test::repeats(4, 3);  // the fourth is a stranger
   TeamOptions options;
   options.quiet = 50ms;
   std::mutex mutex;
@@ -31,7 +32,7 @@ TEST(Team, SettlesOnWhatMergeSaysHoweverFastMapsCome) {
     answers.push_back(answer);
   });
   std::vector<std::thread> robots;
-  for (int robot = 0; robot < 4; ++robot) {
+  for (int robot = 0; robot < count; ++robot) {
     robots.emplace_back([&, robot] {
       for (int step = 1; step <= Explorers::kSteps; ++step) {
         team.hear(kNames[static_cast<std::size_t>(robot)], explorers.map(robot, step));
@@ -43,13 +44,23 @@ TEST(Team, SettlesOnWhatMergeSaysHoweverFastMapsCome) {
   ASSERT_TRUE(team.wait_until_settled(kLong));
   const auto answer = team.answer();
   std::vector<OccupancyGrid> maps;
-  for (int robot = 0; robot < 4; ++robot) maps.push_back(explorers.map(robot, Explorers::kSteps));
+  for (int robot = 0; robot < count; ++robot) maps.push_back(explorers.map(robot, Explorers::kSteps));
   const MergeResult merged = merge(maps);
   ASSERT_EQ(answer->components.size(), 1u);
   EXPECT_EQ(answer->components[0].robots, (std::vector<std::string>{"anna", "bert", "carl"}));
   EXPECT_EQ(merged.components[0].members.size(), 3u);
   const std::lock_guard lock(mutex);
-  for (std::size_t i = 0; i < answers.size(); ++i) EXPECT_EQ(answers[i]->number, i + 1);
+  std::vector<std::string> told;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    EXPECT_EQ(answers[i]->number, i + 1);
+    for (const TeamEvent& event : answers[i]->events) told.push_back(event.text);
+  }
+  // Whoever asks at the end alone is told what all answers told.
+  std::vector<std::string> taken;
+  for (const TeamEvent& event : team.take_events()) taken.push_back(event.text);
+  EXPECT_GE(taken.size(), 3u);
+  EXPECT_EQ(taken, told);
+  EXPECT_TRUE(team.take_events().empty());
   EXPECT_EQ(answers.back(), answer);
 }
 
@@ -95,7 +106,7 @@ TEST(Team, EndsWhileItIsAtWork) {
   const Explorers explorers;
   for (int i = 0; i < test::repeats(20, 3); ++i) {
     Team team;
-    for (int robot = 0; robot < 4; ++robot)
+    for (int robot = 0; robot < test::repeats(4, 3); ++robot)
       team.hear(kNames[static_cast<std::size_t>(robot)], explorers.map(robot, 5));
     std::this_thread::sleep_for(std::chrono::milliseconds(7 * i));
   }

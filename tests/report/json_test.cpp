@@ -144,7 +144,7 @@ TEST(TransformsJson, IsTheDocumentedText) {
   result.joins.insert(result.joins.begin(), refused);
   result.components[0].members[1].probability = 0.875;
   result.components[0].members[1].sd = PoseDeviation{0.125, 0.0625};
-  result.left_out_reasons.front() = Reason::ambiguous;
+  result.left_out.front().reason = Reason::ambiguous;
   result.open_ways = {{1, 3, {4.0, 0.5, -1.5}, 0.25}};
   result.components[0].fused = {make_grid(5, 4, 1.0), 0, 0, EqualCells{5, 20}};
   EXPECT_EQ(transforms_json({"a.yaml", "b.yaml", "c.yaml", "d.yaml"}, result), R"({
@@ -261,7 +261,7 @@ TEST(TransformsJson, OfNothing) {
 
 TEST(TransformsJson, EveryMapNeedsAName) {
   MergeResult result;
-  result.left_out = {0, 1};
+  result.left_out = {{0}, {1}};
   EXPECT_THROW(transforms_json({"a"}, result), std::out_of_range);
 }
 

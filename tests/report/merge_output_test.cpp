@@ -41,7 +41,7 @@ MergeResult two_components() {
 TEST(MergeOutput, WritesOneComponent) {
   const TemporaryDirectory directory;
   const MergeResult result = one_component();
-  write_merge_output(directory.path(), kInputs, kNames, kMaps, result);
+  write_merge_output(directory.path(), kInputs, {kNames, kMaps, result});
   EXPECT_EQ(directory.names(),
             (Names{"merged.pgm", "merged.yaml", "preview.png", "report.html", "transforms.json"}));
   const OccupancyGrid merged = load_map(directory.file("merged.yaml")).grid;
@@ -56,13 +56,13 @@ TEST(MergeOutput, WritesOneComponent) {
 TEST(MergeOutput, WritesEveryComponent) {
   const TemporaryDirectory directory;
   const MergeResult result = two_components();
-  write_merge_output(directory.path(), kInputs, kNames, kMaps, result);
+  write_merge_output(directory.path(), kInputs, {kNames, kMaps, result});
   EXPECT_EQ(load_map(directory.file("merged_2.yaml")).grid.cells, result.components[1].fused.grid.cells);
 }
 
 TEST(MergeOutput, WithoutAComponentThereIsNoMergedMap) {
   const TemporaryDirectory directory;
-  write_merge_output(directory.path(), kInputs, kNames, kMaps, test::merged(kMaps, {}));
+  write_merge_output(directory.path(), kInputs, {kNames, kMaps, test::merged(kMaps, {})});
   EXPECT_EQ(directory.names(), (Names{"preview.png", "report.html", "transforms.json"}));
   const auto json = nlohmann::json::parse(read_file(directory.file("transforms.json")));
   EXPECT_TRUE(json["components"].empty());
@@ -71,7 +71,7 @@ TEST(MergeOutput, WithoutAComponentThereIsNoMergedMap) {
 
 TEST(MergeOutput, MakesTheDirectory) {
   const TemporaryDirectory directory;
-  write_merge_output(directory.path() / "new" / "newer", kInputs, kNames, kMaps, one_component());
+  write_merge_output(directory.path() / "new" / "newer", kInputs, {kNames, kMaps, one_component()});
   EXPECT_TRUE(std::filesystem::exists(directory.path() / "new" / "newer" / "transforms.json"));
 }
 
@@ -82,13 +82,13 @@ TEST(MergeOutput, RemovesTheMapsOfAnEarlierRunAndNothingElse) {
   for (const std::string& name : others) directory.write(name, "mine");
   directory.write("merged_17.yaml", "of an earlier run");
   directory.write("merged_18.yaml/notes", "mine");
-  write_merge_output(directory.path(), kInputs, kNames, kMaps, two_components());
-  write_merge_output(directory.path(), kInputs, kNames, kMaps, one_component());
+  write_merge_output(directory.path(), kInputs, {kNames, kMaps, two_components()});
+  write_merge_output(directory.path(), kInputs, {kNames, kMaps, one_component()});
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged_2.yaml")));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged_2.pgm")));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged_17.yaml")));
   EXPECT_TRUE(std::filesystem::exists(directory.file("merged.yaml")));
-  write_merge_output(directory.path(), kInputs, kNames, kMaps, test::merged(kMaps, {}));
+  write_merge_output(directory.path(), kInputs, {kNames, kMaps, test::merged(kMaps, {})});
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged.yaml")));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged.pgm")));
   EXPECT_EQ(read_file(directory.file("merged_18.yaml/notes")), "mine");
@@ -100,7 +100,7 @@ TEST(MergeOutput, NeverReplacesAnInput) {
   for (const std::string name : {"merged.yaml", "merged_3.yaml", "merged.pgm", "preview.png"}) {
     const std::string input = directory.write(name, "mine");
     const auto write = [&] {
-      write_merge_output(directory.path(), {"a", "b", input}, kNames, kMaps, one_component());
+      write_merge_output(directory.path(), {"a", "b", input}, {kNames, kMaps, one_component()});
     };
     EXPECT_TRUE(contains(message_of<FileError>(write), name + ": is an input"));
     EXPECT_EQ(directory.names(), Names{name});
@@ -183,20 +183,21 @@ TEST(MergeOutput, ForeseesTheSizeOfTheMergedMap) {
 
 TEST(MergeOutput, AFullDiskLeavesTheDirectoryAsItWas) {
   const TemporaryDirectory directory;
-  write_merge_output(directory.path(), kInputs, kNames, kMaps, two_components());
+  write_merge_output(directory.path(), kInputs, {kNames, kMaps, two_components()});
   const Names names = directory.names();
   Names before;
   for (const std::string& name : names) before.push_back(read_file(directory.file(name)));
   // Enough for the map's files, not for the picture.
-  const std::string message = test::with_file_size_limit(
-      400, [&] { write_merge_output(directory.path(), kInputs, kNames, kMaps, one_component()); });
+  const std::string message = test::with_file_size_limit(400, [&] {
+    write_merge_output(directory.path(), kInputs, {kNames, kMaps, one_component()});
+  });
   EXPECT_TRUE(contains(message, "preview.png: cannot be written"));
   EXPECT_EQ(directory.names(), names);
   for (std::size_t i = 0; i < names.size(); ++i)
     EXPECT_EQ(read_file(directory.file(names[i])), before[i]) << names[i];
 
   const auto write_to_new = [&] {
-    write_merge_output(directory.path() / "new" / "newer", kInputs, kNames, kMaps, one_component());
+    write_merge_output(directory.path() / "new" / "newer", kInputs, {kNames, kMaps, one_component()});
   };
   EXPECT_TRUE(contains(test::with_file_size_limit(400, write_to_new), "cannot be written"));
   EXPECT_EQ(directory.names(), names) << "no empty directory is left behind";

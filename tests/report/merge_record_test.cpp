@@ -51,7 +51,7 @@ MergeResult any_result() {
     if (outcome == JoinOutcome::rejected) refused.match.verdict = Verdict::accepted;
     result.joins.push_back(refused);
   }
-  result.left_out_reasons.back() = Reason::contradicts_others;
+  result.left_out.back().reason = Reason::contradicts_others;
   result.open_ways = {{0, 1, {-4.0, 1.0 / 3.0, 2.5}, 0.375}, {1, 3, {}, 0.125}};
   return result;
 }
@@ -102,7 +102,7 @@ TEST(MergeRecord, ReadsWhatEarlierVersionsWrote) {
   }
   json.erase("open_ways");
   const MergeRecord read = parse(json.dump());
-  EXPECT_EQ(read.result.left_out_reasons, any_result().left_out_reasons);
+  EXPECT_EQ(read.result.left_out, any_result().left_out);
   EXPECT_EQ(read.result.joins[4].match.reason, Reason::too_little_overlap);
 }
 
@@ -207,7 +207,7 @@ TEST(FuseAgain, GivesTheMergedMaps) {
     save_map(result.components[i].fused.grid, directory.file(component_file(i)));
   MergeRecord record = parse(transforms_json(kNames, result));
   EXPECT_TRUE(fuse_again(record, kMaps, directory.path()).empty());
-  EXPECT_EQ(report_page(record.names, kMaps, record.result), report_page(kNames, kMaps, result));
+  EXPECT_EQ(report_page({record.names, kMaps, record.result}), report_page({kNames, kMaps, result}));
 }
 
 TEST(FuseAgain, TellsWhichHaveBeenChanged) {

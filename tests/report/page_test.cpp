@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <random>
 #include <stdexcept>
 
 #include "gridmerge/grid/resample.hpp"
@@ -12,7 +13,9 @@
 #include "io/support.hpp"
 #include "merge/drawing.hpp"
 #include "report/cells.hpp"
+#include "report/fleet.hpp"
 #include "report/results.hpp"
+#include "report/told_joins.hpp"
 
 namespace gridmerge {
 
@@ -41,7 +44,7 @@ MergeResult two_of_four() {
   refused.overlap = 0.375;
   refused.match.hypotheses = {{{0.5, 0.25, 3.0}, 10.0, 0.0625}, {{7.0, 8.0, -1.0}, 9.5, 0.03125}};
   result.joins.push_back(refused);
-  result.left_out_reasons.front() = Reason::ambiguous;
+  result.left_out.front().reason = Reason::ambiguous;
   return result;
 }
 
@@ -65,8 +68,50 @@ Json transform(double x, double y, double theta) {
   return {{"x", x}, {"y", y}, {"theta", theta}};
 }
 
+TEST(ReportPage, TellsWhatStaysOpen) {
+  MergeResult result = two_of_four();
+  result.open_ways = {{0, 3, {1.0, 2.0, 0.5}, 0.375}};
+  const Json data = data_of(report_page({kNames, kMaps, result}));
+  ASSERT_EQ(data.at("open_ways").size(), 1u);
+  EXPECT_EQ(
+      data.at("open_ways")[0],
+      (Json{{"fixed", 0}, {"moving", 3}, {"transform", transform(1.0, 2.0, 0.5)}, {"probability", 0.375}}));
+  EXPECT_EQ(data.at("refused"), (Json{{"count", 0}, {"rows", Json::array()}}));
+}
+
+TEST(ReportPage, OfManyMapsHasTheJoinsThatMatter) {
+  const MergeResult result = test::fleet(120, 1);
+  const std::vector<OccupancyGrid> maps(120, map_from({"#.", ".#"}, 0.1));
+  const Json data = data_of(report_page({test::fleet_names(120), maps, result}));
+  const ToldJoins told = tell_joins(result);
+  EXPECT_EQ(data.at("joins").size(), told.objects.size());
+  ASSERT_EQ(data.at("refused").at("rows").size(), told.rows.size());
+  const Join& join = result.joins[told.rows[0]];
+  EXPECT_EQ(data.at("refused").at("rows")[0],
+            Json::array({join.fixed, join.moving, name_of(join.reason()), join.probability,
+                         join.T_fixed_moving.x, join.T_fixed_moving.y, join.T_fixed_moving.theta}));
+  EXPECT_EQ(data.at("refused").at("count"), result.joins.size() - told.objects.size());
+}
+
+TEST(ReportPage, OfManyLargeMapsShowsThemCoarser) {
+  // Cells that cannot be packed: 51 such maps would take 14 MB.
+  OccupancyGrid noise = make_grid(1000, 1000, 0.1);
+  std::mt19937 random(1);
+  for (Cell& cell : noise.cells) cell = static_cast<Cell>(random() % 3);
+  for (const std::size_t count : {50u, 51u}) {
+    std::vector<OccupancyGrid> maps(count, map_from({"#.", ".#"}, 0.1));
+    for (std::size_t i = 1; i < count; ++i) maps[i] = noise;
+    const std::string page = report_page({test::fleet_names(count), maps, MergeResult{}});
+    const Json shown = data_of(page).at("maps");
+    EXPECT_EQ(shown[1].at("width"), count == 50 ? 1000 : 500);
+    EXPECT_EQ(shown[1].at("resolution"), count == 50 ? 0.1 : 0.2);
+    EXPECT_EQ(shown[0].at("width"), 2) << "small ones stay as they are";
+    EXPECT_EQ(page.size() < 11'000'000, count == 51);
+  }
+}
+
 TEST(ReportPage, HoldsTheMaps) {
-  const Json data = data_of(report_page(kNames, kMaps, two_of_four()));
+  const Json data = data_of(report_page({kNames, kMaps, two_of_four()}));
   EXPECT_EQ(data.at("version"), kVersion);
   EXPECT_EQ(data.at("live"), false);
   ASSERT_EQ(data.at("maps").size(), 4u);
@@ -83,7 +128,7 @@ TEST(ReportPage, HoldsTheMaps) {
 }
 
 TEST(ReportPage, AMapOfWhichNothingIsKnownHasNoCells) {
-  const Json data = data_of(report_page(kNames, kMaps, two_of_four()));
+  const Json data = data_of(report_page({kNames, kMaps, two_of_four()}));
   const Json& map = data.at("maps").at(3);
   EXPECT_EQ(map.at("width"), 0);
   EXPECT_EQ(map.at("height"), 0);
@@ -92,7 +137,7 @@ TEST(ReportPage, AMapOfWhichNothingIsKnownHasNoCells) {
 
 TEST(ReportPage, HoldsTheComponents) {
   const MergeResult result = two_of_four();
-  const Json data = data_of(report_page(kNames, kMaps, result));
+  const Json data = data_of(report_page({kNames, kMaps, result}));
   ASSERT_EQ(data.at("components").size(), 1u);
   const Json& component = data.at("components").at(0);
   EXPECT_EQ(component.at("file"), "merged.yaml");
@@ -116,11 +161,11 @@ TEST(ReportPage, AComponentInTheWorldsFrameHasNoMapsFrame) {
   result.components[0].in_world_frame = true;
   for (Member& member : result.components[0].members)
     member.T_component_map = SE2{100.0, 0.0, 0.0} * member.T_component_map;
-  EXPECT_TRUE(data_of(report_page(kNames, kMaps, result)).at("components").at(0).at("frame").is_null());
+  EXPECT_TRUE(data_of(report_page({kNames, kMaps, result})).at("components").at(0).at("frame").is_null());
 }
 
 TEST(ReportPage, HoldsTheJoins) {
-  const Json joins = data_of(report_page(kNames, kMaps, two_of_four())).at("joins");
+  const Json joins = data_of(report_page({kNames, kMaps, two_of_four()})).at("joins");
   ASSERT_EQ(joins.size(), 2u);
   EXPECT_EQ(joins.at(0).at("outcome"), "accepted");
   EXPECT_TRUE(joins.at(0).at("reason").is_null());
@@ -143,7 +188,7 @@ TEST(ReportPage, HoldsTheJoins) {
 
 TEST(ReportPage, SaysWhyMapsWereLeftOut) {
   EXPECT_EQ(
-      data_of(report_page(kNames, kMaps, two_of_four())).at("left_out"),
+      data_of(report_page({kNames, kMaps, two_of_four()})).at("left_out"),
       Json::array({{{"map", 1}, {"reason", "ambiguous"}, {"explanation", "it fits in more than one way"}},
                    {{"map", 3},
                     {"reason", "nothing_to_compare"},
@@ -151,12 +196,12 @@ TEST(ReportPage, SaysWhyMapsWereLeftOut) {
 }
 
 TEST(ReportPage, NamesAreDataWhateverTheyHold) {
-  const std::string innocent = take_apart(report_page(kNames, kMaps, two_of_four())).rest;
+  const std::string innocent = take_apart(report_page({kNames, kMaps, two_of_four()})).rest;
   std::vector<std::string> hostile = test::kHostileNames;
   hostile.insert(hostile.end(), {"</script><script>alert(1)</script>", "<!--<script>", "&lt;/script&gt;",
                                  "]]>", "<!--DATA-->", "<CONNECT>", "\xe2\x80\xa8"});
   for (const std::string& name : hostile) {
-    const Parts page = take_apart(report_page({name, name, name, name}, kMaps, two_of_four()));
+    const Parts page = take_apart(report_page({{name, name, name, name}, kMaps, two_of_four()}));
     EXPECT_EQ(page.rest, innocent);
     EXPECT_EQ(page.data.find_first_of("<>&"), std::string::npos);
     const std::string shown = Json::parse(page.data).at("maps").at(0).at("name");
@@ -167,12 +212,12 @@ TEST(ReportPage, NamesAreDataWhateverTheyHold) {
 }
 
 TEST(ReportPage, WhatIsNoUtf8IsMarked) {
-  const Json data = data_of(report_page({"\xff", "b", "c", "d"}, kMaps, two_of_four()));
+  const Json data = data_of(report_page({{"\xff", "b", "c", "d"}, kMaps, two_of_four()}));
   EXPECT_EQ(data.at("maps").at(0).at("name"), "\xef\xbf\xbd");
 }
 
 TEST(ReportPage, AFileFetchesNothing) {
-  const std::string page = report_page(kNames, kMaps, two_of_four());
+  const std::string page = report_page({kNames, kMaps, two_of_four()});
   EXPECT_TRUE(contains(page, "default-src 'none'; script-src 'sha256-"));
   EXPECT_TRUE(contains(page, "connect-src 'none'; base-uri 'none'; form-action 'none'\">"));
   EXPECT_FALSE(contains(page, "unsafe"));
@@ -180,22 +225,22 @@ TEST(ReportPage, AFileFetchesNothing) {
 }
 
 TEST(ReportPage, ALiveOneAsksItsServerAlone) {
-  const std::string page = live_report_page(kNames, kMaps, two_of_four());
+  const std::string page = live_report_page({kNames, kMaps, two_of_four()});
   EXPECT_TRUE(contains(page, "connect-src 'self'; "));
   Json data = data_of(page);
   EXPECT_EQ(data.at("live"), true);
   data["live"] = false;
-  EXPECT_EQ(data, data_of(report_page(kNames, kMaps, two_of_four())));
+  EXPECT_EQ(data, data_of(report_page({kNames, kMaps, two_of_four()})));
 }
 
 TEST(ReportPage, OfNothing) {
-  const Json data = data_of(report_page({}, {}, {}));
+  const Json data = data_of(report_page({{}, {}, {}}));
   for (const char* list : {"maps", "components", "joins", "left_out"})
     EXPECT_EQ(data.at(list), Json::array());
 }
 
 TEST(ReportPage, EveryMapNeedsAName) {
-  EXPECT_THROW(report_page({"a"}, kMaps, two_of_four()), std::out_of_range);
+  EXPECT_THROW(report_page({{"a"}, kMaps, two_of_four()}), std::out_of_range);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ struct Picture {
 Picture preview(const std::vector<OccupancyGrid>& maps, const std::vector<std::vector<Member>>& components) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < maps.size(); ++i) names.push_back("map" + std::to_string(i) + ".yaml");
-  return {decode_png(preview_png(names, maps, test::merged(maps, components)))};
+  return {decode_png(preview_png({names, maps, test::merged(maps, components)}))};
 }
 
 TEST(Preview, ShowsWhoSawWhat) {
@@ -107,8 +107,9 @@ TEST(Preview, TheFewerMapsDisagreeTheFainterItIs) {
 TEST(Preview, NamesLackTheFoldersThatAllLieIn) {
   const std::vector<OccupancyGrid> maps{map_from({"#.."}), map_from({"..#"})};
   const MergeResult result = test::merged(maps, {{{0, {}}, {1, {}}}});
-  EXPECT_EQ(preview_png({"/a/b/one", "/a/b/two"}, maps, result), preview_png({"one", "two"}, maps, result));
-  EXPECT_NE(preview_png({"a/one", "b/two"}, maps, result), preview_png({"one", "two"}, maps, result));
+  EXPECT_EQ(preview_png({{"/a/b/one", "/a/b/two"}, maps, result}),
+            preview_png({{"one", "two"}, maps, result}));
+  EXPECT_NE(preview_png({{"a/one", "b/two"}, maps, result}), preview_png({{"one", "two"}, maps, result}));
 }
 
 TEST(Preview, WallsOfTheSecondMapHaveItsColour) {
@@ -245,16 +246,16 @@ TEST(Preview, OddMapsAndNames) {
   maps[1] = make_grid(1, 2000, 0.05, {}, Cell::occupied);
   for (const auto& components :
        std::vector<std::vector<std::vector<Member>>>{{}, {{{0, {}}, {2, {}}}}, {{{1, {}}, {3, {}}}}}) {
-    const std::string png = preview_png(test::kHostileNames, maps, test::merged(maps, components));
+    const std::string png = preview_png({test::kHostileNames, maps, test::merged(maps, components)});
     EXPECT_GT(decode_png(png).width, 0);
   }
-  EXPECT_GT(decode_png(preview_png({}, {}, {})).width, 0);
+  EXPECT_GT(decode_png(preview_png({{}, {}, {}})).width, 0);
 }
 
 TEST(Preview, EveryMapNeedsAName) {
   const std::vector<OccupancyGrid> maps{map_from({"#"}), map_from({"#"})};
-  EXPECT_THROW(preview_png({"a"}, maps, test::merged(maps, {})), std::out_of_range);
-  EXPECT_THROW(preview_png({"a"}, maps, test::merged(maps, {{{0, {}}, {1, {}}}})), std::out_of_range);
+  EXPECT_THROW(preview_png({{"a"}, maps, test::merged(maps, {})}), std::out_of_range);
+  EXPECT_THROW(preview_png({{"a"}, maps, test::merged(maps, {{{0, {}}, {1, {}}}})}), std::out_of_range);
 }
 
 }  // namespace

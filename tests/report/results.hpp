@@ -28,16 +28,13 @@ inline MergeResult merged(const std::vector<OccupancyGrid>& maps,
       join.match.probability = 0.75;
       join.match.T_fixed_moving = members[i].T_component_map;
       join.outcome = JoinOutcome::accepted;
-      join.T_fixed_moving = join.match.T_fixed_moving;
-      join.probability = join.match.probability;
+      static_cast<PairPose&>(join) = join.match;
       result.joins.push_back(join);
     }
     result.components.push_back({members, fuse(inputs, maps[members[0].map].resolution)});
   }
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    if (joined[i]) continue;
-    result.left_out.push_back(i);
-    result.left_out_reasons.push_back(Reason::nothing_to_compare);
+    if (!joined[i]) result.left_out.push_back({i, Reason::nothing_to_compare});
   }
   return result;
 }

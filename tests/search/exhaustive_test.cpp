@@ -19,7 +19,8 @@ namespace {
 /// The score as the header defines it, from nothing but that definition.
 class LiteralScore {
  public:
-  LiteralScore(const WallMap& fixed, const WallMap& moving, const ExhaustiveSearchOptions& options)
+  LiteralScore(const LikelihoodField& fixed, const LikelihoodField& moving,
+               const ExhaustiveSearchOptions& options)
       : fixed_(fixed),
         factor_(options.coarse_factor),
         walls_(draw_evenly(moving.walls, options.samples)),
@@ -53,7 +54,7 @@ class LiteralScore {
                       -15, 15);
   }
 
-  const WallMap& fixed_;
+  const LikelihoodField& fixed_;
   int factor_;
   std::vector<WallPoint> walls_;
   std::array<float, kEncounters> table_;
@@ -69,8 +70,8 @@ ExhaustiveSearchOptions small_search() {
 
 TEST(SearchAllPoses, EveryScoreIsTheLiteralOne) {
   for (unsigned seed = 0; seed < 6; ++seed) {
-    const WallMap fixed = make_wall_map(test::random_grid(seed, 33, 27), 0.1);
-    const WallMap moving = make_wall_map(test::random_grid(seed + 100, 24, 30), 0.1);
+    const LikelihoodField fixed = make_likelihood_field(test::random_grid(seed, 33, 27), 0.1);
+    const LikelihoodField moving = make_likelihood_field(test::random_grid(seed + 100, 24, 30), 0.1);
     const LiteralScore literal(fixed, moving, small_search());
     const auto found = search_all_poses(fixed, moving, small_search());
     ASSERT_FALSE(found.empty());
@@ -81,8 +82,8 @@ TEST(SearchAllPoses, EveryScoreIsTheLiteralOne) {
 
 TEST(SearchAllPoses, FindsTheBestOfAllPoses) {
   for (unsigned seed = 0; seed < 6; ++seed) {
-    const WallMap fixed = make_wall_map(test::random_grid(seed, 33, 27), 0.1);
-    const WallMap moving = make_wall_map(test::random_grid(seed + 100, 24, 30), 0.1);
+    const LikelihoodField fixed = make_likelihood_field(test::random_grid(seed, 33, 27), 0.1);
+    const LikelihoodField moving = make_likelihood_field(test::random_grid(seed + 100, 24, 30), 0.1);
     const ExhaustiveSearchOptions options = small_search();
     const LiteralScore literal(fixed, moving, options);
     const auto found = search_all_poses(fixed, moving, options);
@@ -108,8 +109,8 @@ TEST(SearchAllPoses, FindsTheBestOfAllPoses) {
 }
 
 TEST(SearchAllPoses, DoesNotDependOnThreads) {
-  const WallMap fixed = make_wall_map(test::random_grid(1, 90, 70), 0.1);
-  const WallMap moving = make_wall_map(test::random_grid(2, 60, 80), 0.1);
+  const LikelihoodField fixed = make_likelihood_field(test::random_grid(1, 90, 70), 0.1);
+  const LikelihoodField moving = make_likelihood_field(test::random_grid(2, 60, 80), 0.1);
   for (const std::size_t max_candidates : {100U, 1000000U}) {  // few: shifts are passed over; all: none is
     ExhaustiveSearchOptions options;
     options.max_candidates = max_candidates;
@@ -127,8 +128,8 @@ TEST(SearchAllPoses, DoesNotDependOnThreads) {
 }
 
 TEST(SearchAllPoses, CandidatesComeBestFirstAndNoneTwice) {
-  const WallMap fixed = make_wall_map(test::random_grid(1, 90, 70), 0.1);
-  const WallMap moving = make_wall_map(test::random_grid(2, 60, 80), 0.1);
+  const LikelihoodField fixed = make_likelihood_field(test::random_grid(1, 90, 70), 0.1);
+  const LikelihoodField moving = make_likelihood_field(test::random_grid(2, 60, 80), 0.1);
   ExhaustiveSearchOptions options;
   options.max_candidates = 50;
   const auto found = search_all_poses(fixed, moving, options);
@@ -144,8 +145,8 @@ TEST(SearchAllPoses, CandidatesComeBestFirstAndNoneTwice) {
 TEST(SearchAllPoses, TheBestAreTheSameWhenAllAreLookedAt) {
   for (unsigned seed = 0; seed < 8; ++seed) {
     const int width = 60 + 25 * static_cast<int>(seed);
-    const WallMap fixed = make_wall_map(test::random_grid(seed, width, 70), 0.1);
-    const WallMap moving = make_wall_map(test::random_grid(seed + 100, 60, 80), 0.1);
+    const LikelihoodField fixed = make_likelihood_field(test::random_grid(seed, width, 70), 0.1);
+    const LikelihoodField moving = make_likelihood_field(test::random_grid(seed + 100, 60, 80), 0.1);
     ExhaustiveSearchOptions options;
     options.coarse_factor = 2 + static_cast<int>(seed) % 3;
     options.rotations = 50;
@@ -165,14 +166,14 @@ TEST(SearchAllPoses, TheBestAreTheSameWhenAllAreLookedAt) {
 }
 
 TEST(SearchAllPoses, AMapWithoutWallsHasNoCandidates) {
-  const WallMap map = make_wall_map(test::random_grid(1, 30, 30), 0.1);
-  const WallMap empty = make_wall_map(make_grid(30, 30, 0.1, {}, Cell::free), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::random_grid(1, 30, 30), 0.1);
+  const LikelihoodField empty = make_likelihood_field(make_grid(30, 30, 0.1, {}, Cell::free), 0.1);
   EXPECT_TRUE(search_all_poses(map, empty).empty());
   EXPECT_TRUE(search_all_poses(empty, empty).empty());
 }
 
 TEST(SearchAllPoses, RefusesOptionsThatMakeNoSense) {
-  const WallMap map = make_wall_map(test::random_grid(1, 30, 30), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::random_grid(1, 30, 30), 0.1);
   const auto refused = [&](auto change) {
     ExhaustiveSearchOptions options;
     change(options);
@@ -184,7 +185,7 @@ TEST(SearchAllPoses, RefusesOptionsThatMakeNoSense) {
   refused([](auto& options) { options.sigma = 0.0; });
   refused([](auto& options) { options.outliers = 1.0; });
   refused([](auto& options) { options.outliers = std::nan(""); });
-  const WallMap other = make_wall_map(test::random_grid(1, 30, 30), 0.2);
+  const LikelihoodField other = make_likelihood_field(test::random_grid(1, 30, 30), 0.2);
   EXPECT_THROW(search_all_poses(map, other), std::invalid_argument);
 }
 

@@ -26,7 +26,8 @@ namespace {
 /// The score as the header defines it, from nothing but that definition: cell by cell and sample by sample.
 class LiteralScore {
  public:
-  LiteralScore(const WallMap& fixed, const WallMap& moving, const ThoroughSearchOptions& options)
+  LiteralScore(const LikelihoodField& fixed, const LikelihoodField& moving,
+               const ThoroughSearchOptions& options)
       : fixed_(fixed),
         moving_(moving),
         factor_(options.coarse_factor),
@@ -47,7 +48,7 @@ class LiteralScore {
       seen += seen_share(x - shift_parity(T, 0), y - shift_parity(T, 1));
     }
     const double n = static_cast<double>(walls_.size()) / looked_up * seen / 15.0;
-    if (n < kLeastSeenSamples) return 0.0;
+    if (n < kMinSeenSamples) return 0.0;
     return 256.0 * (sum / 6.0 + 0.37 * n) / (0.48 * std::pow(n, 0.75));
   }
 
@@ -110,8 +111,8 @@ class LiteralScore {
     return (15 * count + all / 2) / all;
   }
 
-  const WallMap& fixed_;
-  const WallMap& moving_;
+  const LikelihoodField& fixed_;
+  const LikelihoodField& moving_;
   int factor_;
   std::vector<WallPoint> walls_;
   std::array<float, kEncounters> table_;
@@ -129,10 +130,10 @@ ThoroughSearchOptions small_search() {
 
 struct RandomPair {
   explicit RandomPair(unsigned seed)
-      : fixed(make_wall_map(test::random_grid(seed, 53, 47), 0.1)),
-        moving(make_wall_map(test::random_grid(seed + 100, 44, 50), 0.1)) {}
-  WallMap fixed;
-  WallMap moving;
+      : fixed(make_likelihood_field(test::random_grid(seed, 53, 47), 0.1)),
+        moving(make_likelihood_field(test::random_grid(seed + 100, 44, 50), 0.1)) {}
+  LikelihoodField fixed;
+  LikelihoodField moving;
 };
 
 TEST(SearchThoroughly, EveryScoreIsTheLiteralOne) {
@@ -173,8 +174,8 @@ TEST(SearchThoroughly, FindsTheBestOfAllPoses) {
 }
 
 TEST(SearchThoroughly, DoesNotDependOnThreads) {
-  const WallMap fixed = make_wall_map(test::random_grid(1, 90, 70), 0.1);
-  const WallMap moving = make_wall_map(test::random_grid(2, 60, 80), 0.1);
+  const LikelihoodField fixed = make_likelihood_field(test::random_grid(1, 90, 70), 0.1);
+  const LikelihoodField moving = make_likelihood_field(test::random_grid(2, 60, 80), 0.1);
   for (const std::size_t max_candidates : {50U, 1000000U}) {  // few: shifts are passed over; all: none is
     ThoroughSearchOptions options;
     options.max_candidates = max_candidates;
@@ -193,8 +194,9 @@ TEST(SearchThoroughly, DoesNotDependOnThreads) {
 
 TEST(SearchThoroughly, TheBestAreTheSameWhenAllAreLookedAt) {
   for (unsigned seed = 0; seed < 6; ++seed) {
-    const WallMap fixed = make_wall_map(test::random_grid(seed, 60 + 25 * static_cast<int>(seed), 70), 0.1);
-    const WallMap moving = make_wall_map(test::random_grid(seed + 100, 60, 80), 0.1);
+    const LikelihoodField fixed =
+        make_likelihood_field(test::random_grid(seed, 60 + 25 * static_cast<int>(seed), 70), 0.1);
+    const LikelihoodField moving = make_likelihood_field(test::random_grid(seed + 100, 60, 80), 0.1);
     ThoroughSearchOptions options;
     options.coarse_factor = 2 + static_cast<int>(seed) % 3;
     options.rotations = 50;
@@ -228,7 +230,8 @@ TEST(SearchThoroughly, LittleOverlapStandsBeforeMuchByChance) {
   const OccupancyGrid building = test::draw_building(1);
   const OccupancyGrid left = test::map_part(building, {0, 0, 7.5, 13}, {});
   const OccupancyGrid right = test::map_part(building, {6, 0, 18, 13}, {});
-  const WallMap fixed = make_wall_map(right, 0.05), moving = make_wall_map(left, 0.05);
+  const LikelihoodField fixed = make_likelihood_field(right, 0.05),
+                        moving = make_likelihood_field(left, 0.05);
   const SE2 T_metres = inverse(fixed.T_map_grid) * moving.T_map_grid;
   const SE2 T_true{T_metres.x / 0.05, T_metres.y / 0.05, T_metres.theta};
   const std::size_t thorough = rank_of_truth(search_thoroughly(fixed, moving), T_true);
@@ -238,15 +241,15 @@ TEST(SearchThoroughly, LittleOverlapStandsBeforeMuchByChance) {
 }
 
 TEST(SearchThoroughly, AMapWithoutWallsHasNoCandidates) {
-  const WallMap map = make_wall_map(test::random_grid(1, 30, 30), 0.1);
-  const WallMap empty = make_wall_map(make_grid(30, 30, 0.1, {}, Cell::free), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::random_grid(1, 30, 30), 0.1);
+  const LikelihoodField empty = make_likelihood_field(make_grid(30, 30, 0.1, {}, Cell::free), 0.1);
   EXPECT_TRUE(search_thoroughly(map, empty).empty());
   EXPECT_TRUE(search_thoroughly(empty, empty).empty());
   EXPECT_TRUE(search_thoroughly(empty, map).empty());
 }
 
 TEST(SearchThoroughly, RefusesOptionsThatMakeNoSense) {
-  const WallMap map = make_wall_map(test::random_grid(1, 30, 30), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::random_grid(1, 30, 30), 0.1);
   const auto refused = [&](auto change) {
     ThoroughSearchOptions options;
     change(options);
@@ -254,10 +257,10 @@ TEST(SearchThoroughly, RefusesOptionsThatMakeNoSense) {
   };
   refused([](auto& options) { options.coarse_factor = 0; });
   refused([](auto& options) { options.rotations = 0; });
-  refused([](auto& options) { options.samples = kMostThoroughSamples + 1; });
+  refused([](auto& options) { options.samples = kMaxThoroughSamples + 1; });
   refused([](auto& options) { options.sigma = 0.0; });
   refused([](auto& options) { options.outliers = 1.0; });
-  const WallMap other = make_wall_map(test::random_grid(1, 30, 30), 0.2);
+  const LikelihoodField other = make_likelihood_field(test::random_grid(1, 30, 30), 0.2);
   EXPECT_THROW(search_thoroughly(map, other), std::invalid_argument);
 }
 

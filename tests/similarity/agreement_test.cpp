@@ -19,7 +19,7 @@ AgreementCounts brute_force(const OccupancyGrid& fixed, const OccupancyGrid& mov
   AgreementCounts result;
   for (int row = 0; row < moving.height; ++row) {
     for (int column = 0; column < moving.width; ++column) {
-      const Point2 p = inverse(fixed.origin) * (T_fixed_moving * moving.cell_center(column, row));
+      const Point2 p = inverse(fixed.origin) * (T_fixed_moving * moving.cell_centre(column, row));
       const int x = static_cast<int>(std::floor(p.x / fixed.resolution));
       const int y = static_cast<int>(std::floor(p.y / fixed.resolution));
       if (!fixed.contains(x, y) || fixed.at(x, y) == Cell::unknown) continue;

@@ -32,7 +32,8 @@ int class_by_angle(std::uint8_t point, std::uint8_t place, double theta) {
 }
 
 /// The sum of the table over every wall point of `points`, looked up in `map` one by one.
-double sum_of_table(const WallMap& map, const WallMap& points, const SE2& T, const ErrorModel& model) {
+double sum_of_table(const LikelihoodField& map, const LikelihoodField& points, const SE2& T,
+                    const ErrorModel& model) {
   const auto table = evidence_table(model, map.background);
   double sum = 0.0;
   for (const WallPoint& wall : points.walls) {
@@ -61,7 +62,7 @@ TEST(EvidenceTable, IsTheLogOfTheMixtureOverTheBackground) {
 
 TEST(EvidenceTable, ExpectsNothingOfUnrelatedMaps) {
   // Under the background the likelihood ratio has the mean 1: chance is never evidence.
-  const WallMap map = make_wall_map(test::random_grid(5, 60, 50), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::random_grid(5, 60, 50), 0.1);
   for (const ErrorModel& model : error_models()) {
     const auto table = evidence_table(model, map.background);
     double unclear = 0.0;
@@ -104,8 +105,8 @@ TEST(WallEvidence, AWallSeenFromTheOtherSideIsNotTheSameWall) {
     left.at(20, row) = Cell::occupied;
     right.at(20, row) = Cell::occupied;
   }
-  const WallMap left_walls = make_wall_map(left, 0.1);
-  const WallMap right_walls = make_wall_map(right, 0.1);
+  const LikelihoodField left_walls = make_likelihood_field(left, 0.1);
+  const LikelihoodField right_walls = make_likelihood_field(right, 0.1);
   const SE2 T = inverse(left_walls.T_map_grid) * right_walls.T_map_grid;
   const SE2 T_cells{T.x / 0.1, T.y / 0.1, T.theta};
   const double same_side = WallEvidence(left_walls, left_walls, kAll)({}).score;
@@ -122,8 +123,8 @@ TEST(AreaEvidence, SpeaksForAgreementAndAgainstDisagreement) {
 
 RC_GTEST_PROP(WallEvidence, IsTheBestModelsSumOverAllWalls, (unsigned seed)) {
   const auto side = [] { return *rc::gen::inRange(20, 45); };
-  const WallMap fixed = make_wall_map(test::random_grid(seed, side(), side()), 0.1);
-  const WallMap moving = make_wall_map(test::random_grid(seed + 1, side(), side()), 0.1);
+  const LikelihoodField fixed = make_likelihood_field(test::random_grid(seed, side(), side()), 0.1);
+  const LikelihoodField moving = make_likelihood_field(test::random_grid(seed + 1, side(), side()), 0.1);
   const double min_sigma = *rc::gen::inRange(0, 76) / 10.0;  // up to the largest there is
   const SE2 T{*rc::gen::inRange(-30, 30) + 0.31, *rc::gen::inRange(-30, 30) + 0.17,
               *rc::gen::inRange(-314, 314) / 100.0};
@@ -138,8 +139,8 @@ RC_GTEST_PROP(WallEvidence, IsTheBestModelsSumOverAllWalls, (unsigned seed)) {
 }
 
 RC_GTEST_PROP(WallEvidence, IsTheSameFromEitherSide, (unsigned seed)) {
-  const WallMap a = make_wall_map(test::random_grid(seed, 40, 30), 0.1);
-  const WallMap b = make_wall_map(test::random_grid(seed + 1, 25, 35), 0.1);
+  const LikelihoodField a = make_likelihood_field(test::random_grid(seed, 40, 30), 0.1);
+  const LikelihoodField b = make_likelihood_field(test::random_grid(seed + 1, 25, 35), 0.1);
   const SE2 T{3.21, -1.17, *rc::gen::inRange(-314, 314) / 100.0};
   const double forth = WallEvidence(a, b, kAll)(T).score;
   const double back = WallEvidence(b, a, kAll)(inverse(T)).score;
@@ -147,7 +148,7 @@ RC_GTEST_PROP(WallEvidence, IsTheSameFromEitherSide, (unsigned seed)) {
 }
 
 TEST(WallEvidence, IsZeroWhereTheMapsDoNotMeet) {
-  const WallMap map = make_wall_map(test::random_grid(7, 40, 30), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::random_grid(7, 40, 30), 0.1);
   for (const SE2& far : {SE2{1000.0, 0.0, 0.0}, SE2{1e300, 0.0, 0.0}, SE2{0.0, -1e12, 1.0}}) {
     const Evidence found = WallEvidence(map, map, kAll)(far);
     EXPECT_EQ(found.score, 0.0);
@@ -156,7 +157,7 @@ TEST(WallEvidence, IsZeroWhereTheMapsDoNotMeet) {
 }
 
 TEST(WallEvidence, PrefersTheTruePoseAndATightModelForAPerfectCopy) {
-  const WallMap map = make_wall_map(test::random_grid(7, 60, 50), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::random_grid(7, 60, 50), 0.1);
   const WallEvidence evidence(map, map, kAll);
   const Evidence truth = evidence({});
   EXPECT_EQ(truth.model.sigma, error_models().front().sigma);
@@ -167,7 +168,7 @@ TEST(WallEvidence, PrefersTheTruePoseAndATightModelForAPerfectCopy) {
 }
 
 TEST(WallEvidence, MinSigmaLeavesOutTheTightModels) {
-  const WallMap map = make_wall_map(test::random_grid(7, 60, 50), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::random_grid(7, 60, 50), 0.1);
   const WallEvidence evidence(map, map, kAll);
   // A perfect copy is explained best by the tightest model that is left.
   for (const ErrorModel& model : error_models()) {
@@ -179,8 +180,8 @@ TEST(WallEvidence, MinSigmaLeavesOutTheTightModels) {
 }
 
 TEST(WallEvidence, WithOtherPointsIsAsIfMadeWithThem) {
-  const WallMap fixed = make_wall_map(test::random_grid(7, 60, 50), 0.1);
-  const WallMap moving = make_wall_map(test::random_grid(8, 45, 55), 0.1);
+  const LikelihoodField fixed = make_likelihood_field(test::random_grid(7, 60, 50), 0.1);
+  const LikelihoodField moving = make_likelihood_field(test::random_grid(8, 45, 55), 0.1);
   for (const std::size_t made_with : {std::size_t{50}, kAll}) {
     const WallEvidence evidence(fixed, moving, made_with);
     for (const std::size_t points : {std::size_t{20}, std::size_t{150}, kAll}) {
@@ -194,18 +195,19 @@ TEST(WallEvidence, WithOtherPointsIsAsIfMadeWithThem) {
 }
 
 TEST(WallEvidence, AFewPointsStandForAll) {
-  const WallMap map = make_wall_map(test::random_grid(7, 200, 200), 0.1);
+  const LikelihoodField map = make_likelihood_field(test::random_grid(7, 200, 200), 0.1);
   const double all = WallEvidence(map, map, kAll)({}).score;
   EXPECT_NEAR(WallEvidence(map, map, 200)({}).score, all, 0.2 * all);
 }
 
 RC_GTEST_PROP(WallEvidence, SeenWallsAreThoseOfTheWallsOneByOne, (unsigned seed)) {
-  const WallMap fixed = make_wall_map(test::random_grid(seed, 40, 30), 0.1);
-  const WallMap moving = make_wall_map(test::random_grid(seed + 1, 25, 35), 0.1);
+  const LikelihoodField fixed = make_likelihood_field(test::random_grid(seed, 40, 30), 0.1);
+  const LikelihoodField moving = make_likelihood_field(test::random_grid(seed + 1, 25, 35), 0.1);
   const SE2 T{*rc::gen::inRange(-20, 20) + 0.31, *rc::gen::inRange(-20, 20) + 0.17,
               *rc::gen::inRange(-314, 314) / 100.0};
   double seen = 0.0;
-  const auto look_up = [&](const WallMap& map, const WallMap& points, const SE2& T_map_points) {
+  const auto look_up = [&](const LikelihoodField& map, const LikelihoodField& points,
+                           const SE2& T_map_points) {
     for (const WallPoint& wall : points.walls) {
       const Point2 p = T_map_points * wall.position;
       const int x = static_cast<int>(std::floor(p.x)), y = static_cast<int>(std::floor(p.y));

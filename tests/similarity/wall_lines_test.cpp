@@ -28,7 +28,7 @@ OccupancyGrid corner() {
 }
 
 double lines_of(const OccupancyGrid& map) {
-  const WallMap walls = make_wall_map(map, map.resolution);
+  const LikelihoodField walls = make_likelihood_field(map, map.resolution);
   return measure_wall_support(walls, walls, {}).lines;
 }
 
@@ -56,10 +56,10 @@ TEST(WallLines, EveryFurtherPieceOfWallAdds) {
 
 TEST(WallLines, DoNotDependOnThePose) {
   const OccupancyGrid map = corner();
-  const WallMap walls = make_wall_map(map, map.resolution);
+  const LikelihoodField walls = make_likelihood_field(map, map.resolution);
   OccupancyGrid elsewhere = map;
   elsewhere.origin = {4.0, -3.0, 1.0};
-  const WallMap other = make_wall_map(elsewhere, map.resolution);
+  const LikelihoodField other = make_likelihood_field(elsewhere, map.resolution);
   EXPECT_EQ(measure_wall_support(walls, other, {}).lines, measure_wall_support(walls, walls, {}).lines);
 }
 
@@ -70,7 +70,7 @@ TEST(WallSupport, SpreadsAsFarAsItsNarrowSide) {
   }
   draw_wall(corridor, 0, 60, kSide - 1, 60);
   draw_wall(corridor, 0, 99, kSide - 1, 99);
-  const WallMap walls = make_wall_map(corridor, 0.05);
+  const LikelihoodField walls = make_likelihood_field(corridor, 0.05);
   const WallSupport support = measure_wall_support(walls, walls, {});
   EXPECT_NEAR(support.spread, 19.5, 1.5);  // two walls 39 cells apart
   EXPECT_GT(support.met, 250.0);
@@ -78,10 +78,10 @@ TEST(WallSupport, SpreadsAsFarAsItsNarrowSide) {
 }
 
 TEST(WallLines, WallsThatDoNotMeetAreNone) {
-  const WallMap walls = make_wall_map(corner(), 0.05);
+  const LikelihoodField walls = make_likelihood_field(corner(), 0.05);
   EXPECT_EQ(measure_wall_support(walls, walls, {1000.0, 0.0, 0.0}).lines, 0.0);
   EXPECT_EQ(measure_wall_support(walls, walls, {25.0, 25.0, 0.0}).lines, 0.0);
-  const WallMap empty = make_wall_map(make_grid(30, 30, 0.05, {}, Cell::free), 0.05);
+  const LikelihoodField empty = make_likelihood_field(make_grid(30, 30, 0.05, {}, Cell::free), 0.05);
   EXPECT_EQ(measure_wall_support(walls, empty, {}).lines, 0.0);
 }
 

@@ -96,7 +96,7 @@ OccupancyGrid map_part(const OccupancyGrid& building, const Window& window, cons
   OccupancyGrid part = building;
   for (int row = 0; row < part.height; ++row) {
     for (int column = 0; column < part.width; ++column) {
-      const Point2 p = part.cell_center(column, row);
+      const Point2 p = part.cell_centre(column, row);
       const bool seen = p.x > window.left && p.x < window.right && p.y > window.bottom && p.y < window.top;
       if (!seen) part.at(column, row) = Cell::unknown;
     }

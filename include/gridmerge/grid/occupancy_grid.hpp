@@ -45,7 +45,7 @@ struct OccupancyGrid {
   }
 
   /// Centre of a cell in the map frame [m].
-  Point2 cell_center(int column, int row) const {
+  Point2 cell_centre(int column, int row) const {
     return origin * Point2{(column + 0.5) * resolution, (row + 0.5) * resolution};
   }
 };

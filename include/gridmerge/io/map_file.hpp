@@ -46,6 +46,11 @@ enum class MapWarningKind {
   no_occupied_cell,    ///< all known ones are free
   no_free_cell,        ///< all known ones are occupied
   painted_black,       ///< most of the map is occupied, far from any free cell
+  not_a_percentage,    ///< of a message: values below -1 or above 100 are unknown
+  no_rotation,         ///< of a message: its orientation is four zeros, read as no turn
+  no_cells,            ///< of a bag: messages of a map without cells are passed over
+  useless_update,      ///< of a bag: updates that reach beyond their map are passed over
+  cut_off,             ///< of a bag: its file ends within a record
 };
 
 /// What a map's file may not have meant.

@@ -40,7 +40,7 @@ struct PoseFigures {
 
   /// See pose_figures().
   double score = 0.0;
-  double lead = 0.0;
+  double score_margin = 0.0;
   double stands_out = 0.0;
   double wall_score = 0.0;
   double seen_walls = 0.0;
@@ -82,17 +82,22 @@ struct Hypothesis {
   PoseFigures figures = {};  ///< what speaks for it
 };
 
-/// How two maps lie, and whether that is to be believed.
-struct MatchResult {
-  Verdict verdict = Verdict::refused;          ///< on the best hypothesis
-  Reason reason = Reason::nothing_to_compare;  ///< why it was refused
-  SE2 T_fixed_moving;                          ///< the best hypothesis, given for a refused pair too
-  double probability = 0.0;                    ///< that the best hypothesis is the true pose
+/// A pose of a pair, and what its two maps say of it.
+struct PairPose {
+  SE2 T_fixed_moving;             ///< between the map frames
+  double probability = 0.0;       ///< that it is the true pose
   double acceptance_index = 0.0;  ///< agreement / (agreement + disagreement); 0 when nothing overlaps
   std::int64_t agreement = 0;     ///< cells known in both maps and equal
   std::int64_t disagreement = 0;  ///< cells known in both maps and different
   double overlap = 0.0;           ///< share of the smaller map's known cells that are known in both
-  double seconds = 0.0;           ///< wall time from grids in memory to the verdict
+};
+
+/// How two maps lie, and whether that is to be believed: the pose is that of the best hypothesis, given for a
+/// refused pair too.
+struct MatchResult : PairPose {
+  Verdict verdict = Verdict::refused;          ///< on the best hypothesis
+  Reason reason = Reason::nothing_to_compare;  ///< why it was refused
+  double seconds = 0.0;                        ///< wall time from grids in memory to the verdict
   /// Distinct, most probable first; empty only when a map has nothing to go by.
   std::vector<Hypothesis> hypotheses;
 };

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
 #include <memory>
-#include <mutex>
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
@@ -11,7 +9,7 @@
 namespace gridmerge {
 
 namespace internal {
-struct WallMap;
+class DrawnWalls;
 }
 
 /// A map with all that matches of it have in common, so that it is worked out once and not for every other
@@ -25,15 +23,12 @@ class GRIDMERGE_EXPORT PreparedMap {
   const OccupancyGrid& known() const { return known_; }  ///< cropped to its known cells
   const CellCounts& counts() const { return counts_; }   ///< of known()
 
-  /// For the engine: the map as it compares it, in cells of `cell` metres; drawn when first asked for.
-  /// O(cells) then.
-  const internal::WallMap& walls(double cell) const;
-
  private:
+  friend class internal::DrawnWalls;
+
   OccupancyGrid known_;
   CellCounts counts_;
-  mutable std::mutex drawing_;
-  mutable std::map<double, std::unique_ptr<const internal::WallMap>> walls_;  // by cell
+  std::unique_ptr<internal::DrawnWalls> drawn_;
 };
 
 /// Orders maps by what they hold, not by where they come from: by their known area, and what differs between

@@ -29,8 +29,8 @@ struct RandomWalkMatchOptions {
   std::int64_t least_common_cells = 400;
   std::size_t max_hypotheses = 10;  ///< how many distinct hypotheses the result lists
   int threads = 0;                  ///< worker threads; 0 = one a core. The result does not depend on it.
-  /// Called now and then with the number of finished walks and of all; never from two threads at once.
-  std::function<void(int, int)> progress;
+  /// Called now and then with the share of the walks that are finished; never from two threads at once.
+  std::function<void(double)> progress;
   /// Called at the end for every walk, in order, with its number from 0 and its c_lock.
   std::function<void(int, double, const RandomWalkResult&)> on_walk;
 };

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-
 #include "gridmerge/export.hpp"
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/match.hpp"
@@ -10,17 +8,11 @@
 
 namespace gridmerge {
 
-/// A pose that somebody proposed, put right, with the figures that MatchResult has of its best hypothesis.
-struct RefinedPose {
-  SE2 T_fixed_moving;             ///< between the map frames
-  double score = 0.0;             ///< log-likelihood ratio "same place" against "unrelated" [nats]
-  double start_score = 0.0;       ///< the same of the pose that was proposed
-  double moved = 0.0;             ///< root mean square displacement of the moving map's walls from there [m]
-  double probability = 0.0;       ///< that the refined pose is the true one
-  double acceptance_index = 0.0;  ///< agreement / (agreement + disagreement); 0 when nothing overlaps
-  std::int64_t agreement = 0;     ///< cells known in both maps and equal
-  std::int64_t disagreement = 0;  ///< cells known in both maps and different
-  double overlap = 0.0;           ///< share of the smaller map's known cells that are known in both
+/// A pose that somebody proposed, put right.
+struct RefinedPose : PairPose {
+  double score = 0.0;        ///< log-likelihood ratio "same place" against "unrelated" [nats]
+  double start_score = 0.0;  ///< the same of the pose that was proposed
+  double moved = 0.0;        ///< root mean square displacement of the moving map's walls from there [m]
 };
 
 /// Climbs from `T_start` to the local maximum of the evidence near it: the best one that is reached from

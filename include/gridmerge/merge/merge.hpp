@@ -20,7 +20,7 @@ struct MergeOptions {
   /// not used.
   MatchOptions match;
   /// So many joins of the whole merge may be expected to be false, beside what `match.accept_probability`
-  /// asks of each: the least sure ones are not made (see arrange_within()).
+  /// asks of each: the least sure ones are not made (see find_consistent_set_within()).
   double max_false_joins = 0.05;
   double resolution = 0.0;  ///< of the merged maps [m]; 0 = the finest among a map's inputs
   /// Whether maps are bent so that walls that are one come to lie on each other: for maps that drift has
@@ -33,11 +33,12 @@ struct MergeOptions {
 
 /// Merges `maps` by what all pairs of them say together.
 ///
-/// Every pair is matched, and all hypotheses are kept. The arrangement of all maps that they speak for most
-/// is chosen (see arrange_within()): a weak pair that agrees with the others is used, a strong one that
-/// contradicts them is not. Then all poses are adjusted together, to what the pairs and the maps' walls say
-/// (robust least squares), and the maps of each component are fused in one pass. Maps that nothing joins
-/// surely enough are left out; groups between which nothing is sure are components of their own.
+/// Every pair is matched, and all hypotheses are kept. The consistent set of all maps that they speak for
+/// most is chosen (see find_consistent_set_within()): a weak pair that agrees with the others is used, a
+/// strong one that contradicts them is not. Then all poses are adjusted together, to what the pairs and the
+/// maps' walls say (robust least squares), and the maps of each component are fused in one pass. Maps that
+/// nothing joins surely enough are left out; groups between which nothing is sure are components of their
+/// own.
 ///
 /// `known_poses[i]`, where there is one, is what is known of map i beforehand; it may be shorter than `maps`.
 /// Known poses of two maps that are not fixed speak for joining them so: the maps' own hypothesis there

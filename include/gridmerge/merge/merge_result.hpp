@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -26,18 +25,14 @@ enum class JoinOutcome {
 /// As outputs spell it: "refused", "accepted", "rescued", "rejected", "known".
 GRIDMERGE_EXPORT const char* name_of(JoinOutcome outcome);
 
-/// A comparison of two maps, or up the tree of two groups of maps: then said of the first map of each.
-struct Join {
+/// A comparison of two maps, or up the tree of two groups of maps: then said of the first map of each. Its
+/// pose is the one that was used, or the best hypothesis of a join that was not; the probability is that from
+/// these two maps alone.
+struct Join : PairPose {
   std::size_t fixed = 0;   ///< index of the input map
   std::size_t moving = 0;  ///< index of the input map
   MatchResult match;       ///< what the two say by themselves, between the frames of these two input maps
   JoinOutcome outcome = JoinOutcome::refused;  ///< what became of it
-  SE2 T_fixed_moving;             ///< the pose that was used, or the best hypothesis of a join that was not
-  double probability = 0.0;       ///< of that pose, from these two maps alone
-  double acceptance_index = 0.0;  ///< of that pose, as MatchResult has it of the best hypothesis
-  std::int64_t agreement = 0;     ///< likewise
-  std::int64_t disagreement = 0;  ///< likewise
-  double overlap = 0.0;           ///< likewise
 
   /// Whether the maps lie so in the result.
   bool used() const { return outcome != JoinOutcome::refused && outcome != JoinOutcome::rejected; }
@@ -92,21 +87,41 @@ struct OpenWay {
   std::size_t fixed = 0;     ///< the first map of its component, or one that was left out
   std::size_t moving = 0;    ///< likewise, apart from `fixed` and after it
   SE2 T_fixed_moving;        ///< between the frames of these two maps
-  double probability = 0.0;  ///< with all that the other maps say, kLeastOpenProbability or more
+  double probability = 0.0;  ///< with all that the other maps say, kMinOpenProbability or more
 };
 
 /// Ways that are less probable are not told.
-inline constexpr double kLeastOpenProbability = 0.1;
+inline constexpr double kMinOpenProbability = 0.1;
+
+/// A map that joined nothing.
+struct LeftOut {
+  std::size_t map = 0;                         ///< index of the input map
+  Reason reason = Reason::nothing_to_compare;  ///< why it joined nothing
+
+  /// Whether the map and the reason are the same.
+  friend bool operator==(const LeftOut&, const LeftOut&) = default;
+};
+
+/// How many comparisons were refused for a reason.
+struct RefusedCount {
+  Reason reason = Reason::nothing_to_compare;  ///< why the two maps are not said to lie together
+  std::size_t count = 0;                       ///< of comparisons
+
+  /// Whether reason and count are the same.
+  friend bool operator==(const RefusedCount&, const RefusedCount&) = default;
+};
 
 /// What a merge made of its maps.
 struct MergeResult {
-  std::vector<Component> components;     ///< of two or more maps each, most members first
-  std::vector<Join> joins;               ///< every comparison made, whatever its outcome
-  std::vector<std::size_t> left_out;     ///< maps that joined nothing, ascending
-  std::vector<Reason> left_out_reasons;  ///< why, one for each that was left out
-  std::vector<OpenWay> open_ways;        ///< most probable first. The tree knows none
+  std::vector<Component> components;  ///< of two or more maps each, most members first
+  std::vector<Join> joins;            ///< every comparison made, whatever its outcome
+  std::vector<LeftOut> left_out;      ///< ascending by map
+  std::vector<OpenWay> open_ways;     ///< most probable first. The tree knows none
   /// How many joins are expected to be false, of all that were made. The tree does not know.
   std::optional<double> expected_false_joins = {};
+  /// Refused comparisons beside `joins`, by reason. A merge has none. A saved merge of many maps keeps no
+  /// more than this of most of them.
+  std::vector<RefusedCount> refused_more = {};
 };
 
 }  // namespace gridmerge

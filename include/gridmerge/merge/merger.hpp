@@ -4,12 +4,20 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/merge/merge.hpp"
 
 namespace gridmerge {
+
+/// A match of two maps that a merge needs.
+struct DueMatch {
+  std::size_t fixed = 0;                           ///< as Merger::add() called it
+  std::size_t moving = 0;                          ///< likewise
+  SearchMethod search = SearchMethod::exhaustive;  ///< how it is to be made
+};
 
 /// merge() for maps that come one after the other, or grow: pairs that have not changed are not matched
 /// again. The result is the same as that of merge() with all the maps that are in it, in the order in which
@@ -52,6 +60,35 @@ class GRIDMERGE_EXPORT Merger {
   /// The maps that are in it, in the order in which they were added: MergeResult speaks of them by their
   /// place in this list.
   std::vector<MapId> maps() const;
+
+  /// The matches that solve() would make next, the most worthwhile first, for who makes them elsewhere: on
+  /// other machines, say. They come in rounds, because pairs are looked at quickly first, and thoroughly
+  /// where that leaves their maps apart:
+  ///
+  ///     for (auto due = merger.due(); !due.empty(); due = merger.due())
+  ///       for (const DueMatch& one : due)
+  ///         merger.hand_in(one, match(map[one.fixed], map[one.moving], merger.match_options(one.search)));
+  ///     merger.solve();  // finds no pair left to be matched
+  ///
+  /// Of a second round the first look's joint solution is worked out, and kept for solve(). What maps that
+  /// lie alone say to merged groups is matched by solve() itself.
+  std::vector<DueMatch> due();
+
+  /// Makes a match that is due, of the maps as they are, and hands nothing in: for who makes some of them
+  /// here. Runs in the calling TBB arena, as match() of prepared maps; may be called by several threads at
+  /// once. Throws std::out_of_range for an unknown id.
+  MatchResult make(const DueMatch& due) const;
+
+  /// Takes a match that was made elsewhere, as if solve() had made it: of the two maps as they were added
+  /// last, with match_options(). Also serves for a match that is not due any more. Throws std::out_of_range
+  /// for an unknown id, and std::invalid_argument for two equal ids or a search that no look takes.
+  void hand_in(const DueMatch& made, MatchResult match);
+
+  /// The matches that are made and still hold, for who wants to go on elsewhere: hand_in() takes them.
+  std::vector<std::pair<DueMatch, MatchResult>> matches() const;
+
+  /// How a match is made; without a progress callback.
+  MatchOptions match_options(SearchMethod search) const;
 
   /// Matches the pairs that are new or have changed, and merges: seconds to minutes for many maps. When it is
   /// cancelled (with_cancellation()) the matches made by then are kept, and the next call goes on with them.

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/merge/merge.hpp"
@@ -77,6 +78,10 @@ class GRIDMERGE_EXPORT Team {
 
   /// The newest, never null.
   std::shared_ptr<const TeamAnswer> answer() const;
+
+  /// What has changed since this was called last, oldest first: the events of every answer, those too that
+  /// nobody asked for. Of more than 1000 the newest are kept. For whoever has no callback.
+  std::vector<TeamEvent> take_events();
 
   /// Waits until all that was heard is settled, or for so long; says whether it is.
   bool wait_until_settled(std::chrono::milliseconds longest) const;

@@ -8,7 +8,7 @@
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/io/file_error.hpp"
-#include "gridmerge/merge/merge_result.hpp"
+#include "gridmerge/report/named_merge.hpp"
 
 namespace gridmerge {
 
@@ -33,8 +33,7 @@ GRIDMERGE_EXPORT std::optional<double> check_merged_size(const std::vector<std::
 
 /// Writes what a merge gives to `directory`, which is made if need be, with its parents: `merged.yaml` with
 /// `merged.pgm` for the first component, `merged_2.yaml` and so on for further ones, `preview.png`,
-/// `report.html` and `transforms.json`. `inputs` as in prepare_merge_output(), which is called first;
-/// `names[i]` is what to call map i in them.
+/// `report.html` and `transforms.json`. `inputs` as in prepare_merge_output(), which is called first.
 ///
 /// Every other `merged.yaml`, `merged_<number>.yaml` and `.pgm` in the directory is removed, so that no map
 /// of an earlier run looks like one of this run; without a component there is no `merged.yaml`. At every
@@ -44,14 +43,11 @@ GRIDMERGE_EXPORT std::optional<double> check_merged_size(const std::vector<std::
 /// is not made.
 GRIDMERGE_EXPORT void write_merge_output(const std::filesystem::path& directory,
                                          const std::vector<std::filesystem::path>& inputs,
-                                         const std::vector<std::string>& names,
-                                         const std::vector<OccupancyGrid>& maps, const MergeResult& result);
+                                         const NamedMerge& merge);
 
 /// Writes `report.html` alone to `directory`, which is there. Arguments as of write_merge_output(). Throws
 /// FileError, also when one of the inputs would be replaced.
 GRIDMERGE_EXPORT void write_report(const std::filesystem::path& directory,
-                                   const std::vector<std::filesystem::path>& inputs,
-                                   const std::vector<std::string>& names,
-                                   const std::vector<OccupancyGrid>& maps, const MergeResult& result);
+                                   const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge);
 
 }  // namespace gridmerge

@@ -4,10 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "gridmerge/export.hpp"
-#include "gridmerge/merge/merge_result.hpp"
+#include "gridmerge/report/named_merge.hpp"
 
 namespace gridmerge {
 
@@ -38,11 +37,8 @@ GRIDMERGE_EXPORT Colour map_colour(std::size_t map);
 /// A PNG that shows a merge: each component with its maps in their own colours, what they share and where
 /// they disagree, a scale bar in metres, and the colours' meaning; below, the maps that were left out, each
 /// by itself in its own frame. Small maps are magnified, large ones drawn at a coarser resolution: the
-/// picture is at most 2400 pixels wide, and no map in it higher. `names[i]` is what to call map i, in UTF-8;
-/// folders that all of them lie in are not shown. `maps` and
-/// `result` as given to and returned by merge(). Throws std::out_of_range when there are fewer names than
-/// maps.
-GRIDMERGE_EXPORT std::string preview_png(const std::vector<std::string>& names,
-                                         const std::vector<OccupancyGrid>& maps, const MergeResult& result);
+/// picture is at most 2400 pixels wide, and no map in it higher. Names are UTF-8; folders that all of them
+/// lie in are not shown.
+GRIDMERGE_EXPORT std::string preview_png(const NamedMerge& merge);
 
 }  // namespace gridmerge

@@ -16,7 +16,7 @@
 namespace gridmerge {
 
 /// A scanning laser range finder.
-struct GRIDMERGE_EXPORT RangeFinder {
+struct RangeFinder {
   double field_of_view = 4.71238898038469;    ///< [rad], about the heading: 270 degrees
   double angular_step = 0.00872664625997165;  ///< between two beams [rad]: half a degree
   double range = 8.0;                         ///< [m]: what is farther gives no echo
@@ -24,10 +24,10 @@ struct GRIDMERGE_EXPORT RangeFinder {
   double noise = 0.02;                        ///< standard deviation of a range [m]
   double stray_share = 0.002;  ///< beams that end before what they should meet: dust, edges, people
   double missed_share = 0.02;  ///< beams that come back with nothing
-
-  /// Throws std::invalid_argument, saying what is wrong, for a range finder that cannot be.
-  void validate() const;
 };
+
+/// Throws std::invalid_argument, saying what is wrong, for a range finder that cannot be.
+GRIDMERGE_EXPORT void validate(const RangeFinder& sensor);
 
 /// What maps are wanted. Metres and radians.
 struct SimulateOptions {
@@ -82,7 +82,7 @@ struct SimulatedMap {
 };
 
 /// An estimate is never asked to be nearer to the truth than this [m].
-inline constexpr double kLeastTolerance = 0.5;
+inline constexpr double kMinTolerance = 0.5;
 
 /// Two maps that share a place.
 struct SimulatedPair {
@@ -92,9 +92,12 @@ struct SimulatedPair {
   SE2 T_fixed_moving;
   /// Largest rms_displacement() of a correct estimate [m]: half a metre, or more where the maps' bending
   /// leaves the true transform that uncertain.
-  double tolerance = kLeastTolerance;
+  double tolerance = kMinTolerance;
   double overlap = 0.0;  ///< share of the smaller map's area that both have drawn
-  /// 'A': 400 cells of shared wall (of 0.05 m), 80 % of them matching; 'B': 150 and 60 %; 'C': less.
+  /// Walls of the moving map where the fixed one knows something [m]: occupied cells times their side, so a
+  /// wall that is drawn two cells wide counts twice.
+  double shared_wall = 0.0;
+  /// 'A': 20 m of shared wall, 80 % of it matching; 'B': 7.5 m and 60 %; 'C': less.
   char tier = 'C';
 };
 

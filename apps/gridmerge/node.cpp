@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "gridmerge/dds/ros_node.hpp"
+#include "gridmerge/io/file_error.hpp"
+#include "interrupt.hpp"
+#include "node_options.hpp"
+
+namespace gridmerge::cli {
+
+namespace {
+
+/// Stops the node at the first signal, for as long as this lives.
+class StopAtSignal {
+ public:
+  StopAtSignal(const Interrupt& signal, RosNode& node)
+      : signal_(signal), waiter_([&signal, &node] {
+          signal.wait();
+          node.stop();
+        }) {}
+  ~StopAtSignal() {
+    signal_.raise();
+    waiter_.join();
+  }
+  StopAtSignal(const StopAtSignal&) = delete;
+  StopAtSignal& operator=(const StopAtSignal&) = delete;
+
+ private:
+  const Interrupt& signal_;
+  std::thread waiter_;
+};
+
+int run_node(const NodeCommandOptions& options) {
+  Console console(options.common);
+  RosNodeOptions node_options = to_node_options(options);
+  node_options.known_poses = known_robot_poses(options, console);
+  try {
+    validate(node_options);
+  } catch (const std::invalid_argument& error) {  // the rest was looked at before
+    throw FileError(options.init, error.what());
+  }
+  node_options.played = played_topics(options, node_options, console);
+  node_options.tell = [&](const std::string& line) {
+    if (!options.common.quiet) print(escape_controls(line) + "\n");
+  };
+  node_options.detail = [&](const std::string& line) { console.remark(escape_controls(line)); };
+  node_options.warn = [&](const std::string& line) { console.warn(escape_controls(line)); };
+  const Interrupt signal;  // one that comes while the node starts is not lost
+  RosNode node(std::move(node_options));
+  RosNode::End end = RosNode::End::stopped;
+  {
+    const StopAtSignal stop(signal, node);
+    end = node.run();
+  }
+  if (end == RosNode::End::stopped) return kDone;
+  print(node.describe());
+  return end == RosNode::End::merged ? kDone : kRefused;
+}
+
+}  // namespace
+
+void add_node(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("node", "Merge maps live: a node of ROS 2, without ROS installed");
+  const auto options = std::make_shared<NodeCommandOptions>();
+  add_node_options(*command, *options);
+  command->footer(
+      "Hears nav_msgs/msg/OccupancyGrid of every robot, and map_msgs/msg/OccupancyGridUpdate on the same\n"
+      "topic with _updates. Publishes the merged map, transforms and /diagnostics until Ctrl-C\n"
+      "(docs/node.md). ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_LOCALHOST_ONLY\n"
+      "and CYCLONEDDS_URI count as for any node.\n\n"
+      "Example:\n  gridmerge node\n"
+      "  gridmerge node --pattern '/fleet/*/map' --fix tb1 --world site\n"
+      "  gridmerge node --robot left=/tb1/map --robot right=/tb2/map --once --wait 30\n"
+      "  gridmerge node --bag tb1.mcap --bag tb2.mcap --rate 10");
+  command->callback([options, &action] {
+    to_node_options(*options);  // what cannot be is wrong usage
+    action = [options] { return run_node(*options); };
+  });
+}
+
+}  // namespace gridmerge::cli

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "node_options.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "gridmerge/bag/bag.hpp"
+#include "gridmerge/io/file_error.hpp"
+#include "gridmerge/io/initial_poses.hpp"
+
+namespace gridmerge::cli {
+
+namespace {
+
+constexpr const char* kUsualPattern = "/*/map";
+
+const CLI::Validator kNamedTopic(
+    [](std::string& text) {
+      const std::size_t at = text.find('=');
+      const bool is_named = at != std::string::npos && at > 0 && at + 1 < text.size();
+      return is_named ? std::string() : "'" + text + "' is not NAME=TOPIC, as tb1=/tb1/map";
+    },
+    "");
+
+const CLI::Validator kPositiveRate(
+    [](std::string& text) {
+      double rate = 0.0;
+      const bool is_one = CLI::detail::lexical_cast(text, rate) && rate > 0.0 && std::isfinite(rate);
+      return is_one ? std::string() : "'" + text + "' is not a number above 0";
+    },
+    "");
+
+/// "/NAME/map" of "folder/NAME.mcap"; what topics of ROS cannot have becomes '_'.
+std::string topic_of_file(const std::filesystem::path& bag) {
+  const bool has_slash = !bag.has_filename();  // a folder, written with a slash behind it
+  std::string name = (has_slash ? bag.parent_path() : bag).stem().string();
+  for (char& c : name) {
+    const bool is_fine = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!is_fine) c = '_';
+  }
+  if (name.empty() || (name.front() >= '0' && name.front() <= '9')) name.insert(0, "_");
+  return "/" + name + "/map";
+}
+
+/// The topic on which the maps of a bag's topic are played; none if they are no robot's.
+std::optional<std::string> played_on(const RosNodeOptions& node, const std::string& bag,
+                                     const std::string& topic) {
+  if (is_heard(node, topic)) return topic;
+  if (topic != "/map") return std::nullopt;
+  const std::string own = topic_of_file(bag);
+  return is_heard(node, own) ? std::optional(own) : std::nullopt;
+}
+
+/// The maps of a bag's topic, one after the other. Those that cannot be read are told of and passed over.
+std::function<std::optional<PlayedMap>()> maps_of(const Bag& bag, const std::string& topic,
+                                                  Console& console) {
+  const auto maps = std::make_shared<BagMaps>(bag, topic);
+  return [maps, &console, first = std::optional<std::int64_t>()]() mutable -> std::optional<PlayedMap> {
+    for (;;) {
+      try {
+        std::optional<BagMap> map = maps->next();
+        if (!map) return std::nullopt;
+        if (!first) first = map->time;
+        constexpr double kNanosecond = 1e-9;
+        return PlayedMap{static_cast<double>(map->time - *first) * kNanosecond, std::move(map->frame_id),
+                         std::move(map->grid)};
+      } catch (const FileError& error) {
+        console.warn(error.what());
+      }
+    }
+  };
+}
+
+const std::map<std::string, TransformTopic>& transform_topics() {
+  static const std::map<std::string, TransformTopic> topics{
+      {"static", TransformTopic::tf_static}, {"dynamic", TransformTopic::tf}, {"none", TransformTopic::none}};
+  return topics;
+}
+
+}  // namespace
+
+void add_node_options(CLI::App& command, NodeCommandOptions& options) {
+  RosNodeOptions& node = options.node;
+  command
+      .add_option(
+          "--pattern", options.patterns,
+          fmt::format("Topics of maps: '*' stands for any characters between two slashes, a level '**' for "
+                      "any levels. {} if neither this nor --robot is given; repeat it for others",
+                      kUsualPattern))
+      ->type_name("PATTERN")
+      ->allow_extra_args(false);
+  command
+      .add_option(
+          "--robot", options.robots,
+          "A robot's name and the topic of its map; repeat it for others. Robots found by a pattern are "
+          "named after their topic's namespace")
+      ->type_name("NAME=TOPIC")
+      ->allow_extra_args(false)
+      ->check(kNamedTopic);
+  command
+      .add_option(
+          "--init", options.init,
+          "Poses that you know, of some or all robots' map frames: a table (TSV) with the columns map x y "
+          "theta, where map is the robot's name, as of 'gridmerge merge'")
+      ->type_name("FILE");
+  command
+      .add_option(
+          "--fix", options.fix,
+          "Keep this robot's map where it is. The merged map takes its frame, or that of --init, if given. "
+          "Repeat it for others. Each of several needs a pose in --init")
+      ->option_text("ROBOT")
+      ->allow_extra_args(false);
+  command
+      .add_option("--world", node.world_frame,
+                  "The frame of the merged map; further merged maps have it with _2, _3, ...")
+      ->type_name("FRAME")
+      ->capture_default_str();
+  command
+      .add_option("--output", node.output, "Topic of the merged map; further ones have it with _2, _3, ...")
+      ->type_name("TOPIC")
+      ->capture_default_str();
+  command.add_option("--name", node.name, "The node's name, as ROS's tools show it")
+      ->type_name("NODE")
+      ->capture_default_str();
+  command
+      .add_option(
+          "--tf", options.transforms,
+          "Transforms from the world to the robots' map frames: static on /tf_static when they change, "
+          "dynamic on /tf ten times a second, or none")
+      ->type_name("WHERE")
+      ->check(CLI::IsMember(transform_topics()).description(""))
+      ->capture_default_str();
+  command
+      .add_option("--accept", options.search.accept,
+                  fmt::format("Probability from which on two maps are joined; {} if not given",
+                              MatchOptions{}.accept_probability))
+      ->type_name("P")
+      ->check(kProbability);
+  command
+      .add_option(
+          "--max-false-joins", node.team.merge.max_false_joins,
+          "How many joins of the whole team may be expected to be false; those that are least sure are not "
+          "made")
+      ->type_name("NUMBER")
+      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->capture_default_str();
+  command
+      .add_option("--output-resolution", node.team.merge.resolution,
+                  "Metres per cell of the merged map; if not given, those of the finest map")
+      ->type_name("METRES")
+      ->check(kMetresPerCell);
+  CLI::Option* bag =
+      command
+          .add_option(
+              "--bag", options.bags,
+              "A recording of ROS 2 (.mcap, .db3 or a rosbag2 folder) whose maps are published as the robot "
+              "did, and merged; repeat it for others. /map of FILE.mcap becomes /FILE/map. All begin at once")
+          ->type_name("BAG")
+          ->allow_extra_args(false);
+  command.add_option("--rate", node.play_rate, "Seconds of the recordings per second, with --bag")
+      ->type_name("NUMBER")
+      ->check(kPositiveRate)
+      ->needs(bag)
+      ->capture_default_str();
+  command.add_flag(
+      "--once", node.once,
+      "End when the maps of all robots that are there are merged; the exit code is that of 'merge'");
+  command
+      .add_option(
+          "--wait", node.wait,
+          "End with an error if no map has come within this time; for ever if not given, 10 with --once, "
+          "which waits so long for further robots too")
+      ->type_name("SECONDS")
+      ->check(kNotNegative);
+  add_common_options(command, options.common);
+}
+
+RosNodeOptions to_node_options(const NodeCommandOptions& options) {
+  RosNodeOptions node = options.node;
+  node.patterns = options.patterns;
+  if (options.patterns.empty() && options.robots.empty()) node.patterns = {kUsualPattern};
+  for (const std::string& robot : options.robots) {
+    const std::size_t at = robot.find('=');
+    if (!node.robots.emplace(robot.substr(0, at), robot.substr(at + 1)).second)
+      throw CLI::ValidationError("--robot", "names the robot " + robot.substr(0, at) + " twice");
+  }
+  for (const std::string& robot : options.fix) node.known_poses[robot].fixed = true;
+  node.transforms = transform_topics().at(options.transforms);
+  node.team.merge.match = match_options(options.common, options.search);
+  try {
+    validate(node);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError(error.what());
+  }
+  return node;
+}
+
+std::vector<PlayedTopic> played_topics(const NodeCommandOptions& options, const RosNodeOptions& node,
+                                       Console& console) {
+  std::vector<PlayedTopic> played;
+  for (const std::string& file : options.bags) {
+    const Bag bag(file);
+    std::vector<std::string> others;
+    const std::size_t before = played.size();
+    for (const BagTopic& topic : bag.map_topics()) {
+      const std::optional<std::string> on = played_on(node, file, topic.name);
+      if (on) {
+        played.push_back({*on, file + "#" + topic.name, maps_of(bag, topic.name, console)});
+      } else {
+        others.push_back(topic.name);
+      }
+    }
+    const std::string list = fmt::format("{}", fmt::join(others, ", "));
+    if (played.size() == before)
+      throw FileError(file, others.empty() ? "has no topic of maps (nav_msgs/msg/OccupancyGrid)"
+                                           : fmt::format("has maps on {} only; --pattern says which topics "
+                                                         "are maps of robots",
+                                                         list));
+    if (!others.empty()) console.remark(fmt::format("{}: not played: {}", file, list));
+  }
+  return played;
+}
+
+std::map<std::string, KnownPose> known_robot_poses(const NodeCommandOptions& options, Console& console) {
+  std::map<std::string, KnownPose> known;
+  if (!options.init.empty()) {
+    for (const InitialPose& pose : read_initial_poses(options.init)) {
+      known[pose.name] = KnownPose{pose.T_world_map, pose.sd, pose.sd_theta, false};
+      if (std::abs(pose.theta_as_written) > 2.0 * std::numbers::pi)
+        console.warn(fmt::format("{}: theta of {} is {}, more than a turn: it must be in radians",
+                                 options.init, pose.name, pose.theta_as_written));
+    }
+  }
+  // A single robot holds its own frame; how several lie to each other has to be said.
+  const bool needs_poses = options.fix.size() > 1 || !options.init.empty();
+  for (const std::string& robot : options.fix) {
+    if (needs_poses && !known.contains(robot))
+      throw std::runtime_error(
+          fmt::format("--fix {}: needs a pose in a table that --init names", escape_controls(robot)));
+    known[robot].fixed = true;
+  }
+  return known;
+}
+
+}  // namespace gridmerge::cli

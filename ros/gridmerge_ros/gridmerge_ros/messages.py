@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Maps and updates out of messages that nobody vouches for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from gridmerge import OccupancyGrid
+
+MOST_CELLS = 2**28
+"""Of one map."""
+
+_LONGEST_FRAME = 256
+
+Stamp: TypeAlias = tuple[int, int]
+"""Seconds and nanoseconds of a header."""
+
+
+class RefusedMessage(ValueError):
+    """A message that is no map, and why."""
+
+
+@dataclass(frozen=True, slots=True)
+class HeardMap:
+    """What a `nav_msgs/OccupancyGrid` says."""
+
+    stamp: Stamp
+    frame: str
+    grid: OccupancyGrid
+
+
+@dataclass(frozen=True, slots=True)
+class HeardPart:
+    """What a `map_msgs/OccupancyGridUpdate` says."""
+
+    stamp: Stamp
+    frame: str
+    column: int
+    row: int
+    grid: OccupancyGrid
+    """Of the part's cells; its resolution and origin say nothing."""
+
+
+def read_map(message: Any) -> HeardMap:
+    """Raises RefusedMessage. Sizes are looked at before cells are. O(cells)."""
+    stamp, frame = _read_header(message.header)
+    info = message.info
+    _check_size(info.width, info.height, len(message.data))
+    # Messages have it with 32 bits: the number that was meant is the shortest that gives these bits.
+    info.resolution = float(str(np.float32(info.resolution)))
+    try:
+        return HeardMap(stamp, frame, OccupancyGrid.from_msg(message))
+    except (TypeError, ValueError) as error:
+        raise RefusedMessage(str(error)) from None
+
+
+def read_update(message: Any) -> HeardPart:
+    """Raises RefusedMessage. O(cells)."""
+    stamp, frame = _read_header(message.header)
+    _check_size(message.width, message.height, len(message.data))
+    if message.x < 0 or message.y < 0:
+        raise RefusedMessage(f"an update at ({message.x}, {message.y})")
+    try:
+        values = np.asarray(message.data, dtype=np.int8).reshape(message.height, message.width)
+        grid = OccupancyGrid(values, 1.0)
+    except (TypeError, ValueError) as error:
+        raise RefusedMessage(str(error)) from None
+    return HeardPart(stamp, frame, message.x, message.y, grid)
+
+
+def read_frame(frame: str) -> str:
+    """A frame's name without a first slash. Raises RefusedMessage."""
+    name = frame.removeprefix("/")
+    if not name:
+        raise RefusedMessage("header.frame_id: is empty")
+    if len(name) > _LONGEST_FRAME:
+        raise RefusedMessage(f"header.frame_id: has {len(name)} characters")
+    if not all("!" <= character <= "~" for character in name):
+        raise RefusedMessage("header.frame_id: has other than printable ASCII characters")
+    return name
+
+
+def _read_header(header: Any) -> tuple[Stamp, str]:
+    return (header.stamp.sec, header.stamp.nanosec), read_frame(header.frame_id)
+
+
+def _check_size(width: int, height: int, values: int) -> None:
+    if width == 0 or height == 0:
+        raise RefusedMessage(f"a size of {width} x {height} cells")
+    if width * height > MOST_CELLS:
+        raise RefusedMessage(f"{width} x {height} cells are above 2^28")
+    if values != width * height:
+        raise RefusedMessage(f"{values} values for {width} x {height} cells")

@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What was heard of each robot, and what of it reaches the team."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from gridmerge import InitialPose, Team
+
+from gridmerge_ros.messages import RefusedMessage, Stamp, read_map, read_update
+
+MOST_CELLS_TOGETHER = 2**30
+"""Of the newest maps of all robots."""
+
+Publisher = tuple[int, ...]
+"""The number that DDS gives it."""
+
+
+@dataclass(frozen=True, slots=True)
+class KnownPose:
+    """What the parameters say of where a robot's map lies."""
+
+    x: float
+    y: float
+    theta: float
+    fixed: bool
+    sd: float
+    sd_theta: float
+
+
+@dataclass(slots=True)
+class HeardRobot:
+    """A robot, and what came of it."""
+
+    name: str
+    topic: str
+    frame: str = ""
+    """Of its newest map; empty before that."""
+    stamp: Stamp = (0, 0)
+    maps: int = 0
+    parts: int = 0
+    publishers: int = 0
+    refused: int = 0
+    last_refusal: str = ""
+    pose: str = ""
+    """What became of the pose that the parameters give for it; empty where they give none."""
+    cells: int = field(default=0, repr=False)
+    followed: Publisher | None = field(default=None, repr=False)
+
+
+class Robots:
+    """Hands the maps of robots to a team, and keeps count of what comes of each robot.
+
+    Args:
+        team: what merges.
+        most: a robot beyond that many is not heard.
+        tell, warn: are given a line for people on what happened, and on what should not have.
+    """
+
+    def __init__(
+        self, team: Team, most: int, tell: Callable[[str], None], warn: Callable[[str], None]
+    ) -> None:
+        self._team = team
+        self._most = most
+        self._tell = tell
+        self._warn = warn
+        self._robots: dict[str, HeardRobot] = {}
+        self._poses: dict[str, KnownPose] = {}
+        self.over_limit: set[str] = set()
+        """Topics that are not heard since there are too many robots."""
+        self.undecodable = 0
+        """Messages of all robots that were none."""
+
+    @property
+    def all(self) -> Mapping[str, HeardRobot]:
+        """By name."""
+        return dict(sorted(self._robots.items()))
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._robots
+
+    def add(self, name: str, topic: str, pose: KnownPose | str | None = None) -> bool:
+        """A robot that is new. False, and nothing changes, where there are too many.
+
+        `pose`: what the parameters say of it, or why what they say cannot be.
+        """
+        if len(self._robots) >= self._most:
+            if not self.over_limit:
+                self._warn(f"{topic} and perhaps others are not heard: there are {self._most} robots")
+            self.over_limit.add(topic)
+            return False
+        robot = self._robots[name] = HeardRobot(name, topic)
+        if isinstance(pose, str):
+            robot.pose = pose
+            self._warn(f"{name}: {pose}")
+        elif pose is not None:
+            self._set_pose(robot, pose)
+        return True
+
+    def set_publishers(self, name: str, publishers: Collection[Publisher]) -> None:
+        """Who publishes the robot's map now."""
+        robot = self._robots[name]
+        if robot.publishers > 0 and not publishers:
+            self._tell(f"{name}: its publisher is gone; its map is kept")
+        if robot.publishers <= 1 < len(publishers):
+            self._warn(f"{robot.topic}: has {len(publishers)} publishers; all are taken for one robot")
+        robot.publishers = len(publishers)
+
+    def hear_map(self, name: str, message: Any, publishers: Collection[Publisher]) -> None:
+        """A map, and who publishes such now. Does not raise for what the message says."""
+        robot = self._robots[name]
+        try:
+            heard = read_map(message)
+            others = sum(other.cells for other in self._robots.values() if other is not robot)
+            cells = heard.grid.width * heard.grid.height
+            if others + cells > MOST_CELLS_TOGETHER:
+                raise RefusedMessage("all maps together have above 2^30 cells")
+        except RefusedMessage as error:
+            self._refuse(robot, str(error))
+            return
+        content = f"{heard.grid.width} x {heard.grid.height} cells of {heard.grid.resolution:.4g} m in {heard.frame}"
+        if robot.maps == 0:
+            self._tell(f"{name}: first map: {content}")
+        elif heard.frame != robot.frame or self._is_another(robot, publishers):
+            self._restart(robot, content)
+        try:
+            self._team.hear(name, heard.grid)
+        except ValueError as error:
+            self._refuse(robot, str(error))
+            return
+        if robot.followed not in publishers:
+            robot.followed = next(iter(sorted(publishers)), robot.followed)
+        robot.frame = heard.frame
+        robot.stamp = heard.stamp
+        robot.cells = cells
+        robot.maps += 1
+
+    def hear_update(self, name: str, message: Any) -> None:
+        """Does not raise for what the message says."""
+        robot = self._robots[name]
+        try:
+            part = read_update(message)
+            if robot.maps == 0:
+                raise RefusedMessage("an update without a map before it")
+            if part.frame != robot.frame:
+                raise RefusedMessage(f"an update in the frame {part.frame}, of a map in {robot.frame}")
+            if part.stamp < robot.stamp:
+                return  # the map has it already
+            if not self._team.hear_part(name, part.column, part.row, part.grid):
+                raise RefusedMessage("an update that reaches beyond its map")
+        except RefusedMessage as error:
+            self._refuse(robot, str(error))
+            return
+        robot.parts += 1
+
+    def refuse(self, name: str, why: str) -> None:
+        """A message of the robot that could not be decoded."""
+        self.undecodable += 1
+        self._refuse(self._robots[name], why)
+
+    @staticmethod
+    def _is_another(robot: HeardRobot, publishers: Collection[Publisher]) -> bool:
+        return robot.followed is not None and bool(publishers) and robot.followed not in publishers
+
+    def _set_pose(self, robot: HeardRobot, pose: KnownPose) -> None:
+        place = (pose.x, pose.y, pose.theta)
+        try:
+            self._team.set_known_pose(
+                robot.name,
+                place if pose.fixed else InitialPose(place, pose.sd, pose.sd_theta),
+                fixed=pose.fixed,
+            )
+        except ValueError as error:
+            robot.pose = f"the initial pose cannot be: {error}"
+            self._warn(f"{robot.name}: {robot.pose}")
+            return
+        self._poses[robot.name] = pose
+        robot.pose = "fixed" if pose.fixed else "a start"
+
+    def _restart(self, robot: HeardRobot, content: str) -> None:
+        """What was known of the old map's frame says nothing of the new one, whatever its name."""
+        self._tell(f"{robot.name}: started anew: {content}")
+        self._team.forget(robot.name)
+        if self._poses.pop(robot.name, None) is not None:
+            self._team.set_known_pose(robot.name, None)
+            robot.pose = "holds no longer: the robot started anew"
+            self._warn(f"{robot.name}: its initial pose {robot.pose}")
+
+    def _refuse(self, robot: HeardRobot, why: str) -> None:
+        if robot.refused == 0:
+            self._warn(f"{robot.topic}: a message is refused: {why}")
+        robot.refused += 1
+        robot.last_refusal = why

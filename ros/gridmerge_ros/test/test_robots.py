@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What reaches the team: a team that keeps account stands for the real one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from gridmerge_ros import robots as robots_module
+from gridmerge_ros.robots import KnownPose, Robots
+from messages_like_ros import map_message, update_message
+
+FIRST, SECOND = (1, 1), (2, 2)
+CELLS = [-1, 0, 100, 0, 0, 100]
+
+
+class Account:
+    """A Team's methods, written down."""
+
+    def __init__(self) -> None:
+        self.calls: list[tuple[Any, ...]] = []
+        self.holds_parts = True
+        self.is_full = False
+
+    def hear(self, robot: str, grid: Any) -> None:
+        if self.is_full:
+            raise ValueError("one too many")
+        self.calls.append(("hear", robot, grid.shape))
+
+    def hear_part(self, robot: str, column: int, row: int, grid: Any) -> bool:
+        self.calls.append(("hear_part", robot, column, row, grid.shape))
+        return self.holds_parts
+
+    def forget(self, robot: str) -> None:
+        self.calls.append(("forget", robot))
+
+    def set_known_pose(self, robot: str, pose: Any, *, fixed: bool = False) -> None:
+        if pose == (9.0, 9.0, 9.0):
+            raise ValueError("too far")
+        self.calls.append(("set_known_pose", robot, pose, fixed))
+
+
+class Heard:
+    def __init__(self, most: int = 10) -> None:
+        self.account = Account()
+        self.lines: list[str] = []
+        team: Any = self.account
+        self.robots = Robots(team, most, self.lines.append, self.lines.append)
+        assert self.robots.add("tb1", "/tb1/map")
+
+    @property
+    def tb1(self) -> Any:
+        return self.robots.all["tb1"]
+
+
+@pytest.fixture
+def heard() -> Heard:
+    return Heard()
+
+
+def test_maps_and_updates(heard: Heard) -> None:
+    heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), [FIRST])
+    heard.robots.hear_map("tb1", map_message(CELLS, 2, 3), [FIRST])
+    heard.robots.hear_update("tb1", update_message([0, 0], 2, 1, second=101))
+    # One that is older than the map is in it already.
+    heard.robots.hear_update("tb1", update_message([0, 0], 2, 1, second=99))
+    assert heard.account.calls == [
+        ("hear", "tb1", (2, 3)),
+        ("hear", "tb1", (3, 2)),
+        ("hear_part", "tb1", 0, 0, (1, 2)),
+    ]
+    assert (heard.tb1.maps, heard.tb1.parts, heard.tb1.refused, heard.tb1.frame) == (2, 1, 0, "tb1/map")
+
+
+def test_refusals_are_counted_and_told_once(heard: Heard) -> None:
+    for _ in range(3):
+        heard.robots.hear_map("tb1", map_message(CELLS, 3, 3), [FIRST])
+    heard.robots.hear_update("tb1", update_message([0, 0], 2, 1))
+    assert heard.account.calls == []
+    assert heard.tb1.refused == 4
+    assert heard.tb1.last_refusal == "an update without a map before it"
+    assert len(heard.lines) == 1
+    heard.robots.refuse("tb1", "no message")
+    assert (heard.tb1.refused, heard.robots.undecodable) == (5, 1)
+
+
+def test_a_team_that_refuses(heard: Heard) -> None:
+    heard.account.is_full = True
+    heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), [FIRST])
+    assert (heard.tb1.maps, heard.tb1.refused, heard.tb1.last_refusal) == (0, 1, "one too many")
+    heard.account.is_full = False
+    heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), [FIRST])
+    assert heard.account.calls == [("hear", "tb1", (2, 3))]
+
+
+def test_updates_of_another_map(heard: Heard) -> None:
+    heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), [FIRST])
+    heard.robots.hear_update("tb1", update_message([0, 0], 2, 1, frame="elsewhere", second=101))
+    assert "in the frame elsewhere" in heard.tb1.last_refusal
+    heard.account.holds_parts = False
+    heard.robots.hear_update("tb1", update_message([0, 0], 2, 1, second=101))
+    assert "beyond its map" in heard.tb1.last_refusal
+    assert (heard.tb1.parts, heard.tb1.refused) == (0, 2)
+
+
+@pytest.mark.parametrize("how", ["publisher", "frame"])
+def test_a_robot_that_starts_anew(how: str) -> None:
+    heard = Heard()
+    heard.robots.add("tb2", "/tb2/map", KnownPose(1.0, 2.0, 0.5, True, 1.0, 0.1))
+    assert heard.account.calls == [("set_known_pose", "tb2", (1.0, 2.0, 0.5), True)]
+    assert heard.robots.all["tb2"].pose == "fixed"
+    heard.robots.hear_map("tb2", map_message(CELLS, 3, 2), [FIRST])
+    heard.account.calls.clear()
+    frame = "tb2/other" if how == "frame" else "tb1/map"
+    heard.robots.hear_map("tb2", map_message(CELLS, 3, 2, frame), [SECOND] if how == "publisher" else [FIRST])
+    assert heard.account.calls == [
+        ("forget", "tb2"),
+        ("set_known_pose", "tb2", None, False),
+        ("hear", "tb2", (2, 3)),
+    ]
+    assert "no longer" in heard.robots.all["tb2"].pose
+    # That is over then.
+    heard.account.calls.clear()
+    heard.robots.hear_map("tb2", map_message(CELLS, 3, 2, frame), [SECOND] if how == "publisher" else [FIRST])
+    assert heard.account.calls == [("hear", "tb2", (2, 3))]
+
+
+def test_a_publisher_more_or_one_that_is_not_known_yet_is_no_new_start(heard: Heard) -> None:
+    for publishers in ([], [SECOND], [FIRST, SECOND], [], [SECOND]):
+        heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), publishers)
+    assert [call[0] for call in heard.account.calls] == ["hear"] * 5
+
+
+def test_poses_that_cannot_be(heard: Heard) -> None:
+    heard.robots.add("tb2", "/tb2/map", "the initial pose cannot be: x is missing")
+    heard.robots.add("tb3", "/tb3/map", KnownPose(9.0, 9.0, 9.0, True, 1.0, 0.1))
+    assert heard.robots.all["tb2"].pose == "the initial pose cannot be: x is missing"
+    assert heard.robots.all["tb3"].pose == "the initial pose cannot be: too far"
+    assert heard.account.calls == []
+
+
+def test_a_robot_too_many() -> None:
+    heard = Heard(most=2)
+    assert heard.robots.add("tb2", "/tb2/map")
+    for _ in range(2):
+        assert not heard.robots.add("tb3", "/tb3/map")
+    assert heard.robots.over_limit == {"/tb3/map"}
+    assert len(heard.lines) == 1
+
+
+def test_maps_that_are_too_many_cells_together(heard: Heard, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(robots_module, "MOST_CELLS_TOGETHER", 10)
+    heard.robots.add("tb2", "/tb2/map")
+    for _ in range(3):
+        heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), [FIRST])
+    heard.robots.hear_map("tb2", map_message(CELLS, 3, 2), [SECOND])
+    assert "2^30" in heard.robots.all["tb2"].last_refusal
+    assert [call[:2] for call in heard.account.calls] == [("hear", "tb1")] * 3
+
+
+def test_publishers(heard: Heard) -> None:
+    heard.robots.set_publishers("tb1", [FIRST])
+    assert heard.lines == []
+    heard.robots.set_publishers("tb1", [FIRST, SECOND])
+    heard.robots.set_publishers("tb1", [])
+    assert [line.split(": ")[0] for line in heard.lines] == ["/tb1/map", "tb1"]
+    assert heard.tb1.publishers == 0

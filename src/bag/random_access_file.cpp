@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bag/random_access_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <limits>
+#include <system_error>
+
+#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/io/file_error.hpp"
+
+namespace gridmerge::internal {
+
+namespace {
+
+[[noreturn]] void throw_errno(const std::filesystem::path& path, int error) {
+  throw FileError(path, std::generic_category().message(error));
+}
+
+}  // namespace
+
+RandomAccessFile::RandomAccessFile(const std::filesystem::path& path, const std::filesystem::path& shown)
+    // A pipe without a writer is not waited for.
+    : path_(shown.empty() ? path : shown),
+      descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+  if (descriptor_ < 0) throw_errno(path_, errno);
+  struct stat status {};
+  const int error = ::fstat(descriptor_, &status) == 0 ? 0 : errno;
+  if (error == 0 && S_ISREG(status.st_mode)) {
+    size_ = static_cast<std::uint64_t>(status.st_size);
+    return;
+  }
+  ::close(descriptor_);
+  if (error != 0) throw_errno(path_, error);
+  throw FileError(path_, "is not a regular file, which a bag has to be");
+}
+
+RandomAccessFile::~RandomAccessFile() {
+  ::close(descriptor_);
+}
+
+std::size_t RandomAccessFile::read(std::uint64_t offset, char* to, std::size_t count) const {
+  constexpr std::size_t kStep = std::size_t{1} << 20;
+  std::size_t held = 0;
+  while (held < count && offset + held < size_) {
+    throw_if_cancelled();
+    const ssize_t got =
+        ::pread(descriptor_, to + held, std::min(count - held, kStep), static_cast<off_t>(offset + held));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw_errno(path_, errno);
+    if (got == 0) break;
+    held += static_cast<std::size_t>(got);
+  }
+  return held;
+}
+
+std::string RandomAccessFile::read(std::uint64_t offset, std::size_t count) const {
+  const std::uint64_t left = offset < size_ ? size_ - offset : 0;
+  std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(count, left)), '\0');
+  bytes.resize(read(offset, bytes.data(), bytes.size()));
+  return bytes;
+}
+
+}  // namespace gridmerge::internal

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <dds/dds.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dds/ages.hpp"
+#include "dds/discovery.hpp"
+#include "dds/entity.hpp"
+#include "dds/message.hpp"
+#include "dds/participant.hpp"
+#include "dds/selection.hpp"
+
+namespace gridmerge::internal {
+
+/// So many robots are heard; who comes later is told of, and heard when another goes that never sent a map.
+inline constexpr std::size_t kMaxRobots = 256;
+/// The newest maps of all robots may have so many cells together.
+inline constexpr std::size_t kMaxCellsTogether = std::size_t{1} << 30;
+
+/// What was heard of a robot.
+struct HeardRobot {
+  std::string name;
+  std::string topic;
+  std::string frame;           // of its newest map; empty before the first
+  Stamp stamp;                 // likewise
+  std::size_t cells = 0;       // likewise
+  std::uint64_t maps = 0;      // that were taken
+  std::uint64_t parts = 0;     // likewise, of updates
+  std::uint64_t refused = 0;   // maps and updates that were not
+  std::string last_refusal;    // why
+  std::size_t publishers = 0;  // of the map that are there now
+  std::uint64_t unheard = 0;   // messages of publishers beside the one that is heard
+  std::string publisher;       // RemoteWriter::guid of the one that is heard; empty before the first map
+  TeamTime heard_first;        // since when this frame is heard, by the oldest account
+};
+
+/// Hears the maps of robots and their updates. One publisher of a topic is heard: the first that sent a map.
+/// Another takes its place when it goes; what that one sends is the map of a robot that was started anew.
+class MapListener {
+ public:
+  struct Callbacks {
+    /// A map that may be used. `restarted`: it has nothing to do with what this robot sent before. May throw
+    /// RefusedMessage.
+    std::function<void(const std::string& robot, HeardMap map, bool restarted)> map;
+    /// A part of the newest map; returns whether it fits in there.
+    std::function<bool(const std::string& robot, const HeardPart& part)> part;
+    /// For people, when something is seen for the first time: of a topic or of a message.
+    std::function<void(const std::string& text)> warn;
+  };
+
+  /// What wakes `waitset` is then dealt with by hear().
+  MapListener(const Participant& participant, dds_entity_t waitset, RobotSelection selection,
+              Callbacks callbacks);
+
+  /// Takes what has come in since it was last called.
+  void hear();
+
+  /// Takes over an older account of a robot that is heard. One of another frame, or of the future, tells
+  /// nothing.
+  void hear_age(const RobotAge& age);
+
+  /// By topic.
+  std::vector<HeardRobot> robots() const;
+  /// Writers that are not heard because there are kMaxRobots others.
+  std::size_t over_limit() const { return over_limit_.size(); }
+  /// GUIDs of all readers, 16 bytes each.
+  std::vector<dds_guid_t> readers() const;
+  /// Counts up with every robot that is discovered and every first map of one.
+  std::uint64_t news() const { return news_; }
+  /// Topics that might be meant and cannot be used, each with why, at most kMaxNear.
+  std::vector<std::string> near_misses() const;
+
+  static constexpr std::size_t kMaxNear = 64;
+
+ private:
+  /// Readers of one topic, one for each kind of writers: a reader that asks for more than a writer offers
+  /// gets nothing.
+  using Readers = std::map<TopicQos, DdsEntity>;
+
+  struct Robot {
+    HeardRobot heard;
+    Readers maps;
+    Readers parts;
+    std::optional<dds_instance_handle_t> followed;  // the writer whose maps count
+    std::size_t part_publishers = 0;
+  };
+
+  struct Known {
+    RemoteWriter writer;
+    std::string topic;  // of the map; the writer's may be that of its updates
+    bool is_parts = false;
+  };
+
+  void discover();
+  void come(const RemoteWriter& writer);
+  void go(dds_instance_handle_t handle);
+  bool offer(const RemoteWriter& writer);
+  void add_near(const RemoteWriter& writer, std::string why);
+  void hear_maps(Robot& robot);
+  void hear_parts(Robot& robot);
+  void take_map(Robot& robot, const RemoteWriter& writer, const MapSample& message);
+  void take_part(Robot& robot, const RemoteWriter& writer, const UpdateSample& message);
+  void refuse(Robot& robot, const std::string& why) const;
+  const Known* find(dds_instance_handle_t handle);
+  std::vector<WriterEvent> take_events();
+
+  dds_entity_t participant_;
+  dds_entity_t waitset_;
+  RobotSelection selection_;
+  Callbacks callbacks_;
+  Discovery discovery_;
+  std::vector<WriterEvent> pending_;     // what discovery told, for the next discover()
+  std::map<std::string, Robot> robots_;  // by topic of the map
+  std::map<dds_instance_handle_t, Known> writers_;
+  std::map<dds_instance_handle_t, RemoteWriter> over_limit_;
+  std::map<dds_instance_handle_t, std::pair<std::string, std::string>> near_;  // topic, and why it is none
+  std::uint64_t news_ = 0;
+  bool warned_of_limit_ = false;
+};
+
+}  // namespace gridmerge::internal

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dds/participant.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <mutex>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "gridmerge/export.hpp"
+
+// These two take the place of Cyclone DDS's own, which the dynamic linker finds later than the program's.
+// They deal with descriptions of types that participants ask each other for. ROS 2 needs none: a type is
+// known by its name. And Cyclone DDS 0.10.2 crashes over what nodes of ROS 2 Kilted answer each other, which
+// every participant is sent.
+extern "C" {
+// NOLINTBEGIN(readability-identifier-naming)
+struct ddsi_domaingv;
+struct ddsi_serdata;
+GRIDMERGE_EXPORT void ddsi_tl_handle_request(ddsi_domaingv* domain, ddsi_serdata* request);
+GRIDMERGE_EXPORT void ddsi_tl_handle_reply(ddsi_domaingv* domain, ddsi_serdata* reply);
+// NOLINTEND(readability-identifier-naming)
+
+void ddsi_tl_handle_request(ddsi_domaingv* /*domain*/, ddsi_serdata* /*request*/) {}
+void ddsi_tl_handle_reply(ddsi_domaingv* /*domain*/, ddsi_serdata* /*reply*/) {}
+}
+
+namespace gridmerge::internal {
+
+/// Takes what Cyclone DDS logs, from any thread.
+class Participant::Log {
+ public:
+  Log() { dds_set_log_sink(&Log::write, this); }
+  ~Log() { dds_set_log_sink(nullptr, nullptr); }
+  Log(const Log&) = delete;
+  Log& operator=(const Log&) = delete;
+
+  std::vector<std::string> take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(lines_, {});
+  }
+
+  std::uint64_t undecodable() const { return undecodable_; }
+
+ private:
+  static void write(void* log, const dds_log_data_t* data) { static_cast<Log*>(log)->add(*data); }
+
+  void add(const dds_log_data_t& data) {
+    if ((data.priority & (DDS_LC_FATAL | DDS_LC_ERROR | DDS_LC_WARNING)) == 0) return;
+    std::string_view text = data.message;
+    while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.remove_suffix(1);
+    // Any peer can send such messages, as many as it likes: they are counted.
+    if (text.find("deserialization") != std::string_view::npos) {
+      ++undecodable_;
+      return;
+    }
+    const std::lock_guard lock(mutex_);
+    if (lines_.size() < kMaxLogLines) lines_.emplace_back(text);
+  }
+
+  std::mutex mutex_;
+  std::vector<std::string> lines_;
+  std::atomic<std::uint64_t> undecodable_{0};
+};
+
+Participant::Participant(const RosEnvironment& environment, std::uint64_t largest_message)
+    : log_(std::make_unique<Log>()) {
+  try {
+    domain_ = DdsEntity(
+        dds_create_domain(environment.domain,
+                          cyclone_configuration(environment, largest_message, has_network()).c_str()),
+        fmt::format("domain {}", environment.domain));
+    const std::unique_ptr<dds_qos_t, void (*)(dds_qos_t*)> qos(dds_create_qos(), &dds_delete_qos);
+    constexpr std::string_view kUserData = "enclave=/;";  // without it ROS takes this for no node of its own
+    dds_qset_userdata(qos.get(), kUserData.data(), kUserData.size());
+    participant_ = DdsEntity(dds_create_participant(environment.domain, qos.get(), nullptr),
+                             fmt::format("a participant of domain {}", environment.domain));
+    require_dds(dds_get_guid(participant_.get(), &guid_), "the participant's number");
+  } catch (const std::runtime_error& error) {
+    std::string message = error.what();
+    for (const std::string& line : log_->take()) message += "; " + line;
+    throw std::runtime_error(message);
+  }
+}
+
+Participant::~Participant() {
+  participant_.reset();
+  domain_.reset();
+}
+
+std::vector<std::string> Participant::take_log() {
+  return log_->take();
+}
+
+std::uint64_t Participant::undecodable() const {
+  return log_->undecodable();
+}
+
+}  // namespace gridmerge::internal

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <dds/dds.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dds/entity.hpp"
+#include "dds/environment.hpp"
+
+namespace gridmerge::internal {
+
+/// A participant of a DDS domain, with Cyclone DDS set up for it. One at a time in a process: what Cyclone
+/// DDS logs goes to whoever set its sink last.
+class Participant {
+ public:
+  /// Throws std::runtime_error, with what Cyclone DDS says of it, when the configuration or the network does
+  /// not let it in.
+  Participant(const RosEnvironment& environment, std::uint64_t largest_message);
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  dds_entity_t get() const { return participant_.get(); }
+  const dds_guid_t& guid() const { return guid_; }
+
+  /// What Cyclone DDS warned of since it was last asked, at most kMaxLogLines of it.
+  std::vector<std::string> take_log();
+  /// Messages of peers that were no such messages at all.
+  std::uint64_t undecodable() const;
+
+  static constexpr std::size_t kMaxLogLines = 32;
+
+ private:
+  class Log;
+
+  std::unique_ptr<Log> log_;  // outlives what logs
+  DdsEntity domain_;
+  DdsEntity participant_;
+  dds_guid_t guid_{};
+};
+
+}  // namespace gridmerge::internal

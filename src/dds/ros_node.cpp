@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/dds/ros_node.hpp"
+
+#include <dds/dds.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "dds/ages.hpp"
+#include "dds/entity.hpp"
+#include "dds/environment.hpp"
+#include "dds/listener.hpp"
+#include "dds/message.hpp"
+#include "dds/names.hpp"
+#include "dds/participant.hpp"
+#include "dds/player.hpp"
+#include "dds/publisher.hpp"
+#include "dds/selection.hpp"
+#include "dds/status.hpp"
+
+namespace gridmerge {
+
+using namespace internal;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kTick{100};                 // transforms on /tf, and looks at the clock
+constexpr milliseconds kDiagnosesEvery{1000};      // as ROS's own tools expect
+constexpr milliseconds kQuiet{3000};               // `once`: so long nothing new has come up
+constexpr milliseconds kFlush{5000};               // `once`: so long subscribers may take
+constexpr double kWaitOnce = 10.0;                 // `once`: for a first map, and for robots to come [s]
+constexpr double kRemindAfter = 10.0;              // without `wait`: then it is said what is waited for [s]
+constexpr std::uint64_t kHeadOfMessage = 1 << 16;  // beside the cells
+
+RosNodeOptions completed(RosNodeOptions options) {
+  validate(options);
+  options.world_frame = read_frame(options.world_frame);
+  const auto ignore = [](const std::string&) {};
+  if (!options.tell) options.tell = ignore;
+  if (!options.warn) options.warn = ignore;
+  if (!options.detail) options.detail = ignore;
+  return options;
+}
+
+RobotSelection select(const RosNodeOptions& options) {
+  RobotSelection selection(options.patterns, options.robots);
+  for (const auto& [robot, pose] : options.known_poses)
+    if (!selection.can_have(robot))
+      throw std::invalid_argument(
+          fmt::format("a pose is given for the robot {}, which is none of those heard", robot));
+  return selection;
+}
+
+void validate_played(const RosNodeOptions& options, const RobotSelection& selection) {
+  if (!(options.play_rate > 0.0) || !std::isfinite(options.play_rate))
+    throw std::invalid_argument("maps are played at a rate above 0");
+  std::map<std::string, std::string> sources;
+  for (const PlayedTopic& played : options.played) {
+    if (!is_topic_name(played.topic))
+      throw std::invalid_argument(
+          fmt::format("{}: '{}' is no whole name of a topic, as /tb1/map is", played.source, played.topic));
+    if (!selection.robot_of(played.topic))
+      throw std::invalid_argument(
+          fmt::format("{}: its topic {} is not {}", played.source, played.topic, selection.describe()));
+    const auto [other, is_new] = sources.emplace(played.topic, played.source);
+    if (!is_new)
+      throw std::invalid_argument(
+          fmt::format("{} and {} would both be played on {}", other->second, played.source, played.topic));
+  }
+}
+
+}  // namespace
+
+void validate(const RosNodeOptions& options) {
+  if (!is_topic_name(options.output))
+    throw std::invalid_argument(
+        fmt::format("'{}' is no whole name of a topic, as /merged_map is", options.output));
+  if (options.name.find('/') != std::string::npos || !is_topic_name("/" + options.name))
+    throw std::invalid_argument(
+        fmt::format("'{}' is no name of a node: letters, digits and '_'", options.name));
+  try {
+    read_frame(options.world_frame);
+  } catch (const RefusedMessage& error) {
+    throw std::invalid_argument(fmt::format("the world's frame '{}': {}", options.world_frame, error.what()));
+  }
+  if (options.wait && !(*options.wait >= 0.0)) throw std::invalid_argument("a time to wait is 0 s or more");
+  validate(options.team);
+  for (const auto& [robot, pose] : options.known_poses) validate(pose);
+  validate_played(options, select(options));
+}
+
+bool is_heard(const RosNodeOptions& options, const std::string& topic) {
+  return RobotSelection(options.patterns, options.robots).robot_of(topic).has_value();
+}
+
+class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as public as RosNode
+ public:
+  explicit State(RosNodeOptions options)
+      : options_(completed(std::move(options))),
+        selection_(select(options_)),
+        environment_(read_ros_environment(process_environment)),
+        participant_(environment_, kMaxCells + kHeadOfMessage),
+        waitset_(dds_create_waitset(participant_.get()), "a wait set"),
+        wake_(dds_create_guardcondition(participant_.get()), "a guard condition"),
+        publisher_(participant_, options_),
+        player_(participant_, options_.played, options_.play_rate),
+        listener_(participant_, waitset_.get(), selection_, callbacks()),
+        ages_(participant_),
+        team_(options_.team, [this](const std::shared_ptr<const TeamAnswer>&) { wake(); }) {
+    require_dds(dds_waitset_attach(waitset_.get(), wake_.get(), 0), "waiting for answers");
+    for (const auto& [robot, pose] : options_.known_poses) team_.set_known_pose(robot, pose);
+    publish_node();
+  }
+
+  End run();
+
+  void stop() {
+    stopped_ = true;
+    wake();
+  }
+
+  std::string describe() const { return describe_team(*team_.answer(), listener_.robots()); }
+
+ private:
+  MapListener::Callbacks callbacks();
+  void take_map(const std::string& robot, HeardMap map, bool restarted);
+  void hear_ages();
+  void wait();
+  void tell_changes();
+  void publish();
+  void publish_node();
+  void check_wait();
+  std::optional<End> check_once();
+  bool is_complete() const;
+  std::string explain_silence() const;
+
+  void wake() { dds_set_guardcondition(wake_.get(), true); }
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+  bool has_maps() const {
+    const std::vector<HeardRobot> robots = listener_.robots();
+    return std::any_of(robots.begin(), robots.end(), [](const HeardRobot& robot) { return robot.maps > 0; });
+  }
+
+  RosNodeOptions options_;
+  RobotSelection selection_;
+  RosEnvironment environment_;
+  Participant participant_;
+  DdsEntity waitset_;
+  DdsEntity wake_;
+  Publisher publisher_;
+  Player player_;
+  MapListener listener_;
+  AgeListener ages_;
+  std::map<std::string, TeamTime> told_ages_;  // to the team, of each robot
+  std::atomic<bool> stopped_{false};
+  Clock::time_point began_ = Clock::now();
+  Clock::time_point news_at_ = began_;
+  Clock::time_point next_diagnoses_ = began_;
+  std::uint64_t news_ = 0;
+  std::uint64_t told_answer_ = 0;
+  std::map<std::string, std::size_t> publishers_;  // of each robot, at the last look
+  std::map<std::string, std::string> withheld_;    // as it was told last
+  bool all_sent_ = true;
+  bool reminded_ = false;
+  bool enough_ = false;  // `once`: what is heard is what is merged
+  Team team_;            // last: its thread uses what is above
+};
+
+MapListener::Callbacks RosNode::State::callbacks() {
+  return {[this](const std::string& robot, HeardMap map, bool restarted) {
+            take_map(robot, std::move(map), restarted);
+          },
+          [this](const std::string& robot, const HeardPart& part) {
+            return team_.hear_part(robot, part.x, part.y, part.grid);
+          },
+          options_.warn};
+}
+
+void RosNode::State::take_map(const std::string& robot, HeardMap map, bool restarted) {
+  const std::string content = fmt::format("{} x {} cells of {:.4g} m in the frame {}", map.grid.width,
+                                          map.grid.height, map.grid.resolution, map.frame);
+  const auto known = options_.known_poses.find(robot);
+  if (restarted) {
+    // What was known of the old frame says nothing of the new one, whatever its name.
+    team_.forget(robot);
+    team_.set_known_pose(robot, std::nullopt);
+    options_.tell(fmt::format("{}: started anew: {}", robot, content));
+    if (known != options_.known_poses.end()) {
+      options_.warn(fmt::format("{}: started anew, so that the pose given for it holds no longer", robot));
+      options_.known_poses.erase(known);
+    }
+  } else if (!publishers_.contains(robot)) {
+    options_.tell(fmt::format("{}: first map: {}", robot, content));
+  }
+  publishers_.emplace(robot, 0);
+  try {
+    team_.hear(robot, std::move(map.grid));
+  } catch (const std::invalid_argument& error) {
+    throw RefusedMessage(error.what());
+  }
+}
+
+RosNode::End RosNode::State::run() {
+  began_ = Clock::now();
+  news_at_ = began_;
+  options_.tell(fmt::format("hears {} in domain {}, and publishes {}", selection_.describe(),
+                            environment_.domain, options_.output));
+  while (!stopped_) {
+    player_.play(seconds());
+    wait();
+    if (!enough_) listener_.hear();
+    hear_ages();
+    tell_changes();
+    publish();
+    check_wait();
+    if (const std::optional<End> end = check_once()) {
+      publisher_.flush(kFlush);
+      return *end;
+    }
+  }
+  return End::stopped;
+}
+
+void RosNode::State::hear_ages() {
+  for (const RobotAge& age : ages_.take()) listener_.hear_age(age);
+  for (const HeardRobot& robot : listener_.robots()) {
+    if (robot.maps == 0) continue;
+    TeamTime& told = told_ages_[robot.name];
+    if (told == robot.heard_first) continue;
+    told = robot.heard_first;
+    team_.hear_age(robot.name, told);
+  }
+}
+
+void RosNode::State::wait() {
+  require_dds(dds_waitset_wait(waitset_.get(), nullptr, 0, std::chrono::nanoseconds(kTick).count()),
+              "waiting");
+  bool was_set = false;
+  dds_take_guardcondition(wake_.get(), &was_set);
+}
+
+void RosNode::State::tell_changes() {
+  for (const std::string& line : participant_.take_log()) options_.warn("DDS: " + line);
+  if (listener_.news() != news_) {
+    news_ = listener_.news();
+    news_at_ = Clock::now();
+  }
+  for (const HeardRobot& robot : listener_.robots()) {
+    const auto before = publishers_.find(robot.name);
+    if (before == publishers_.end()) continue;
+    if (before->second > 0 && robot.publishers == 0)
+      options_.tell(fmt::format("{}: its publisher is gone; its map is kept", robot.name));
+    before->second = robot.publishers;
+  }
+}
+
+void RosNode::State::publish() {
+  const std::shared_ptr<const TeamAnswer> answer = team_.answer();
+  const std::vector<HeardRobot> robots = listener_.robots();
+  const bool is_new = answer->number != told_answer_;
+  if (is_new) {
+    told_answer_ = answer->number;
+    for (const TeamEvent& event : team_.take_events()) options_.tell(event.text);
+    options_.detail(fmt::format("answer {}: {:.3f} s, {} merged maps of {} robots{}", answer->number,
+                                answer->seconds, answer->components.size(), answer->robots.size(),
+                                answer->problem.empty() ? "" : "; " + answer->problem));
+  }
+  if (is_new || !all_sent_) {
+    Stamp newest;
+    for (const HeardRobot& robot : robots) newest = std::max(newest, robot.stamp);
+    all_sent_ = publisher_.publish_maps(*answer, newest);
+  }
+  const TeamTransforms transforms = team_transforms(*answer, robots, options_.world_frame);
+  publisher_.publish_transforms(transforms.transforms);
+  if (transforms.withheld != withheld_) {
+    for (const auto& [robot, why] : transforms.withheld)
+      if (!withheld_.contains(robot))
+        options_.warn(fmt::format("{}: no transform is published: {}", robot, why));
+    withheld_ = transforms.withheld;
+  }
+  publish_node();
+  if (is_new || Clock::now() >= next_diagnoses_) {
+    publisher_.publish_diagnoses(diagnose(
+        *answer, robots, transforms, {options_.name, participant_.undecodable(), listener_.over_limit()}));
+    next_diagnoses_ = Clock::now() + kDiagnosesEvery;
+  }
+}
+
+void RosNode::State::publish_node() {
+  std::vector<dds_guid_t> readers = listener_.readers();
+  readers.push_back(guid_of(ages_.reader()));
+  publisher_.publish_node(readers, player_.writers());
+}
+
+void RosNode::State::check_wait() {
+  const bool is_bounded = options_.wait || options_.once;
+  const double most = options_.wait.value_or(options_.once ? kWaitOnce : kRemindAfter);
+  if (reminded_ || seconds() < most) return;
+  reminded_ = true;
+  if (has_maps()) return;
+  const std::string text = fmt::format("no map within {:.3g} s: {}", most, explain_silence());
+  if (is_bounded) throw std::runtime_error(text);
+  options_.warn(text);
+}
+
+std::string RosNode::State::explain_silence() const {
+  std::string text = fmt::format("waiting for {} in domain {}", selection_.describe(), environment_.domain);
+  std::vector<std::string> seen;
+  for (const HeardRobot& robot : listener_.robots()) {
+    if (robot.refused > 0)
+      seen.push_back(fmt::format("{}: refused: {}", robot.topic, robot.last_refusal));
+    else if (robot.publishers > 0)
+      seen.push_back(robot.topic + ": is there, but nothing was received");
+  }
+  for (const std::string& near : listener_.near_misses()) seen.push_back(near);
+  if (!seen.empty()) return text + fmt::format("; there is {}", fmt::join(seen, "; "));
+  return text +
+         "; no such topic is there: does ROS_DOMAIN_ID fit, and does the network let multicast through?";
+}
+
+/// `once`: whether every robot that is to be heard was.
+bool RosNode::State::is_complete() const {
+  const std::vector<HeardRobot> robots = listener_.robots();
+  const auto has_sent = [](const HeardRobot& robot) { return robot.maps > 0; };
+  for (const auto& [name, topic] : selection_.named()) {
+    const bool is_heard = std::any_of(
+        robots.begin(), robots.end(),
+        [&, topic = topic](const HeardRobot& robot) { return robot.topic == topic && has_sent(robot); });
+    if (!is_heard) return false;
+  }
+  return robots.size() > 1 && player_.is_over() && std::all_of(robots.begin(), robots.end(), has_sent);
+}
+
+std::optional<RosNode::End> RosNode::State::check_once() {
+  if (!options_.once || !has_maps() || !all_sent_) return std::nullopt;
+  const bool is_over = player_.is_over() && seconds() >= options_.wait.value_or(kWaitOnce);
+  // From now on nothing newer is heard: robots that map on would keep the team from ever being settled.
+  enough_ = enough_ || is_over || (is_complete() && Clock::now() - news_at_ >= kQuiet);
+  if (!enough_ || !team_.wait_until_settled(milliseconds(0))) return std::nullopt;
+  const std::shared_ptr<const TeamAnswer> answer = team_.answer();
+  if (answer->number != told_answer_) return std::nullopt;  // it is published first
+  const bool all =
+      answer->components.size() == 1 && answer->components.front().robots.size() == answer->robots.size();
+  return all ? End::merged : End::refused;
+}
+
+RosNode::RosNode(RosNodeOptions options) : state_(std::make_unique<State>(std::move(options))) {}
+
+RosNode::~RosNode() = default;
+
+RosNode::End RosNode::run() {
+  return state_->run();
+}
+
+void RosNode::stop() {
+  state_->stop();
+}
+
+std::string RosNode::describe() const {
+  return state_->describe();
+}
+
+}  // namespace gridmerge

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "gridmerge/match/prepared_map.hpp"
+#include "internal_export.hpp"
+#include "similarity/likelihood_field.hpp"
+
+namespace gridmerge::internal {
+
+/// A prepared map as it is compared: drawn once in cells of each size.
+class GRIDMERGE_INTERNAL_EXPORT DrawnWalls {
+ public:
+  /// In cells of `cell` metres; drawn when first asked for, O(cells) then. Lives as long as the map.
+  static const LikelihoodField& of(const PreparedMap& map, double cell);
+
+ private:
+  std::mutex drawing_;
+  std::map<double, std::unique_ptr<const LikelihoodField>> by_cell_;
+};
+
+}  // namespace gridmerge::internal

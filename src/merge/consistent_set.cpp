@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "merge/consistent_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "grid/parallel.hpp"
+#include "merge/group_search.hpp"
+#include "merge/join_weights.hpp"
+
+namespace gridmerge::internal {
+
+namespace {
+
+void validate(const JoinProblem& problem, double accept_probability) {
+  const std::size_t maps = problem.maps.size();
+  if (!(accept_probability >= 0.0 && accept_probability <= 1.0))
+    throw std::invalid_argument("accept_probability must lie in [0, 1]");
+  if ((!problem.coverage.empty() && problem.coverage.size() != maps) || problem.fixed.size() > maps)
+    throw std::invalid_argument("coverage and fixed poses must be those of the maps");
+  for (const PairCandidates& pair : problem.pairs) {
+    if (pair.fixed >= pair.moving || pair.moving >= maps)
+      throw std::invalid_argument("a pair must be of two maps, the lower index first");
+  }
+}
+
+/// In the frame of the lowest map, maps ascending.
+NodeGroup in_order(NodeGroup group) {
+  std::sort(group.begin(), group.end(),
+            [](const PlacedNode& a, const PlacedNode& b) { return a.map < b.map; });
+  const SE2 T_first_group = inverse(group.front().T_group_map);
+  for (PlacedNode& node : group) node.T_group_map = T_first_group * node.T_group_map;
+  group.front().T_group_map = {};
+  return group;
+}
+
+/// What holds together from a probability on.
+ConsistentSet kept_from(const GroupSearch& search, double keep_probability) {
+  const JoinWeights& weights = search.weights();
+  ConsistentSet consistent_set;
+  consistent_set.groups = search.cut(keep_probability);
+  for (NodeGroup& group : consistent_set.groups) group = in_order(std::move(group));
+  std::sort(consistent_set.groups.begin(), consistent_set.groups.end(),
+            [](const NodeGroup& a, const NodeGroup& b) { return a.front().map < b.front().map; });
+  parallel_for(consistent_set.groups.size(), [&](std::size_t g) {
+    NodeGroup& group = consistent_set.groups[g];
+    if (group.size() < 2) return;
+    std::vector<double> probabilities(group.size(), 1.0);
+    parallel_for(group.size(), [&](std::size_t i) {
+      if (weights.is_fixed(group[i].map)) return;
+      const auto [rest, alone] = taken_out(group, i);
+      probabilities[i] = weights.probability_of_lying_so(rest, alone);
+    });
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      if (!weights.is_fixed(group[i].map)) group[i].probability = probabilities[i];
+    }
+  });
+  for (const NodeGroup& group : consistent_set.groups) {
+    for (const UsedCandidate& used : weights.used_in(group)) consistent_set.used.push_back(used);
+  }
+  std::sort(consistent_set.used.begin(), consistent_set.used.end(),
+            [](const UsedCandidate& a, const UsedCandidate& b) { return a.pair < b.pair; });
+  return consistent_set;
+}
+
+}  // namespace
+
+ConsistentSet find_consistent_set(const JoinProblem& problem, double accept_probability) {
+  validate(problem, accept_probability);
+  const JoinWeights weights(problem);
+  return kept_from(GroupSearch(weights, problem, accept_probability), accept_probability);
+}
+
+std::vector<OpenJoin> find_open_joins(const JoinProblem& problem, const ConsistentSet& consistent_set,
+                                      double least_probability) {
+  validate(problem, least_probability);
+  const JoinWeights weights(problem);
+  const std::vector<NodeGroup>& groups = consistent_set.groups;
+  std::vector<std::vector<OpenJoin>> of_first(groups.size());
+  std::vector<std::size_t> group_of(problem.maps.size());
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    for (const PlacedNode& node : groups[g]) group_of[node.map] = g;
+  }
+  parallel_for(groups.size(), [&](std::size_t a) {
+    std::set<std::size_t> near;  // later groups to which a pair proposes a way
+    for (const PlacedNode& node : groups[a]) {
+      for (const std::size_t map : weights.partners_of(node.map)) {
+        if (group_of[map] > a) near.insert(group_of[map]);
+      }
+    }
+    for (const std::size_t b : near) {
+      for (const WeighedJoin& way : weights.ways_to_join(groups[a], groups[b])) {
+        if (way.probability >= least_probability) of_first[a].push_back({a, b, way.T_a_b, way.probability});
+      }
+    }
+  });
+  std::vector<OpenJoin> open;
+  for (const std::vector<OpenJoin>& some : of_first) open.insert(open.end(), some.begin(), some.end());
+  std::stable_sort(open.begin(), open.end(),
+                   [](const OpenJoin& x, const OpenJoin& y) { return x.probability > y.probability; });
+  return open;
+}
+
+double expected_false_joins(const ConsistentSet& consistent_set) {
+  double expected = 0.0;
+  for (const NodeGroup& group : consistent_set.groups) {
+    double doubt = 0.0;
+    for (const PlacedNode& node : group) doubt += 1.0 - node.probability;  // 0 where it is fixed or alone
+    // Every map is doubted given the others: two maps doubt one join twice.
+    expected += doubt * static_cast<double>(group.size() - 1) / static_cast<double>(group.size());
+  }
+  return expected;
+}
+
+ConsistentSet find_consistent_set_within(const JoinProblem& problem, double accept_probability,
+                                         double max_false_joins) {
+  if (!(max_false_joins >= 0.0) || !std::isfinite(max_false_joins))
+    throw std::invalid_argument("max_false_joins must be a number from 0 on");
+  validate(problem, accept_probability);
+  const JoinWeights weights(problem);
+  const GroupSearch search(weights, problem, accept_probability);
+  ConsistentSet consistent_set = kept_from(search, accept_probability);
+  constexpr double kMinStep = 0.2;    // of the doubt that is still allowed, so that this ends
+  constexpr double kMinDoubt = 1e-9;  // from there on nothing is surer
+  double keep = accept_probability;
+  while (expected_false_joins(consistent_set) > max_false_joins && 1.0 - keep > kMinDoubt) {
+    double least = 1.0;
+    for (const NodeGroup& group : consistent_set.groups) {
+      for (const PlacedNode& node : group) least = std::min(least, node.probability);
+    }
+    keep = std::min(1.0, std::max(std::nextafter(least, 2.0), keep + kMinStep * (1.0 - keep)));
+    consistent_set = kept_from(search, keep);
+  }
+  return consistent_set;
+}
+
+}  // namespace gridmerge::internal

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "merge/map_store.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "gridmerge/grid/resample.hpp"
+
+namespace gridmerge::internal {
+
+MapStore::Input::Input(std::shared_ptr<const OccupancyGrid> map)
+    : grid(std::move(map)), prepared(*grid), coverage(prepared.known()) {
+  // What somebody painted black would hide what others have seen there.
+  if (is_mostly_painted(*grid)) grid = std::make_shared<const OccupancyGrid>(without_painted(*grid));
+}
+
+MapStore::MapId MapStore::add(std::shared_ptr<const OccupancyGrid> map,
+                              const std::optional<KnownPose>& known_pose) {
+  if (known_pose) validate(*known_pose);
+  auto input = std::make_unique<const Input>(std::move(map));  // throws for an invalid map
+  const MapId id = next_++;
+  inputs_.emplace(id, std::move(input));
+  if (known_pose) known_poses_[id] = *known_pose;
+  return id;
+}
+
+void MapStore::replace(MapId id, std::shared_ptr<const OccupancyGrid> map) {
+  require(id);
+  inputs_.at(id) = std::make_unique<const Input>(std::move(map));
+}
+
+void MapStore::set_known_pose(MapId id, const std::optional<KnownPose>& known_pose) {
+  require(id);
+  if (known_pose) validate(*known_pose);
+  known_poses_.erase(id);
+  if (known_pose) known_poses_[id] = *known_pose;
+}
+
+void MapStore::remove(MapId id) {
+  require(id);
+  inputs_.erase(id);
+  known_poses_.erase(id);
+}
+
+void MapStore::require(MapId id) const {
+  if (!inputs_.contains(id)) throw std::out_of_range("there is no map " + std::to_string(id));
+}
+
+std::optional<KnownPose> MapStore::known_pose(MapId id) const {
+  const auto known = known_poses_.find(id);
+  return known == known_poses_.end() ? std::nullopt : std::optional(known->second);
+}
+
+std::vector<MapStore::MapId> MapStore::ids() const {
+  std::vector<MapId> ids;
+  for (const auto& [id, input] : inputs_) ids.push_back(id);
+  return ids;
+}
+
+std::vector<const OccupancyGrid*> MapStore::grids() const {
+  std::vector<const OccupancyGrid*> grids;
+  for (const auto& [id, input] : inputs_) grids.push_back(input->grid.get());
+  return grids;
+}
+
+std::vector<MapStore::MapId> MapStore::in_canonical_order() const {
+  std::vector<MapId> maps = ids();
+  std::stable_sort(maps.begin(), maps.end(),
+                   [&](MapId a, MapId b) { return is_smaller(at(a).prepared, at(b).prepared); });
+  return maps;
+}
+
+std::vector<Copy> MapStore::find_copies(const std::vector<MapId>& maps) const {
+  const std::vector<std::size_t> index = places_of(maps);
+  std::vector<Copy> copies;
+  std::size_t original = 0;
+  for (std::size_t i = 1; i < maps.size(); ++i) {
+    const PreparedMap &first = at(maps[original]).prepared, &next = at(maps[i]).prepared;
+    if (known_poses_.contains(maps[i]) || !is_copy(first, next)) {
+      original = i;
+    } else {
+      copies.push_back({index[i], index[original], between_copies(first, next)});
+    }
+  }
+  return copies;
+}
+
+std::vector<MapStore::MapId> MapStore::those_that_count(std::vector<MapId> maps,
+                                                        const std::vector<Copy>& copies) const {
+  const std::vector<MapId> order = ids();
+  std::erase_if(maps, [&](MapId id) {
+    return std::any_of(copies.begin(), copies.end(), [&](const Copy& copy) { return order[copy.map] == id; });
+  });
+  return maps;
+}
+
+std::vector<std::size_t> MapStore::places_of(const std::vector<MapId>& maps) const {
+  const std::vector<MapId> order = ids();
+  std::vector<std::size_t> places;
+  places.reserve(maps.size());
+  for (const MapId id : maps)
+    places.push_back(
+        static_cast<std::size_t>(std::lower_bound(order.begin(), order.end(), id) - order.begin()));
+  return places;
+}
+
+MergeInputs MapStore::inputs_of(const std::vector<MapId>& maps) const {
+  MergeInputs inputs;
+  inputs.index = places_of(maps);
+  for (const MapId id : maps) {
+    inputs.grids.push_back(at(id).grid.get());
+    inputs.prepared.push_back(&at(id).prepared);
+    inputs.known_poses.push_back(known_pose(id));
+  }
+  return inputs;
+}
+
+}  // namespace gridmerge::internal

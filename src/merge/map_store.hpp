@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/match/prepared_map.hpp"
+#include "gridmerge/merge/known_pose.hpp"
+#include "merge/component.hpp"
+#include "merge/copies.hpp"
+#include "merge/coverage.hpp"
+
+namespace gridmerge::internal {
+
+/// The maps of a merge and what is known of their poses. Maps go by a number that is not given again.
+class MapStore {
+ public:
+  using MapId = std::size_t;
+
+  /// A map with all that does not depend on the others.
+  struct Input {
+    explicit Input(std::shared_ptr<const OccupancyGrid> map);
+
+    std::shared_ptr<const OccupancyGrid> grid;  ///< without what somebody painted black
+    PreparedMap prepared;
+    Coverage coverage;
+  };
+
+  /// Throws std::invalid_argument for an invalid map or pose, and is then as before.
+  MapId add(std::shared_ptr<const OccupancyGrid> map, const std::optional<KnownPose>& known_pose);
+
+  /// Throw std::out_of_range for an unknown id, and as add().
+  void replace(MapId id, std::shared_ptr<const OccupancyGrid> map);
+  void set_known_pose(MapId id, const std::optional<KnownPose>& known_pose);
+  void remove(MapId id);
+  void require(MapId id) const;
+
+  const Input& at(MapId id) const { return *inputs_.at(id); }
+  std::optional<KnownPose> known_pose(MapId id) const;
+
+  /// In the order in which they were added.
+  std::vector<MapId> ids() const;
+  std::vector<const OccupancyGrid*> grids() const;  ///< likewise
+
+  /// An order that depends on the maps alone, so that sums are made in the same order whatever order they
+  /// came in.
+  std::vector<MapId> in_canonical_order() const;
+
+  /// The first of several equal maps is the one that counts. What is known of a pose tells maps apart.
+  /// `maps` are all, in canonical order: there equal ones follow each other.
+  std::vector<Copy> find_copies(const std::vector<MapId>& maps) const;
+
+  /// The maps that are no copies.
+  std::vector<MapId> those_that_count(std::vector<MapId> maps, const std::vector<Copy>& copies) const;
+
+  /// Where each of these maps stands among all in the order in which they were added.
+  std::vector<std::size_t> places_of(const std::vector<MapId>& maps) const;
+
+  MergeInputs inputs_of(const std::vector<MapId>& maps) const;
+
+ private:
+  MapId next_ = 0;
+  std::map<MapId, std::unique_ptr<const Input>> inputs_;
+  std::map<MapId, KnownPose> known_poses_;
+};
+
+}  // namespace gridmerge::internal

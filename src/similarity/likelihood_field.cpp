@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "similarity/likelihood_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "gridmerge/grid/cancellation.hpp"
+
+namespace gridmerge::internal {
+
+namespace {
+
+constexpr int kMargin = 4;       // cells around the known area, so that distances reach beyond its rim
+constexpr int kSeenReach = 2;    // cells beyond a known one that still count as seen
+constexpr int kChamferStep = 3;  // distance units of one cell
+constexpr int kChamferDiagonal = 4;
+
+constexpr int kFacingReach = 3;  // cells around a wall whose free cells decide which way it faces
+/// The free side must have this share of half the window more than the other.
+constexpr double kFacingBalance = 0.25;
+/// A balanced wall has an axis if its cells spread so much more along it than across it, and each side has
+/// this share of free cells: a pillar has no axis, nor has the inside of a thick wall.
+constexpr double kAxisElongation = 4.0;
+constexpr double kAxisFree = 0.3;
+
+/// A thing that stands alone: at least so many wall cells that touch each other and no other wall, no farther
+/// apart than this.
+constexpr std::size_t kMinThing = 3;
+constexpr double kLargestThing = 2.5;  // [m]
+
+/// A chamfer distance with a label of the place it was measured to: the label is in the low byte, so that the
+/// smaller of two is the nearer one, and needs no branch.
+using LabelledDistance = std::uint32_t;
+constexpr LabelledDistance kLabels = 256;
+constexpr LabelledDistance kFar = 60000 * kLabels;
+
+/// In place: elsewhere than at the zeros, the chamfer distance to the nearest of them, and its label. The
+/// border must be kFar.
+void chamfer_distance(std::vector<LabelledDistance>& distance, int width, int height) {
+  constexpr LabelledDistance kStraight = kChamferStep * kLabels;
+  constexpr LabelledDistance kDiagonal = kChamferDiagonal * kLabels;
+  for (int y = 1; y < height; ++y) {
+    throw_if_cancelled();
+    LabelledDistance* row = distance.data() + static_cast<std::size_t>(y) * width;
+    const LabelledDistance* below = row - width;
+    for (int x = 1; x + 1 < width; ++x) {  // independent of each other: vectorised
+      const LabelledDistance diagonal = std::min(below[x - 1], below[x + 1]) + kDiagonal;
+      row[x] = std::min(row[x], std::min(below[x] + kStraight, diagonal));
+    }
+    for (int x = 1; x + 1 < width; ++x) row[x] = std::min(row[x], row[x - 1] + kStraight);
+  }
+  for (int y = height - 2; y >= 0; --y) {
+    throw_if_cancelled();
+    LabelledDistance* row = distance.data() + static_cast<std::size_t>(y) * width;
+    const LabelledDistance* above = row + width;
+    for (int x = 1; x + 1 < width; ++x) {
+      const LabelledDistance diagonal = std::min(above[x - 1], above[x + 1]) + kDiagonal;
+      row[x] = std::min(row[x], std::min(above[x] + kStraight, diagonal));
+    }
+    for (int x = width - 2; x > 0; --x) row[x] = std::min(row[x], row[x + 1] + kStraight);
+  }
+}
+
+/// Sums over boxes of a 0/1 image in constant time.
+class BoxSums {
+ public:
+  BoxSums(const std::vector<std::uint8_t>& image, int width, int height)
+      : stride_(width + 1), sums_(static_cast<std::size_t>(width + 1) * (height + 1), 0) {
+    for (int y = 0; y < height; ++y) {
+      throw_if_cancelled();
+      int row = 0;
+      for (int x = 0; x < width; ++x) {
+        row += image[static_cast<std::size_t>(y) * width + x];
+        at(x + 1, y + 1) = at(x + 1, y) + row;
+      }
+    }
+  }
+
+  /// Over columns [left, right) and rows [bottom, top).
+  int operator()(int left, int bottom, int right, int top) const {
+    return at(right, top) - at(left, top) - at(right, bottom) + at(left, bottom);
+  }
+
+ private:
+  int& at(int x, int y) { return sums_[static_cast<std::size_t>(y) * stride_ + x]; }
+  int at(int x, int y) const { return sums_[static_cast<std::size_t>(y) * stride_ + x]; }
+
+  int stride_;
+  std::vector<int> sums_;
+};
+
+struct WallSum {
+  float x = 0.0F;
+  float y = 0.0F;
+  int count = 0;
+};
+
+/// The axis of the wall at (x, y), of which neither side has more free cells; kNoDirection if it has none.
+std::uint8_t find_axis(const std::vector<WallSum>& walls, const std::vector<std::uint8_t>& is_free, int width,
+                       int x, int y) {
+  constexpr int kReach = kFacingReach;
+  double count = 0.0, sx = 0.0, sy = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+  for (int dy = -kReach; dy <= kReach; ++dy) {
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      if (walls[static_cast<std::size_t>(y + dy) * width + (x + dx)].count == 0) continue;
+      count += 1.0;
+      sx += dx;
+      sy += dy;
+      xx += dx * dx;
+      yy += dy * dy;
+      xy += dx * dy;
+    }
+  }
+  xx -= sx * sx / count;
+  yy -= sy * sy / count;
+  xy -= sx * sy / count;
+  const double middle = 0.5 * (xx + yy), spread = std::hypot(0.5 * (xx - yy), xy);
+  // One cell across: a wall of one cell is as thick as a cell, not as thick as its centres' line.
+  if (middle + spread < kAxisElongation * (middle - spread + count / 12.0)) return kNoDirection;
+  const double across = 0.5 * std::atan2(2.0 * xy, xx - yy) + 0.5 * std::numbers::pi;
+  const double nx = std::cos(across), ny = std::sin(across);
+  int free[2] = {0, 0}, cells[2] = {0, 0};
+  for (int dy = -kReach; dy <= kReach; ++dy) {
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      const double off = nx * dx + ny * dy;
+      if (std::abs(off) < 1.0) continue;
+      ++cells[off > 0.0];
+      free[off > 0.0] += is_free[static_cast<std::size_t>(y + dy) * width + (x + dx)];
+    }
+  }
+  if (free[0] < kAxisFree * cells[0] || free[1] < kAxisFree * cells[1]) return kNoDirection;
+  const double parts = (across / (2.0 * std::numbers::pi) + 1.0) * kDirections;
+  return static_cast<std::uint8_t>(kDirections + static_cast<int>(std::lround(parts)) % kAxes);
+}
+
+/// The direction from the wall at (x, y) to where more free cells are, kNoDirection where the sides are
+/// balanced.
+std::uint8_t find_side(const BoxSums& free_cells, int x, int y) {
+  constexpr int kReach = kFacingReach;
+  const int right = free_cells(x + 1, y - kReach, x + kReach + 1, y + kReach + 1);
+  const int left = free_cells(x - kReach, y - kReach, x, y + kReach + 1);
+  const int above = free_cells(x - kReach, y + 1, x + kReach + 1, y + kReach + 1);
+  const int below = free_cells(x - kReach, y - kReach, x + kReach + 1, y);
+  const double dx = right - left;
+  const double dy = above - below;
+  constexpr double kHalfWindow = kReach * (2 * kReach + 1);
+  if (std::hypot(dx, dy) < kFacingBalance * kHalfWindow) return kNoDirection;
+  const double turns = std::atan2(dy, dx) / (2.0 * std::numbers::pi);
+  return static_cast<std::uint8_t>(static_cast<int>(std::lround((turns + 1.0) * kDirections)) % kDirections);
+}
+
+/// Marks the walls of small things. `at` has the index of each cell's wall, or -1.
+void mark_things(LikelihoodField& map, const std::vector<int>& at) {
+  const double largest = kLargestThing / map.cell;
+  std::vector<std::uint8_t> visited(map.walls.size(), 0);
+  std::vector<int> thing;
+  for (int first = 0; first < std::ssize(map.walls); ++first) {
+    if (visited[first] != 0) continue;
+    thing.assign(1, first);
+    visited[first] = 1;
+    double left = 1e9, right = -1e9, bottom = 1e9, top = -1e9;
+    for (std::size_t i = 0; i < thing.size(); ++i) {
+      const Point2& p = map.walls[thing[i]].position;
+      left = std::min(left, p.x);
+      right = std::max(right, p.x);
+      bottom = std::min(bottom, p.y);
+      top = std::max(top, p.y);
+      const int x = static_cast<int>(p.x), y = static_cast<int>(p.y);
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const int other = at[static_cast<std::size_t>(y + dy) * map.width + (x + dx)];
+          if (other < 0 || visited[other] != 0) continue;
+          visited[other] = 1;
+          thing.push_back(other);
+        }
+      }
+    }
+    if (thing.size() < kMinThing || std::hypot(right - left, top - bottom) > largest) continue;
+    for (const int wall : thing) map.walls[wall].stands_alone = true;
+  }
+}
+
+}  // namespace
+
+int steps_of_turn(double theta) {
+  const double steps = (theta / (2.0 * std::numbers::pi) + 1.0) * kDirections;
+  const int whole = static_cast<int>(steps);  // std::lround() is a call on many a machine
+  return (whole + (steps - whole >= 0.5 ? 1 : 0)) % kDirections;
+}
+
+LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell) {
+  const double scale = grid.resolution / cell;
+
+  LikelihoodField map;
+  map.cell = cell;
+  map.width = static_cast<int>(std::ceil(grid.width * scale)) + 2 * kMargin;
+  map.height = static_cast<int>(std::ceil(grid.height * scale)) + 2 * kMargin;
+  const Point2 corner = grid.origin * Point2{-kMargin * cell, -kMargin * cell};
+  map.T_map_grid = {corner.x, corner.y, grid.origin.theta};
+
+  const std::size_t size = static_cast<std::size_t>(map.width) * map.height;
+  std::vector<WallSum> walls(size);
+  std::vector<LabelledDistance> to_wall(size, kFar);
+  std::vector<LabelledDistance> to_known(size, kFar);
+  std::vector<std::uint8_t> is_free(size, 0);
+  std::vector<int> cell_x(grid.width);
+  for (int column = 0; column < grid.width; ++column)
+    cell_x[column] = static_cast<int>((column + 0.5) * scale) + kMargin;
+  for (int row = 0; row < grid.height; ++row) {
+    throw_if_cancelled();
+    const double y = (row + 0.5) * scale + kMargin;
+    const std::size_t line = static_cast<std::size_t>(y) * map.width;
+    for (int column = 0; column < grid.width; ++column) {
+      const Cell value = grid.at(column, row);
+      if (value == Cell::unknown) continue;
+      const std::size_t i = line + cell_x[column];
+      to_known[i] = 0;
+      is_free[i] = 1;
+      if (value != Cell::occupied) continue;
+      walls[i].x += static_cast<float>((column + 0.5) * scale + kMargin);
+      walls[i].y += static_cast<float>(y);
+      ++walls[i].count;
+    }
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    if (walls[i].count > 0) is_free[i] = 0;  // a wall hides the free cells that share its cell
+  }
+
+  std::vector<int> wall_at(size, -1);
+  const BoxSums free_cells(is_free, map.width, map.height);
+  for (int y = 0; y < map.height; ++y) {
+    throw_if_cancelled();
+    for (int x = 0; x < map.width; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * map.width + x;
+      const WallSum& wall = walls[i];
+      if (wall.count == 0) continue;
+      std::uint8_t facing = find_side(free_cells, x, y);
+      if (facing == kNoDirection) facing = find_axis(walls, is_free, map.width, x, y);
+      to_wall[i] = facing;
+      wall_at[i] = static_cast<int>(map.walls.size());
+      map.walls.push_back(
+          {{static_cast<double>(wall.x) / wall.count, static_cast<double>(wall.y) / wall.count}, facing});
+    }
+  }
+
+  mark_things(map, wall_at);
+
+  chamfer_distance(to_wall, map.width, map.height);
+  chamfer_distance(to_known, map.width, map.height);
+  map.places.resize(size);
+  std::array<std::size_t, kDistanceBins> counts{};
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (to_known[i] / kLabels > kSeenReach * kChamferStep) continue;  // stays unseen
+    const int cells = static_cast<int>(to_wall[i] / kLabels + kChamferStep / 2) / kChamferStep;
+    const int bin = std::min(cells, kDistanceBins - 1);
+    map.places[i] = {static_cast<std::uint8_t>(bin), static_cast<std::uint8_t>(to_wall[i] % kLabels)};
+    ++counts[bin];
+    ++seen;
+  }
+  for (int bin = 0; bin < kDistanceBins; ++bin) {  // one more in every bin: no background is ever 0
+    map.background[bin] = static_cast<double>(counts[bin] + 1) / static_cast<double>(seen + kDistanceBins);
+  }
+  return map;
+}
+
+}  // namespace gridmerge::internal

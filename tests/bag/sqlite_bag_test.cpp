@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rosbag2 files of SQLite, whole and damaged.
+#include "bag/sqlite_bag.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+#include <sqlite3.h>
+
+#include <atomic>
+#include <random>
+#include <string>
+
+#include "bag/support.hpp"
+#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/io/file_error.hpp"
+#include "io/support.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace gridmerge {
+namespace {
+
+using test::all_cells;
+using test::cells_of;
+using test::contains;
+using test::Recorded;
+using test::row_at;
+using test::run_sql;
+using test::update_at;
+using test::write_db3;
+using Rows = std::vector<std::vector<Cell>>;
+
+class SqliteBagTest : public testing::Test {
+ protected:
+  std::string error_of(const std::string& path, const LoadOptions& options = {}) {
+    const std::string message = test::message_of<FileError>([&] {
+      const Bag bag(path, options);
+      BagMaps(bag).last();
+    });
+    EXPECT_TRUE(message.starts_with(path + ": ")) << message;
+    return message;
+  }
+
+  const test::TemporaryDirectory directory_;
+  const std::string path_ = directory_.file("a.db3");
+};
+
+TEST_F(SqliteBagTest, TellsTopicsAndReadsTheirMapsInOrderOfTime) {
+  write_db3(path_, {row_at(30, {0, 100}, "/tb1/map"),
+                    row_at(10, {100, 0}, "/tb1/map"),
+                    {"/chatter", 11, "hi", "std_msgs/msg/String", "cdr"},
+                    row_at(20, {100, 100}, "/tb2/map"),
+                    update_at(40, {.x = 1, .values = {0}}, "/tb1/map_updates")});
+  const Bag bag(path_);
+  ASSERT_EQ(bag.topics().size(), 4u);
+  EXPECT_EQ(bag.topics()[1].name, "/tb1/map");
+  EXPECT_EQ(bag.topics()[1].messages, 2u);
+  EXPECT_EQ(bag.topics()[2].type, test::kUpdateType);
+  EXPECT_EQ(all_cells(bag, "/tb1/map"), (Rows{cells_of({100, 0}), cells_of({0, 100}), cells_of({0, 0})}));
+  EXPECT_EQ(all_cells(bag, "/tb2/map"), (Rows{cells_of({100, 100})}));
+  EXPECT_EQ(directory_.names(), std::vector<std::string>{"a.db3"}) << "nothing is made beside it";
+}
+
+RC_GTEST_PROP(SqliteBag, WhatIsWrittenIsRead, ()) {
+  const auto rows =
+      *rc::gen::nonEmpty(rc::gen::container<std::vector<std::vector<std::int8_t>>>(rc::gen::nonEmpty(
+          rc::gen::container<std::vector<std::int8_t>>(rc::gen::inRange<std::int8_t>(-1, 101)))));
+  std::vector<Recorded> messages;
+  Rows expected;
+  for (const auto& row : rows) {
+    messages.push_back(row_at(static_cast<std::int64_t>(messages.size()), row));
+    expected.push_back(cells_of(row));
+  }
+  const test::TemporaryDirectory directory;
+  write_db3(directory.file("a.db3"), messages);
+  const Bag bag(directory.file("a.db3"));
+  RC_ASSERT(all_cells(bag) == expected);
+  RC_ASSERT(BagMaps(bag).last().grid.cells == expected.back());
+}
+
+TEST_F(SqliteBagTest, WhatARecorderLeftInItsLogIsRead) {
+  write_db3(path_, {row_at(1, {0, 100})});
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path_.c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(database, "PRAGMA journal_mode = WAL; UPDATE messages SET timestamp = 5;", nullptr,
+                         nullptr, nullptr),
+            SQLITE_OK);
+  // As if it were killed now.
+  const std::string copy = directory_.write("copy.db3", test::read_file(path_));
+  directory_.write("copy.db3-wal", test::read_file(path_ + "-wal"));
+  sqlite3_close(database);
+  EXPECT_EQ(BagMaps(Bag(copy)).last().time, 5);
+}
+
+TEST_F(SqliteBagTest, WhatIsNoBagIsRefused) {
+  run_sql(path_, "CREATE TABLE topics(id INTEGER)");
+  EXPECT_TRUE(contains(error_of(path_), "has no table 'messages'"));
+  run_sql(path_, "CREATE TABLE messages(id INTEGER)");
+  EXPECT_TRUE(contains(error_of(path_), "SQLite cannot read it: no such column"));
+}
+
+TEST_F(SqliteBagTest, AViewThatNeverEndsIsNotRun) {
+  run_sql(path_,
+          "CREATE TABLE topics(id INTEGER, name TEXT, type TEXT, serialization_format TEXT);"
+          "CREATE VIEW messages AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) "
+          "SELECT i AS id, 1 AS topic_id, i AS timestamp, 'x' AS data FROM n;");
+  EXPECT_TRUE(contains(error_of(path_), "has no table 'messages'"));
+}
+
+TEST_F(SqliteBagTest, LargeMessagesAreRefusedBeforeTheyAreRead) {
+  write_db3(path_, {row_at(1, {0, 100})});
+  run_sql(path_, "UPDATE messages SET data = zeroblob(3000000)");
+  EXPECT_TRUE(contains(error_of(path_, {.max_cells = 100}), "exceeds the limit"));
+}
+
+TEST_F(SqliteBagTest, ValuesOfOtherTypesAreNoMaps) {
+  write_db3(path_, {row_at(1, {0, 100})});
+  run_sql(path_, "UPDATE messages SET data = 17");
+  EXPECT_TRUE(contains(error_of(path_), "is damaged"));
+  run_sql(path_, "UPDATE messages SET data = ''");
+  EXPECT_TRUE(contains(error_of(path_), "is damaged"));
+  run_sql(path_, "UPDATE topics SET name = x'ff00'");
+  EXPECT_TRUE(contains(error_of(path_), "has no message"));
+}
+
+TEST_F(SqliteBagTest, ANameOfOddCharactersIsAName) {
+  const std::string odd = directory_.file("50% ?of #1.db3");
+  write_db3(odd, {row_at(1, {0, 100})});
+  EXPECT_EQ(all_cells(Bag(odd)), (Rows{cells_of({0, 100})}));
+}
+
+TEST_F(SqliteBagTest, AQueryEndsWhenTheWorkIsCancelled) {
+  write_db3(path_, {row_at(1, {0, 100})});
+  const std::atomic<bool> cancelled = true;
+  EXPECT_THROW(with_cancellation(cancelled, [&] { const Bag bag(path_); }), Cancelled);
+}
+
+TEST_F(SqliteBagTest, DamageIsAnErrorOrHarmless) {
+  std::vector<Recorded> messages;
+  for (std::int8_t i = 0; i < 20; ++i) messages.push_back(row_at(i, {0, 100, i, 50}));
+  write_db3(path_, messages);
+  const std::string whole = test::read_file(path_);
+  std::mt19937 random(7);
+  std::size_t refused = 0;
+  for (int run = 0; run < 2000; ++run) {
+    std::string file = whole;
+    if (run % 10 == 0) file.resize(random() % file.size());
+    for (unsigned changes = 1 + random() % 8; changes > 0 && !file.empty(); --changes)
+      file[random() % file.size()] = static_cast<char>(random());
+    const std::string path = directory_.write("damaged.db3", file);
+    try {
+      const Bag bag(path, {.max_cells = 10'000});
+      for (const BagTopic& topic : bag.map_topics()) all_cells(bag, topic.name);
+    } catch (const FileError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with(path)) << error.what();
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 100u);
+  EXPECT_LT(refused, 2000u);
+}
+
+}  // namespace
+}  // namespace gridmerge

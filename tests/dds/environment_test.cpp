@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dds/environment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace gridmerge::internal {
+namespace {
+
+using Variables = std::map<std::string, std::string>;
+
+RosEnvironment read(const Variables& variables) {
+  return read_ros_environment([&](const std::string& name) -> std::optional<std::string> {
+    const auto found = variables.find(name);
+    return found == variables.end() ? std::nullopt : std::optional(found->second);
+  });
+}
+
+std::string refusal(const Variables& variables) {
+  try {
+    read(variables);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::string configuration(const Variables& variables, bool network = true) {
+  return cyclone_configuration(read(variables), 1000, network);
+}
+
+TEST(RosEnvironment, IsTheUsualOneWhereNothingIsSet) {
+  for (const Variables& variables : {Variables{}, Variables{{"ROS_DOMAIN_ID", ""},
+                                                            {"ROS_AUTOMATIC_DISCOVERY_RANGE", ""},
+                                                            {"ROS_STATIC_PEERS", ""},
+                                                            {"ROS_LOCALHOST_ONLY", ""},
+                                                            {"CYCLONEDDS_URI", ""}}}) {
+    const RosEnvironment environment = read(variables);
+    EXPECT_EQ(environment.domain, 0u);
+    EXPECT_EQ(environment.range, DiscoveryRange::subnet);
+    EXPECT_TRUE(environment.static_peers.empty());
+    const std::string text = configuration(variables);
+    EXPECT_FALSE(has(text, "Peer"));
+    EXPECT_FALSE(has(text, "AllowMulticast"));
+    EXPECT_TRUE(has(text, "<MaxSampleSize>1000B</MaxSampleSize>"));
+    EXPECT_FALSE(has(text, ","));
+  }
+}
+
+TEST(RosEnvironment, HasADomain) {
+  EXPECT_EQ(read({{"ROS_DOMAIN_ID", "232"}}).domain, 232u);
+  for (const char* text : {"233", "-1", "1.5", "x", " 1", "1 ", "99999999999999999999"})
+    EXPECT_TRUE(has(refusal({{"ROS_DOMAIN_ID", text}}), "ROS_DOMAIN_ID")) << text;
+}
+
+TEST(RosEnvironment, KeepsToThisMachine) {
+  for (const Variables& variables :
+       {Variables{{"ROS_LOCALHOST_ONLY", "1"}}, Variables{{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}}}) {
+    EXPECT_EQ(read(variables).range, DiscoveryRange::localhost);
+    const std::string text = configuration(variables);
+    EXPECT_TRUE(has(text, "<AllowMulticast>false</AllowMulticast>"));
+    EXPECT_TRUE(has(text, "<Peers><Peer Address=\"127.0.0.1\"/></Peers>"));
+    EXPECT_TRUE(has(text, "<NetworkInterface autodetermine=\"true\"/>"));
+    // Cyclone DDS would choose the loopback interface, which it has already.
+    EXPECT_FALSE(has(configuration(variables, false), "autodetermine"));
+  }
+  EXPECT_EQ(read({{"ROS_LOCALHOST_ONLY", "0"}}).range, DiscoveryRange::subnet);
+  EXPECT_TRUE(has(refusal({{"ROS_LOCALHOST_ONLY", "yes"}}), "ROS_LOCALHOST_ONLY"));
+}
+
+TEST(RosEnvironment, LocalhostOnlyCountsForMore) {
+  const Variables variables{{"ROS_LOCALHOST_ONLY", "1"},
+                            {"ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"},
+                            {"ROS_STATIC_PEERS", "192.0.2.7"}};
+  EXPECT_EQ(read(variables).range, DiscoveryRange::localhost);
+  EXPECT_TRUE(read(variables).static_peers.empty());
+}
+
+TEST(RosEnvironment, HasPeers) {
+  const Variables variables{{"ROS_STATIC_PEERS", "192.0.2.7;;robot-1.local;"}};
+  EXPECT_EQ(read(variables).static_peers, (std::vector<std::string>{"192.0.2.7", "robot-1.local"}));
+  EXPECT_TRUE(
+      has(configuration(variables), "<Peer Address=\"192.0.2.7\"/><Peer Address=\"robot-1.local\"/>"));
+  EXPECT_FALSE(has(configuration(variables), "AllowMulticast"));
+  const std::string both =
+      configuration({{"ROS_STATIC_PEERS", "a"}, {"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}});
+  EXPECT_TRUE(has(both, "<Peer Address=\"127.0.0.1\"/><Peer Address=\"a\"/>"));
+}
+
+TEST(RosEnvironment, TakesNoPeersThatCouldEndTheXml) {
+  for (const char* text : {"\"/><x", "a b", "a<", "a&b", "a,b"})
+    EXPECT_TRUE(has(refusal({{"ROS_STATIC_PEERS", text}}), "ROS_STATIC_PEERS")) << text;
+}
+
+TEST(RosEnvironment, NamesRangesThatRosDoesNotHave) {
+  EXPECT_TRUE(has(refusal({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "localhost"}}), "is none of"));
+  EXPECT_TRUE(has(refusal({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"}}), "no robot can be found"));
+  EXPECT_EQ(read({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT"}, {"ROS_STATIC_PEERS", "a"}})
+                .static_peers.size(),
+            0u);
+}
+
+TEST(RosEnvironment, DoesNotSpeakOpenlyWhereSecurityIsAskedFor) {
+  EXPECT_TRUE(has(refusal({{"ROS_SECURITY_ENABLE", "true"}}), "ROS_SECURITY_ENABLE='true'"));
+  EXPECT_EQ(refusal({{"ROS_SECURITY_ENABLE", "false"}}), "taken");
+}
+
+TEST(RosEnvironment, CyclonesOwnSettingsComeLast) {
+  const std::string uri = "<CycloneDDS><Domain><General/></Domain></CycloneDDS>";
+  const std::string text = configuration({{"CYCLONEDDS_URI", uri}, {"ROS_LOCALHOST_ONLY", "1"}});
+  EXPECT_TRUE(text.ends_with("," + uri));
+  EXPECT_FALSE(has(text, "NetworkInterface"));  // they could not be taken away again
+}
+
+}  // namespace
+}  // namespace gridmerge::internal

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Matches of a merge that are made elsewhere.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/merger.hpp"
+#include "merge/team.hpp"
+
+namespace gridmerge {
+
+using test::expect_same;
+using test::Team;
+
+namespace {
+
+/// Makes what is due as another machine would, and hands it in in any order. Says how many rounds there were
+/// of each search.
+std::vector<SearchMethod> match_elsewhere(Merger& merger, const std::vector<OccupancyGrid>& maps,
+                                          unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<SearchMethod> rounds;
+  for (std::vector<DueMatch> due = merger.due(); !due.empty(); due = merger.due()) {
+    rounds.push_back(due.front().search);
+    std::shuffle(due.begin(), due.end(), random);
+    for (const DueMatch& one : due) {
+      EXPECT_EQ(one.search, rounds.back());
+      merger.hand_in(one, match(maps[one.fixed], maps[one.moving], merger.match_options(one.search)));
+    }
+  }
+  return rounds;
+}
+
+/// Options of a merge that counts the pairs which it matches itself.
+MergeOptions counting(std::size_t& matched) {
+  MergeOptions options;
+  options.progress = [&](std::size_t, std::size_t) { ++matched; };
+  return options;
+}
+
+TEST(DueMatches, MadeElsewhereTheyLeaveNothingToBeMatched) {
+  const Team team;
+  const MergeResult expected = merge(team.maps);
+  for (const unsigned seed : {1u, 2u}) {
+    std::size_t matched = 0;
+    Merger merger(counting(matched));
+    for (const OccupancyGrid& map : team.maps) merger.add(map);
+    EXPECT_EQ(match_elsewhere(merger, team.maps, seed),
+              (std::vector{SearchMethod::quick, SearchMethod::exhaustive}));
+    expect_same(merger.solve(), expected);
+    EXPECT_EQ(matched, 0u);
+    EXPECT_TRUE(merger.is_complete());
+    EXPECT_TRUE(merger.due().empty());
+  }
+}
+
+TEST(DueMatches, OtherSearchesHaveOneRound) {
+  const Team team;
+  MergeOptions options;
+  options.match.search = SearchMethod::quick;
+  Merger merger(options);
+  for (const OccupancyGrid& map : team.maps) merger.add(map);
+  EXPECT_EQ(match_elsewhere(merger, team.maps, 1), std::vector{SearchMethod::quick});
+  expect_same(merger.solve(), merge(team.maps, options));
+}
+
+TEST(DueMatches, AreThoseThatSolveWouldMake) {
+  const Team team;
+  std::size_t matched = 0;
+  Merger merger(counting(matched));
+  for (const OccupancyGrid& map : team.maps) merger.add(map);
+  const std::vector<DueMatch> due = merger.due();
+  EXPECT_EQ(due.size(), 10u);
+  std::set<std::pair<std::size_t, std::size_t>> pairs;
+  for (const DueMatch& one : due) pairs.insert(std::minmax(one.fixed, one.moving));
+  EXPECT_EQ(pairs.size(), 10u);
+  // Half of them made elsewhere, the rest here.
+  for (std::size_t i = 0; i < 5; ++i)
+    merger.hand_in(due[i], match(team.maps[due[i].fixed], team.maps[due[i].moving],
+                                 merger.match_options(due[i].search)));
+  EXPECT_EQ(merger.due().size(), 5u);
+  expect_same(merger.solve(), merge(team.maps));
+  EXPECT_EQ(matched, 5u + 4u);  // and the stranger with each of the others again
+}
+
+TEST(DueMatches, OfAMapThatHasChangedAreDueAgain) {
+  Team team;
+  Merger merger;
+  for (const OccupancyGrid& map : team.maps) merger.add(map);
+  match_elsewhere(merger, team.maps, 1);
+  team.maps[3] = team.maps[1];
+  merger.update(3, team.maps[3]);  // a copy now, which counts once
+  EXPECT_TRUE(merger.due().empty());
+  merger.search_again(1);
+  EXPECT_EQ(merger.due().size(), 3u);
+  match_elsewhere(merger, team.maps, 2);
+  expect_same(merger.solve(), merge(team.maps));
+}
+
+TEST(DueMatches, WhatIsKnownLaterChangesWhatIsDue) {
+  const Team team;
+  Merger merger;
+  for (const OccupancyGrid& map : team.maps) merger.add(map);
+  while (merger.due().front().search == SearchMethod::quick) {
+    for (const DueMatch& one : merger.due())
+      merger.hand_in(one,
+                     match(team.maps[one.fixed], team.maps[one.moving], merger.match_options(one.search)));
+  }
+  EXPECT_EQ(merger.due().size(), 4u);  // of the stranger
+  for (std::size_t map = 0; map < 5; ++map) merger.set_known_pose(map, KnownPose{{0, 0, 0}, 0.1, 0.1, true});
+  EXPECT_TRUE(merger.due().empty());  // all are fixed, so none lies apart
+  merger.remove(4);
+  EXPECT_TRUE(merger.due().empty());
+  EXPECT_EQ(merger.solve().components.at(0).members.size(), 4u);
+}
+
+TEST(DueMatches, RefuseWhatNobodyAskedFor) {
+  const Team team;
+  Merger merger;
+  EXPECT_TRUE(merger.due().empty());
+  merger.add(team.maps[0]);
+  EXPECT_TRUE(merger.due().empty());
+  EXPECT_TRUE(merger.due().empty());
+  merger.add(team.maps[1]);
+  EXPECT_THROW(merger.hand_in({0, 2, SearchMethod::quick}, {}), std::out_of_range);
+  EXPECT_THROW(merger.hand_in({2, 0, SearchMethod::quick}, {}), std::out_of_range);
+  EXPECT_THROW(merger.hand_in({1, 1, SearchMethod::quick}, {}), std::invalid_argument);
+  EXPECT_THROW(merger.hand_in({0, 1, SearchMethod::thorough}, {}), std::invalid_argument);
+  EXPECT_EQ(merger.due().size(), 1u);
+}
+
+}  // namespace
+}  // namespace gridmerge
