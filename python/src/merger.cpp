@@ -136,8 +136,8 @@ class MapMerger {
 
 void bind_merger(nb::module_& module) {
   nb::class_<MapMerger>(module, "Merger")
-      .def(nb::init<int, double, double, double, bool, const std::string&>(), nb::arg("threads"), nb::arg("accept"),
-           nb::arg("max_false_joins"), nb::arg("output_resolution"), nb::arg("elastic"),
+      .def(nb::init<int, double, double, double, bool, const std::string&>(), nb::arg("threads"),
+           nb::arg("accept"), nb::arg("max_false_joins"), nb::arg("output_resolution"), nb::arg("elastic"),
            nb::arg("search"))
       .def("add", &MapMerger::add, nb::arg("map"), nb::arg("known").none())
       .def("update", &MapMerger::update, nb::arg("id"), nb::arg("map"))

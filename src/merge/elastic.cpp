@@ -10,28 +10,15 @@
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/match/match.hpp"
 #include "match/drawn_walls.hpp"
-#include "merge/elastic_system.hpp"
+#include "merge/elastic_choice.hpp"
 
 namespace gridmerge::internal {
 
 namespace {
 
-/// How near walls must be to be tied, and how much stiffer the maps are than in the end: first whole maps
-/// fit, then their parts.
-struct Round {
-  double reach;    // [sd]
-  double stiffer;  // of bending
-};
-constexpr std::array<Round, 7> kRounds{
-    {{6.0, 30.0}, {5.0, 16.0}, {3.8, 5.0}, {2.4, 1.5}, {2.0, 1.0}, {2.0, 1.0}, {2.0, 1.0}}};
-constexpr double kLeastReach = 0.3;      // [m]
 constexpr double kSpacingsAlong = 16.0;  // the longest map
 constexpr double kLeastSpacing = 1.0;    // [m]
-constexpr double kBendingLength = 2.2;   // [m]: over so much a map may well bend by sd
-constexpr double kStrainLength = 0.55;   // [m]
-constexpr double kTiedDown = 1e-3;       // of a shift [1/m^2]: next to nothing, where nothing else holds it
-constexpr double kMostStrainOfStep = 0.35;
-constexpr std::size_t kSamples = 2000;  // of a map's known cells
+constexpr std::size_t kSamples = 2000;   // of a map's known cells
 
 /// Known cells, evenly drawn [m, map frame].
 std::vector<Point2> sample_known(const OccupancyGrid& map) {
@@ -151,16 +138,6 @@ double choose_spacing(const std::vector<RigidMember>& maps) {
   return std::max(kLeastSpacing, longest / kSpacingsAlong);
 }
 
-std::vector<Eigen::SparseMatrix<double>> energies_of(const std::vector<ElasticMember>& members,
-                                                     const Stiffness& stiffness) {
-  std::vector<Eigen::SparseMatrix<double>> energies(members.size());
-  parallel_for(members.size(), [&](std::size_t i) {
-    energies[i] = members[i].sheet.energy(stiffness);
-    for (Eigen::Index k = 0; k < energies[i].rows(); ++k) energies[i].coeffRef(k, k) += kTiedDown;
-  });
-  return energies;
-}
-
 }  // namespace
 
 std::vector<BentMember> bend(const std::vector<RigidMember>& maps, double sd) {
@@ -174,27 +151,17 @@ std::vector<BentMember> bend(const std::vector<RigidMember>& maps, double sd) {
     straight.push_back(one.T_group_map);
   }
   parallel_for(maps.size(), [&](std::size_t i) { known[i] = sample_known(maps[i].map->known()); });
-  const Stiffness stiffness{std::pow(kBendingLength / sd, 2), std::pow(kStrainLength / sd, 2)};
 
-  const auto pairs = pairs_that_meet(members, std::max(kLeastReach, kRounds.front().reach * sd));
-  std::vector<bool> is_tied(members.size(), false);
-  for (const Round& round : kRounds) {
-    throw_if_cancelled();
-    const std::vector<TiedPair> tied =
-        tie_walls(members, pairs, std::max(kLeastReach, round.reach * sd), cell);
-    for (const TiedPair& pair : tied) {
-      if (pair.ties.empty()) continue;
-      is_tied[pair.first] = is_tied[pair.second] = true;
-    }
-    const auto energies = energies_of(members, {round.stiffer * stiffness.bending, stiffness.strain});
-    const std::vector<std::vector<Point2>> shifts = solve_shifts(members, tied, energies);
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      if (!members[i].held) members[i].sheet.step_to(shifts[i], kMostStrainOfStep);
-    }
-  }
+  ElasticFit options;
+  options.pairs = pairs_that_meet(members, first_reach(sd));
+  options.sd = sd;
+  options.cell = cell;
+  const std::vector<bool> gains = find_gains(options, members);
+  for (std::size_t i = 0; i < members.size(); ++i) members[i].held = members[i].held || !gains[i];
+  const std::vector<bool> is_tied = fit(options, members);
 
   const bool is_anchored =
-      std::any_of(maps.begin(), maps.end(), [](const RigidMember& one) { return one.held; });
+      std::any_of(members.begin(), members.end(), [](const ElasticMember& one) { return one.held; });
   const ElasticSheet::Affine change =
       is_anchored ? ElasticSheet::Affine{} : without_mean_strain(members, known, straight);
   std::vector<BentMember> bent;

@@ -16,7 +16,10 @@ constexpr std::size_t kDrawnTo = 8;      // maps are tied to so many others
 constexpr double kLeastMet = 0.05;       // of the first walls
 constexpr double kSd = 0.1;              // of a wall's place [m]
 constexpr double kIndependent = 1.0;     // so long a wall is one observation [m]
-constexpr double kAlong = 0.05;          // where along a wall its partner is says so much less
+constexpr double kHalfMisfit = 0.2;      // [m]: at which a wall counts half
+constexpr double kCellsOfHalfMisfit = 2.0;
+constexpr double kMisfitReach = 3.0;  // of that: what is farther counts as none
+constexpr double kAlong = 0.05;       // where along a wall its partner is says so much less
 
 /// A map's walls where they lie now.
 struct SeenMap {
@@ -44,15 +47,28 @@ std::size_t drawn(std::size_t i, std::size_t of, std::size_t all) {
   return i * all / of;
 }
 
+/// Where a wall of a straight map lies.
+FloorSquare square_of(const ElasticMember& member, const ElasticWall& wall, const WallFold& fold) {
+  if (fold.has_all()) return {};
+  const Point2 at = member.sheet.T_group_map() * wall.position;
+  const auto part = [&](double value) {
+    return static_cast<int>(std::clamp(std::floor(value / fold.side), -1e8, 1e8));
+  };
+  return {part(at.x), part(at.y)};
+}
+
 /// Adds what ties walls of `from` to those of `to`.
 void tie(const ElasticMember& from, const ElasticMember& to, const SeenMap& seen_from_map,
-         const SeenMap& seen_to, double reach, double cell, bool to_is_first, std::vector<WallTie>& ties) {
+         const SeenMap& seen_to, double reach, double cell, const WallFold& fold, bool to_is_first,
+         std::vector<WallTie>& ties) {
   const std::vector<ElasticWall>& walls = from.walls.walls();
   const std::size_t count = std::min(kWalls, walls.size());
-  const double weight = cell * static_cast<double>(walls.size()) / static_cast<double>(count) / kIndependent;
+  const double weight = (fold.has_all() ? 1.0 : 2.0) * cell * static_cast<double>(walls.size()) /
+                        static_cast<double>(count) / kIndependent;
   const double sd = std::max(kSd, cell), usual = std::max(0.5 * reach, 1.5 * sd);
   for (std::size_t i = 0; i < count; ++i) {
     const ElasticWall& wall = walls[drawn(i, count, walls.size())];
+    if (!fold.has(square_of(from, wall, fold))) continue;
     const ElasticWall there = seen_in(seen_to, from, wall);
     const ElasticWall* const nearest = to.walls.nearest(there, reach);
     if (nearest == nullptr) continue;
@@ -82,6 +98,34 @@ void tie(const ElasticMember& from, const ElasticMember& to, const SeenMap& seen
     one.across = weight / (sd * sd) / ((1.0 + far) * (1.0 + far));
     one.along = kAlong * one.across;
     ties.push_back(one);
+  }
+}
+
+double half_misfit(double cell) {
+  return std::max(kHalfMisfit, kCellsOfHalfMisfit * cell);
+}
+
+/// Adds how far walls of `from` lie from those of `to`.
+void add_misfit(const ElasticMember& from, const ElasticMember& to, const SeenMap& seen_to, double cell,
+                const WallFold& fold, PairMisfit& misfit) {
+  const std::vector<ElasticWall>& walls = from.walls.walls();
+  const std::size_t count = std::min(kWalls, walls.size());
+  const double reach = kMisfitReach * half_misfit(cell);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ElasticWall& wall = walls[drawn(i, count, walls.size())];
+    const FloorSquare square = square_of(from, wall, fold);
+    if (!fold.has(square)) continue;
+    const ElasticWall there = seen_in(seen_to, from, wall);
+    const ElasticWall* const nearest = to.walls.nearest(there, reach);
+    double& sum = misfit.on[square];
+    if (nearest == nullptr) {
+      sum += 1.0;
+      continue;
+    }
+    const Point2 gap{there.position.x - nearest->position.x, there.position.y - nearest->position.y};
+    const double across = nearest->normal.x * gap.x + nearest->normal.y * gap.y;
+    sum += misfit_of_gap(across, cell);
+    misfit.met += 1.0;
   }
 }
 
@@ -132,7 +176,7 @@ std::vector<std::pair<std::size_t, std::size_t>> pairs_that_meet(const std::vect
 
 std::vector<TiedPair> tie_walls(const std::vector<ElasticMember>& members,
                                 const std::vector<std::pair<std::size_t, std::size_t>>& pairs, double reach,
-                                double cell) {
+                                double cell, const WallFold& fold) {
   std::vector<SeenMap> seen;
   for (const ElasticMember& member : members) seen.push_back(see(member));
   std::vector<double> count(members.size(), 0.0);
@@ -145,8 +189,8 @@ std::vector<TiedPair> tie_walls(const std::vector<ElasticMember>& members,
     TiedPair& pair = tied[i];
     std::tie(pair.first, pair.second) = pairs[i];
     const ElasticMember &first = members[pair.first], &second = members[pair.second];
-    tie(first, second, seen[pair.first], seen[pair.second], reach, cell, false, pair.ties);
-    tie(second, first, seen[pair.second], seen[pair.first], reach, cell, true, pair.ties);
+    tie(first, second, seen[pair.first], seen[pair.second], reach, cell, fold, false, pair.ties);
+    tie(second, first, seen[pair.second], seen[pair.first], reach, cell, fold, true, pair.ties);
     const double share = 1.0 / (count[pair.first] + count[pair.second]);
     for (WallTie& one : pair.ties) {
       one.across *= share;
@@ -154,6 +198,25 @@ std::vector<TiedPair> tie_walls(const std::vector<ElasticMember>& members,
     }
   });
   return tied;
+}
+
+double misfit_of_gap(double gap, double cell) {
+  const double by_half = gap / half_misfit(cell);
+  return by_half * by_half / (1.0 + by_half * by_half);
+}
+
+std::vector<PairMisfit> misfits_of(const std::vector<ElasticMember>& members,
+                                   const std::vector<std::pair<std::size_t, std::size_t>>& pairs, double cell,
+                                   const WallFold& fold) {
+  std::vector<SeenMap> seen;
+  for (const ElasticMember& member : members) seen.push_back(see(member));
+  std::vector<PairMisfit> misfits(pairs.size());
+  parallel_for(pairs.size(), [&](std::size_t i) {
+    const auto& [first, second] = pairs[i];
+    add_misfit(members[first], members[second], seen[second], cell, fold, misfits[i]);
+    add_misfit(members[second], members[first], seen[first], cell, fold, misfits[i]);
+  });
+  return misfits;
 }
 
 }  // namespace gridmerge::internal

@@ -39,6 +39,7 @@ class ElasticSheet {
   /// From the directions of the shifts to those of the group.
   double direction() const { return T_group_map_.theta + T_map_lattice_.theta; }
   int columns() const { return columns_; }
+  double spacing() const { return spacing_; }  ///< [m]
 
   /// On which shifts a point of the map frame depends.
   SplineWeights weights_at(const Point2& in_map) const;
