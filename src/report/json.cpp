@@ -12,19 +12,6 @@ using namespace internal;
 
 namespace {
 
-Json deformation_json(const Deformation& deformation) {
-  Json shifts = Json::array();
-  for (const Point2& shift : deformation.shifts()) {
-    shifts.push_back(number_json(shift.x));
-    shifts.push_back(number_json(shift.y));
-  }
-  return {{"frame", transform_json(deformation.T_map_lattice())},
-          {"spacing", number_json(deformation.spacing())},
-          {"columns", deformation.columns()},
-          {"rows", deformation.rows()},
-          {"shifts", std::move(shifts)}};
-}
-
 Json member_json(const std::string& name, const Member& member) {
   Json json{{"source", name},
             {"transform", transform_json(member.T_component_map)},
