@@ -42,15 +42,21 @@ void add_misfits(const std::vector<ElasticMember>& members, const ElasticFit& op
   }
 }
 
-/// Whether `after` is less than `before`, surely, and by at least `worth` a wall; both have the same squares.
-bool is_surely_less(const Misfit& after, const Misfit& before, double worth) {
-  double sum = 0.0, squares = 0.0;
+/// What has changed, summed over the squares; both have the same ones.
+struct Change {
+  double sum = 0.0;
+  double standard_error = 0.0;
+};
+Change change_of(const Misfit& before, const Misfit& after) {
+  Change change;
+  double squares = 0.0;
   for (const auto& [square, value] : after.on) {
-    const double change = value - before.on.at(square);
-    sum += change;
-    squares += change * change;
+    const double one = value - before.on.at(square);
+    change.sum += one;
+    squares += one * one;
   }
-  return sum < -kSurely * std::sqrt(squares) && sum < -worth * after.met;
+  change.standard_error = std::sqrt(squares);
+  return change;
 }
 
 }  // namespace
@@ -68,11 +74,12 @@ std::vector<bool> find_gains(const ElasticFit& options, const std::vector<Elasti
     fit(half, bent);
     add_misfits(bent, options, held_out, after);
   }
-  const double worth = misfit_of_gap(kGapWorth * options.cell, options.cell);
   std::vector<bool> gains(members.size(), false);
-  if (!is_surely_less(after.all, before.all, worth)) return gains;
+  const Change all = change_of(before.all, after.all);
+  const double worth = misfit_of_gap(kGapWorth * options.cell, options.cell) * after.all.met;
+  if (all.sum > -kSurely * all.standard_error || all.sum > -worth) return gains;
   for (std::size_t i = 0; i < members.size(); ++i)
-    gains[i] = is_surely_less(after.of_map[i], before.of_map[i], worth);
+    gains[i] = change_of(before.of_map[i], after.of_map[i]).sum < 0.0;
   return gains;
 }
 

@@ -12,9 +12,10 @@ namespace gridmerge::internal {
 ///
 /// By cross-validation: the floor is parted into squares, as a chessboard is. The maps are fitted by the
 /// walls on the squares of one colour, and judged by how near walls lie to each other on the squares of the
-/// other; then the other way round. A map gains if the walls that were held out fit better: surely, by two
-/// standard errors over the squares, and by more than what a gap of half a cell is worth. No map gains unless
-/// that holds for all pairs together. `options.fold` is not used. Costs two fits to half of the walls.
+/// other; then the other way round. No map gains unless the walls that were held out, of all pairs together,
+/// fit better: surely, by two standard errors over the squares, and by more than what a gap of half a cell is
+/// worth. Then each map gains whose own walls that were held out fit better.
+/// `options.fold` is not used. Costs two fits to half of the walls.
 std::vector<bool> find_gains(const ElasticFit& options, const std::vector<ElasticMember>& members);
 
 }  // namespace gridmerge::internal

@@ -22,8 +22,8 @@ struct Round {
 constexpr std::array<Round, 7> kRounds{
     {{6.0, 30.0}, {5.0, 16.0}, {3.8, 5.0}, {2.4, 1.5}, {2.0, 1.0}, {2.0, 1.0}, {2.0, 1.0}}};
 constexpr double kLeastReach = 0.3;     // [m]
-constexpr double kBendingLength = 2.2;  // [m]: over so much a map may well bend by sd
-constexpr double kStrainLength = 0.55;  // [m]
+constexpr double kBendingLength = 1.5;  // [m]: over so much a map may well bend by sd
+constexpr double kStrainLength = 0.3;   // [m]
 constexpr double kTiedDown = 1e-3;      // of a shift [1/m^2]: next to nothing, where nothing else holds it
 constexpr double kMostStrainOfStep = 0.35;
 

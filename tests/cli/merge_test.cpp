@@ -2,14 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <sstream>
 
 #include "fixture.hpp"
-#include "gridmerge/io/map_file.hpp"
-#include "gridmerge/merge/fuse.hpp"
-#include "gridmerge/report/merge_record.hpp"
 
 namespace gridmerge::test {
 namespace {
@@ -442,74 +438,6 @@ TEST_F(Merge, AFullDiskLeavesNothingHalfWritten) {
   EXPECT_EQ(run({"merge", left, right, "-o", output}, options).exit_code, 1);
   EXPECT_EQ(files_in(output), all_files);
   EXPECT_EQ(read_file(output + "/merged.pgm"), before);
-}
-
-/// Three maps of one building that drift has bent, apart from the library's own simulation.
-class BentMerge : public Merge {
- protected:
-  BentMerge() {
-    const OccupancyGrid building = draw_building(1);
-    for (int i = 0; i < 3; ++i) {
-      std::vector<Point2> shifts;
-      for (int point = 0; point < 36; ++point)
-        shifts.push_back({0.5 * std::sin(1.7 * i + 2.3 * point), 0.5 * std::cos(2.9 * i * point + 1.1 * point)});
-      const Deformation bend({-1.0, -4.0, 0.1}, 7.0, 6, 6, shifts);
-      maps.push_back(write_map(directory, fmt::format("bent_{}", i), bent_map(building, bend)));
-    }
-  }
-
-  std::vector<std::string> merge_call(const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"merge"};
-    words.insert(words.end(), maps.begin(), maps.end());
-    words.insert(words.end(), {"-o", output});
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  }
-
-  static double doubled(const std::string& out) {
-    const std::string before = "merged.yaml: ", after = " % of the walls that several maps saw lie double";
-    const std::size_t end = out.find(after), begin = out.rfind(before, end);
-    EXPECT_NE(end, std::string::npos) << out;
-    return end == std::string::npos ? -1.0 : std::stod(out.substr(begin + before.size()));
-  }
-
-  std::vector<std::string> maps;
-};
-
-TEST_F(BentMerge, ElasticIsHintedAtAndHelps) {
-  const Outcome rigid = run(merge_call({}));
-  EXPECT_EQ(rigid.exit_code, 0) << rigid.err;
-  EXPECT_GT(doubled(rigid.out), 15.0);
-  EXPECT_NE(rigid.out.find("; --elastic bends maps so that they fit better\n"), std::string::npos) << rigid.out;
-  const Outcome elastic = run(merge_call({"--elastic", "--verbose"}));
-  EXPECT_EQ(elastic.exit_code, 0) << elastic.err;
-  EXPECT_LT(doubled(elastic.out), 10.0);
-  EXPECT_EQ(elastic.out.find("--elastic"), std::string::npos) << elastic.out;
-  // Maps that fit say nothing.
-  EXPECT_EQ(run({"merge", left, right, "-o", output}).out.find("lie double"), std::string::npos);
-}
-
-TEST_F(BentMerge, ItsDeformationsAreReadAgain) {
-  ASSERT_EQ(run(merge_call({"--elastic"})).exit_code, 0);
-  const Json json = Json::parse(read_file(output + "/transforms.json"));
-  const Json& members = json.at("components").at(0).at("members");
-  ASSERT_EQ(members.size(), 3u);
-  for (const Json& member : members) {
-    expect_keys(member, {"source", "transform", "probability", "sd", "deformation"});
-    expect_keys(member.at("deformation"), {"frame", "spacing", "columns", "rows", "shifts"});
-  }
-  EXPECT_TRUE(json.at("components").at(0).at("omega").is_null());
-  // What was written is what comes of the maps and the record.
-  MergeRecord record = read_merge_record(output);
-  std::vector<OccupancyGrid> grids;
-  for (const std::string& map : maps) grids.push_back(load_map(map).grid);
-  EXPECT_TRUE(fuse_again(record, grids, output).empty());
-}
-
-TEST_F(BentMerge, NeedsTheJointStrategy) {
-  const Outcome outcome = run(merge_call({"--elastic", "--strategy", "tree"}));
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("--elastic: needs --strategy joint"), std::string::npos) << outcome.err;
 }
 
 }  // namespace
