@@ -94,15 +94,6 @@ TEST(Bend, LeavesStraightMapsStraight) {
   }
 }
 
-// Maps of different buildings that lie on each other by mistake have nothing to gain either.
-TEST(Bend, LeavesUnrelatedMapsStraight) {
-  for (const unsigned seed : {2U, 3U, 4U}) {
-    const PreparedMap one(test::draw_building(1)), other(test::draw_building(seed));
-    for (const BentMember& member : bend({{&one, {}, false}, {&other, {0.2, 0.1, 0.0}, false}}, 0.3))
-      EXPECT_TRUE(member.deformation.is_identity()) << seed;
-  }
-}
-
 TEST(Bend, KeepsHeldMapsAndThoseThatMeetNothing) {
   BentTeam team(0.6);
   team.members[1].held = true;

@@ -219,7 +219,7 @@ export class Stage {
     const complete = this.tiles.draw(context, scaledBy(view, ratio), budget);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.drawStamps();
-    if (this.state.arrows) drawArrows(context, view, this.state);
+    if (this.state.arrows) drawArrows(context, view, colors, this.state);
     if (this.gridShown) drawGrid(context, view, colors);
     if (this.gridShown) drawAxes(context, view, colors);
     drawScaleBar(context, view, colors);
