@@ -45,8 +45,8 @@ class Merger:
                 _arguments.share("accept", accept),
                 _arguments.not_negative("max_false_joins", max_false_joins),
                 to_output_resolution(output_resolution),
-            )
                 bool(elastic),
+            )
         )
 
     def _set_up(self, options: tuple[int, float, float, float, bool]) -> None:

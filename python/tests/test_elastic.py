@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import json
 import pickle
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import gridmerge
@@ -63,7 +64,20 @@ def test_deformations_are_values() -> None:
 
 def test_elastic_merge(cli: Cli, tmp_path: Path) -> None:
     cli(
-        *"simulate --robots 3 --overlap 0.8 --others 0 --drift 1.5 --seed 3 -o".split(),
+        *[
+            "simulate",
+            "--robots",
+            "3",
+            "--overlap",
+            "0.8",
+            "--others",
+            "0",
+            "--drift",
+            "1.5",
+            "--seed",
+            "3",
+            "-o",
+        ],
         str(tmp_path / "maps"),
     )
     maps = [str(tmp_path / "maps" / f"robot_{i}.yaml") for i in (1, 2, 3)]
@@ -88,5 +102,17 @@ def test_elastic_merge(cli: Cli, tmp_path: Path) -> None:
         np.testing.assert_array_equal(
             np.array(one["deformation"]["shifts"]), member.deformation.shifts.reshape(-1)
         )
+    again = pickle.loads(pickle.dumps(elastic))
+    assert [one.deformation for one in again.components[0].members] == [one.deformation for one in members]
+    with ProcessPoolExecutor(2) as executor:
+        elsewhere = gridmerge.merge(maps, elastic=True, executor=executor)
+    assert [one.deformation for one in elsewhere.components[0].members] == [
+        one.deformation for one in members
+    ]
+    merger = gridmerge.Merger(elastic=True)
+    for one in maps:
+        merger.add(one)
+    solved = pickle.loads(pickle.dumps(merger)).solve()
+    assert [one.deformation for one in solved.components[0].members] == [one.deformation for one in members]
     with pytest.raises(ValueError, match="elastic needs 'joint'"):
         gridmerge.merge(maps, elastic=True, strategy="tree")
