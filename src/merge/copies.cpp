@@ -116,6 +116,7 @@ void add_copies(const std::vector<Copy>& copies, const std::vector<const Occupan
     Member member = *original;
     member.map = copy.map;
     member.T_component_map = original->T_component_map * copy.T_original_map;
+    member.deformation = seen_from(inverse(copy.T_original_map), original->deformation);
     component->members.push_back(member);
   }
   for (Component& component : result.components) {

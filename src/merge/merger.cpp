@@ -124,7 +124,7 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
       const std::vector<Copy> copies = store_.find_copies(all);
       const std::vector<MapId> maps = store_.those_that_count(all, copies);
       const Solution solution = find_best_solution(maps, most_thorough);
-      result = make_result(store_, maps, copies, looks_, solution, options_.resolution);
+      result = make_result(store_, maps, copies, looks_, solution, options_);
     });
     return result;
   }

@@ -47,14 +47,14 @@ std::vector<Join> make_joins(const MapStore& store, const std::vector<MapId>& ma
   return joins;
 }
 
-void add_components(const MergeInputs& inputs, const Solution& solution, double resolution,
+void add_components(const MergeInputs& inputs, const Solution& solution, const MergeOptions& options,
                     MergeResult& result) {
   for (const NodeGroup& group : solution.consistent_set.groups) {
     if (group.size() == 1) {
       result.left_out.push_back(left_out(inputs.index[group.front().map], result.joins));
     } else {
       result.components.push_back(
-          make_component(group, solution.problem, solution.consistent_set, inputs, resolution));
+          make_component(group, solution.problem, solution.consistent_set, inputs, options));
     }
   }
   std::sort(result.left_out.begin(), result.left_out.end(),
@@ -107,13 +107,13 @@ std::vector<Pair> pairs_apart(const std::vector<Pair>& chosen, const std::vector
 
 MergeResult make_result(const MapStore& store, const std::vector<MapId>& maps,
                         const std::vector<Copy>& copies, const PairLooks& looks, const Solution& solution,
-                        double resolution) {
+                        const MergeOptions& options) {
   MergeResult result;
   result.expected_false_joins = expected_false_joins(solution.consistent_set);
   result.joins = make_joins(store, maps, looks, solution);
   result.open_ways = make_open_ways(store.places_of(maps), solution.problem, solution.consistent_set);
-  add_components(store.inputs_of(maps), solution, resolution, result);
-  add_copies(copies, store.grids(), resolution, result);
+  add_components(store.inputs_of(maps), solution, options, result);
+  add_copies(copies, store.grids(), options.resolution, result);
   sort_components(result);
   return result;
 }

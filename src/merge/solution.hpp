@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 #include "merge/consistent_set.hpp"
 #include "merge/copies.hpp"
@@ -33,6 +34,6 @@ std::vector<PairLooks::Pair> pairs_apart(const std::vector<PairLooks::Pair>& cho
 /// What a solution means for all maps, with the copies that it does without. Runs in the calling TBB arena.
 MergeResult make_result(const MapStore& store, const std::vector<MapStore::MapId>& maps,
                         const std::vector<Copy>& copies, const PairLooks& looks, const Solution& solution,
-                        double resolution);
+                        const MergeOptions& options);
 
 }  // namespace gridmerge::internal

@@ -23,6 +23,9 @@ struct MergeOptions {
   /// asks of each: the least sure ones are not made (see find_consistent_set_within()).
   double max_false_joins = 0.05;
   double resolution = 0.0;  ///< of the merged maps [m]; 0 = the finest among a map's inputs
+  /// Whether maps are bent so that walls that are one come to lie on each other: for maps that drift has
+  /// bent. See Member::deformation.
+  bool elastic = false;
   /// Called with the numbers of pairs that are matched and to be matched, never from two threads at once. Of
   /// the second look, if there is one, the numbers begin anew.
   std::function<void(std::size_t, std::size_t)> progress;
