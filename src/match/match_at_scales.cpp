@@ -59,7 +59,7 @@ class ScaledSearch {
       const ScaledPair pair(fixed_, moving_, levels_[i], cell_);
       for (const Hypothesis& one : pair.look(search, kPosesOfLevel)) {
         const ScaledPose pose = pair.settle({one.T_fixed_moving, one.scale}, kReach);
-        found.push_back({pose, one.probability});
+        found.push_back({pose, scaled_rank_of(one.figures)});
       }
       report(static_cast<double>(i + 1) / static_cast<double>(levels_.size()));
     }
@@ -92,6 +92,8 @@ class ScaledSearch {
     });
     return judged;
   }
+
+  std::size_t levels() const { return levels_.size(); }
 
   void count_common(MatchResult& result) const {
     ScaledPair(fixed_, moving_, result.scale, cell_).count_common(result);
@@ -151,24 +153,13 @@ MatchResult match_at_scales(const PreparedMap& fixed, const PreparedMap& moving,
     if (options.progress) options.progress(share);
   };
   const ScaledSearch search(fixed, moving, *options.scales);
-  const bool may_look_twice = options.search == SearchMethod::exhaustive;
-  const double first = may_look_twice ? 0.25 : 0.9;
-  std::vector<Found> found =
-      search.look(may_look_twice ? SearchMethod::quick : options.search,
-                  [&](double share) { report(first * share); });
-  std::vector<Hypothesis> hypotheses =
-      search.judge(found, [&](double share) { report(first + 0.1 * share); });
-  const double best = hypotheses.empty() ? 0.0 : hypotheses.front().probability;
-  if (may_look_twice && best < options.accept_probability) {
-    const std::vector<Found> more = search.look(
-        SearchMethod::thorough, [&](double share) { report(first + 0.1 + (0.8 - first) * share); });
-    found.insert(found.end(), more.begin(), more.end());
-    hypotheses = search.judge(std::move(found), [&](double share) { report(0.9 + 0.1 * share); });
-  }
-
+  const bool thoroughly = options.search == SearchMethod::thorough;
+  std::vector<Found> found = search.look(thoroughly ? SearchMethod::thorough : SearchMethod::quick,
+                                         [&](double share) { report(0.8 * share); });
   MatchResult result;
-  result.hypotheses = std::move(hypotheses);
-  result.reason = explain_scaled_refusal(result.hypotheses, options.accept_probability);
+  result.hypotheses = search.judge(std::move(found), [&](double share) { report(0.8 + 0.2 * share); });
+  result.reason = explain_refusal(figures_of(result.hypotheses), options.accept_probability,
+                                  scaled_model(search.levels()));
   if (result.hypotheses.empty()) return result;
   const Hypothesis& chosen = result.hypotheses.front();
   result.T_fixed_moving = chosen.T_fixed_moving;

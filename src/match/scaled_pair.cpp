@@ -7,6 +7,7 @@
 #include "grid/parallel.hpp"
 #include "match/drawn_walls.hpp"
 #include "match/pair_pose.hpp"
+#include "match/scaled_verdict.hpp"
 
 namespace gridmerge::internal {
 
@@ -49,6 +50,9 @@ std::vector<Hypothesis> ScaledPair::look(SearchMethod search, std::size_t count)
   LookOptions options;
   options.search = search;
   std::vector<Hypothesis> found = find_hypotheses(maps_, options);
+  std::stable_sort(found.begin(), found.end(), [](const Hypothesis& a, const Hypothesis& b) {
+    return scaled_rank_of(a.figures) > scaled_rank_of(b.figures);
+  });
   if (found.size() > count) found.resize(count);
   for (Hypothesis& one : found) {
     if (swapped_) {

@@ -56,7 +56,8 @@ struct MatchOptions {
   SearchMethod search = SearchMethod::exhaustive;  ///< how poses are found
   /// If given, the moving map may have any scale of this range, as an architect's plan has: match() looks at
   /// scales 3 % apart, fits the scale of the best poses, and gives it in MatchResult::scale. The fixed map's
-  /// metres are true. Not for SearchMethod::random_walk, and not for merging.
+  /// metres count. The look at each scale is the quick one unless SearchMethod::thorough is asked for, which
+  /// takes four times as long. Not for SearchMethod::random_walk, and not for merging.
   std::optional<ScaleRange> scales = std::nullopt;
   /// Of SearchMethod::random_walk, which has its own rule of acceptance. Its threads, number of hypotheses
   /// and progress are those below.
