@@ -119,6 +119,12 @@ TEST(MatchKey, TellsApartWhatMayDiffer) {
   changed = {};
   changed.search = SearchMethod::quick;
   EXPECT_NE(match_key("a", "b", changed), key);
+  changed = {};
+  changed.scales = ScaleRange{0.5, 2.0};
+  EXPECT_NE(match_key("a", "b", changed), key);
+  const std::string scaled = match_key("a", "b", changed);
+  changed.scales->most = 1.9;
+  EXPECT_NE(match_key("a", "b", changed), scaled);
   changed.search = SearchMethod::random_walk;
   EXPECT_THROW(match_key("a", "b", changed), std::invalid_argument);
 }
