@@ -8,23 +8,22 @@
 
 namespace gridmerge::internal {
 
-inline constexpr double kScaledBias = -10.0;
+inline constexpr double kScaledBias = -14.09;
 
 /// In the order of the terms of scaled_model().
 // clang-format off
 inline constexpr std::array kScaledWeights{
-    VerdictWeight{"tells apart", 1.0},
-    VerdictWeight{"held", 1.0},
-    VerdictWeight{"stands out", 0.5},
-    VerdictWeight{"met locally", 2.0},
+    VerdictWeight{"tells apart", 3.24},
+    VerdictWeight{"held", 2.32},
+    VerdictWeight{"stands out", 0.90},
+    VerdictWeight{"met locally", 4.43},
 };
 
 /// In the order of the rank terms of scaled_model().
 inline constexpr std::array kScaledRankWeights{
-    VerdictWeight{"evidence", 2.67},
-    VerdictWeight{"seen", -0.54},
-    VerdictWeight{"lines", 1.2},
-    VerdictWeight{"met locally", 1.93},
+    VerdictWeight{"evidence", 4.74},
+    VerdictWeight{"seen", -0.21},
+    VerdictWeight{"lines", 2.38},
 };
 // clang-format on
 
