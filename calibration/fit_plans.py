@@ -4,11 +4,11 @@
 
 usage: gridmerge_plan_cases 0 53 > plan_cases.tsv; calibration/fit_plans.py plan_cases.tsv
 
-The model has the form of calibration/fit.py's: which of a case's hypotheses is the best one, and whether that is believed.
-Names and values of its terms come from the engine, as columns "rank: ..." and "term: ...". The term "stands out" depends on
-the ranking: when the ranking's weights change, build the engine with them, make the cases anew, and fit again.
-Penalised maximum likelihood (Newton steps), true and unrelated cases as they come. A summary goes to standard error. Needs
-numpy; the same cases give the same digits.
+The model has the form of calibration/fit.py's: which of a case's hypotheses is the best one, and whether that is
+believed. Names and values of its terms come from the engine, as columns "rank: ..." and "term: ...". The term "stands out"
+depends on the ranking: when the ranking's weights change, build the engine with them, make the cases anew, and fit again.
+Penalised maximum likelihood (Newton steps), true and unrelated cases as they come. A summary goes to standard error.
+Needs numpy; the same cases give the same digits.
 """
 
 import collections
@@ -19,7 +19,7 @@ import sys
 import numpy as np
 
 RANK_RIDGE = 0.1  # on the weights of the ranking, whose terms are logarithms
-RIDGE = 0.1       # on the belief's weights, of terms that are scaled to unit variance
+RIDGE = 0.1  # on the belief's weights, of terms that are scaled to unit variance
 ACCEPT = 0.95
 RANK, TERM = "rank: ", "term: "
 STANDS_OUT = "stands out"
@@ -85,7 +85,9 @@ def fit_belief(terms: np.ndarray, right: np.ndarray) -> tuple[float, np.ndarray]
     for _ in range(100):
         share = logistic(scaled @ weights)
         gradient = scaled.T @ (right - share) - ridge @ weights
-        curvature = scaled.T @ (scaled * (share * (1.0 - share))[:, None]) + ridge + 1e-9 * np.eye(len(weights))
+        curvature = (
+            scaled.T @ (scaled * (share * (1.0 - share))[:, None]) + ridge + 1e-9 * np.eye(len(weights))
+        )
         step = np.linalg.solve(curvature, gradient)
         weights += step / max(1.0, float(np.linalg.norm(step)))
     of_terms = weights[1:] / spread
@@ -140,7 +142,12 @@ def main() -> None:
         f"most probable {probability[~own].max():.3f}",
         file=sys.stderr,
     )
-    print(header(dict(zip(rank_names, ranking, strict=True)), bias, dict(zip(term_names, weights, strict=True))), end="")
+    print(
+        header(
+            dict(zip(rank_names, ranking, strict=True)), bias, dict(zip(term_names, weights, strict=True))
+        ),
+        end="",
+    )
 
 
 if __name__ == "__main__":

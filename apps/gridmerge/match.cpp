@@ -77,7 +77,8 @@ std::string describe(const MatchResult& result, const MatchCommandOptions& optio
     fmt::format_to(std::back_inserter(text), "  {:<14}{}\n", name, value);
   };
   line("T_fixed_moving", " " + describe_pose(result.T_fixed_moving));
-  if (options.scaled()) line("scale", fmt::format(" {:.4f}, by which MOVING is enlarged first", result.scale));
+  if (options.scaled())
+    line("scale", fmt::format(" {:.4f}, by which MOVING is enlarged first", result.scale));
   line("agreement", fmt::format(" {} cells agree, {} do not (acceptance index {:.3f})", result.agreement,
                                 result.disagreement, result.acceptance_index));
   line("overlap", fmt::format(" {:.1f} % of the smaller map", 100.0 * result.overlap));
@@ -142,7 +143,8 @@ Answer match_files(const MatchCommandOptions& options) {
 
 int run_match(const MatchCommandOptions& options) {
   const auto [result, hint] = match_files(options);
-  print(options.json ? match_json(options.fixed, options.moving, result, options.scaled()) : describe(result, options) + hint);
+  print(options.json ? match_json(options.fixed, options.moving, result, options.scaled())
+                     : describe(result, options) + hint);
   return result.verdict == Verdict::accepted ? kDone : kRefused;
 }
 

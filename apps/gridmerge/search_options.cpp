@@ -207,10 +207,11 @@ void add_start_option(CLI::App& command, SearchOptions& options) {
 
 void add_scale_option(CLI::App& command, SearchOptions& options) {
   command
-      .add_option("--scale", options.scales,
-                  "MOVING may have any scale of this range, as 0.5:2: it is an architect's plan, or FIXED is. "
-                  "The answer has the scale too: p_fixed = scale * R(theta) * p_moving + (x, y). The metres "
-                  "of FIXED count. Takes a few seconds")
+      .add_option(
+          "--scale", options.scales,
+          "MOVING may have any scale of this range, as 0.5:2: it is an architect's plan, or FIXED is. "
+          "The answer has the scale too: p_fixed = scale * R(theta) * p_moving + (x, y). The metres "
+          "of FIXED count. Takes a few seconds")
       ->type_name("LO:HI")
       ->check(kScales);
 }

@@ -157,7 +157,8 @@ def to_match_result(core: _core.MatchResult) -> MatchResult:
         reason=cast(Reason, core.reason),
         seconds=core.seconds,
         hypotheses=tuple(
-            Hypothesis(Transform(*one.transform), one.score, one.probability, one.scale) for one in core.hypotheses
+            Hypothesis(Transform(*one.transform), one.score, one.probability, one.scale)
+            for one in core.hypotheses
         ),
         scale=core.scale,
     )

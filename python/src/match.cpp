@@ -56,8 +56,8 @@ void bind_match(nb::module_& module) {
     return names;
   });
   module.def("match", &match_maps, nb::arg("fixed"), nb::arg("moving"), nb::arg("threads"),
-             nb::arg("accept").none(), nb::arg("max_hypotheses"), nb::arg("search"),
-             nb::arg("scales").none(), nb::arg("progress").none());
+             nb::arg("accept").none(), nb::arg("max_hypotheses"), nb::arg("search"), nb::arg("scales").none(),
+             nb::arg("progress").none());
 }
 
 }  // namespace gridmerge::python

@@ -39,8 +39,13 @@ std::vector<TruePair> on_building(const Simulation& simulation) {
   std::vector<TruePair> pairs;
   for (std::size_t robot = 0; robot < simulation.maps.size(); ++robot) {
     const SimulatedMap& map = simulation.maps[robot];
-    pairs.push_back({{kBuilding, {}}, robot_map(robot), map.T_building_map,
-                     std::max(kMinTolerance, 0.3 + 2.0 * map.bend), "A", 1.0, 0.0});
+    pairs.push_back({{kBuilding, {}},
+                     robot_map(robot),
+                     map.T_building_map,
+                     std::max(kMinTolerance, 0.3 + 2.0 * map.bend),
+                     "A",
+                     1.0,
+                     0.0});
   }
   return pairs;
 }

@@ -17,7 +17,6 @@ constexpr std::size_t kRankedPoses = 6;
 constexpr std::size_t kCountedPoses = 40;
 constexpr std::size_t kThoroughPoses = 12;
 
-
 std::vector<Hypothesis> judge_all(const PoseJudge& judge, const std::vector<SE2>& T_cells) {
   std::vector<Hypothesis> judged(T_cells.size());
   parallel_for(T_cells.size(), [&](std::size_t i) { judged[i] = judge.judge(T_cells[i]); });

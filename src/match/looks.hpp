@@ -17,8 +17,8 @@ struct LookOptions {
 /// What a pose promises before its dear figures are known: the quality of its walls and of its cells.
 double promise(const Evidence& walls, double acceptance_index);
 
-/// What a look finds most promising, not judged yet: distinct poses between the grid frames [cells]. The quick
-/// one finds what overlaps much; the thorough one, in a few times its time, what overlaps little, too.
+/// What a look finds most promising, not judged yet: distinct poses between the grid frames [cells]. The
+/// quick one finds what overlaps much; the thorough one, in a few times its time, what overlaps little, too.
 /// `report` is told shares of the work, in [0, 1].
 std::vector<SE2> propose_quickly(const ComparedMaps& maps, const PoseJudge& judge,
                                  const std::function<void(double)>& report);

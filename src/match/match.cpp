@@ -81,8 +81,8 @@ MatchResult match(const PreparedMap& fixed, const PreparedMap& moving, const Mat
   validate(options);
   if (options.search == SearchMethod::random_walk) return walk(fixed.known(), moving.known(), options);
   const auto start = std::chrono::steady_clock::now();
-  MatchResult result = options.scales ? match_at_scales(fixed, moving, options)
-                                      : match_in_arena(fixed, moving, options);
+  MatchResult result =
+      options.scales ? match_at_scales(fixed, moving, options) : match_in_arena(fixed, moving, options);
   result.seconds = seconds_since(start);
   return result;
 }

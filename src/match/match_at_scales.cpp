@@ -32,7 +32,7 @@ constexpr double kNearDistinct = 2.0;     // poses nearer than so many times tha
 /// A pose that a level proposes, between the map frames.
 struct Found {
   ScaledPose pose;
-  double rank = 0.0;  ///< larger is better
+  double probability = 0.0;  ///< among the poses of its level, as if there were no other scale
 };
 
 /// The range of scales of a pair, and what all of it have in common.
@@ -59,7 +59,7 @@ class ScaledSearch {
       const ScaledPair pair(fixed_, moving_, levels_[i], cell_);
       for (const Hypothesis& one : pair.look(search, kPosesOfLevel)) {
         const ScaledPose pose = pair.settle({one.T_fixed_moving, one.scale}, kReach);
-        found.push_back({pose, scaled_rank_of(one.figures)});
+        found.push_back({pose, one.probability});
       }
       report(static_cast<double>(i + 1) / static_cast<double>(levels_.size()));
     }
@@ -70,7 +70,7 @@ class ScaledSearch {
   /// other: most probable first.
   std::vector<Hypothesis> judge(std::vector<Found> found, const std::function<void(double)>& report) const {
     std::stable_sort(found.begin(), found.end(),
-                     [](const Found& a, const Found& b) { return a.rank > b.rank; });
+                     [](const Found& a, const Found& b) { return a.probability > b.probability; });
     std::vector<ScaledPose> starts;
     for (const Found& one : found) {
       if (starts.size() == kJudged) break;
@@ -80,7 +80,8 @@ class ScaledSearch {
     std::vector<Hypothesis> judged;
     for (const ScaledPose& start : starts) {
       throw_if_cancelled();
-      const ScaledPose pose = within_range(ScaledPair(fixed_, moving_, start.scale, cell_).settle(start, kFinalReach));
+      const ScaledPose pose =
+          within_range(ScaledPair(fixed_, moving_, start.scale, cell_).settle(start, kFinalReach));
       report(static_cast<double>(judged.size() + 1) / static_cast<double>(starts.size()));
       if (!is_new(pose, poses)) continue;
       poses.push_back(pose);
@@ -166,8 +167,7 @@ MatchResult match_at_scales(const PreparedMap& fixed, const PreparedMap& moving,
   result.scale = chosen.scale;
   result.probability = chosen.probability;
   search.count_common(result);
-  result.verdict =
-      result.probability >= options.accept_probability ? Verdict::accepted : Verdict::refused;
+  result.verdict = result.probability >= options.accept_probability ? Verdict::accepted : Verdict::refused;
   if (result.hypotheses.size() > options.max_hypotheses) result.hypotheses.resize(options.max_hypotheses);
   return result;
 }

@@ -7,15 +7,14 @@
 #include "grid/parallel.hpp"
 #include "match/drawn_walls.hpp"
 #include "match/pair_pose.hpp"
-#include "match/scaled_verdict.hpp"
 
 namespace gridmerge::internal {
 
 namespace {
 
 constexpr std::size_t kSettlingWalls = 2000;
-constexpr double kFirstStep = 4.0;  // [cells]
-constexpr double kLastSettlingStep = 0.125;           // [cells]
+constexpr double kFirstStep = 4.0;           // [cells]
+constexpr double kLastSettlingStep = 0.125;  // [cells]
 
 /// A map's grid frame [cells] to its frame [m].
 ScaledPose grid_to_map(const LikelihoodField& map) {
@@ -50,9 +49,6 @@ std::vector<Hypothesis> ScaledPair::look(SearchMethod search, std::size_t count)
   LookOptions options;
   options.search = search;
   std::vector<Hypothesis> found = find_hypotheses(maps_, options);
-  std::stable_sort(found.begin(), found.end(), [](const Hypothesis& a, const Hypothesis& b) {
-    return scaled_rank_of(a.figures) > scaled_rank_of(b.figures);
-  });
   if (found.size() > count) found.resize(count);
   for (Hypothesis& one : found) {
     if (swapped_) {

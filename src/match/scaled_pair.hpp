@@ -16,8 +16,7 @@ class ScaledPair {
   /// In cells of `cell` metres. `fixed` must outlive this. O(cells).
   ScaledPair(const PreparedMap& fixed, const PreparedMap& moving, double scale, double cell);
 
-  /// What find_hypotheses() says of the pair at this scale: the best `count` by
-  /// scaled_rank_of().
+  /// What find_hypotheses() says of the pair at this scale: the `count` most probable.
   std::vector<Hypothesis> look(SearchMethod search, std::size_t count) const;
 
   /// All that speaks for a pose of this scale; what is known from rivals is not set.

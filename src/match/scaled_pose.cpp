@@ -25,8 +25,8 @@ Point2 operator*(const ScaledPose& S_a_b, const Point2& p_b) {
 double displacement(const Point2& centre, double radius, const ScaledPose& a, const ScaledPose& b) {
   const Point2 at_a = a * centre, at_b = b * centre;
   const double dx = at_a.x - at_b.x, dy = at_a.y - at_b.y;
-  const double spread = a.scale * a.scale + b.scale * b.scale -
-                        2.0 * a.scale * b.scale * std::cos(a.T.theta - b.T.theta);
+  const double spread =
+      a.scale * a.scale + b.scale * b.scale - 2.0 * a.scale * b.scale * std::cos(a.T.theta - b.T.theta);
   return std::sqrt(dx * dx + dy * dy + std::max(0.0, spread) * radius * radius);
 }
 

@@ -36,7 +36,8 @@ constexpr std::array kTerms{
     VerdictTerm{"tells apart", "ln(wall_lines + 0.5)", TermKind::amount, 0.0, 3.0,
                 [](const F& f) { return std::log(f.wall_lines + 0.5); }},
     VerdictTerm{"held", "ln(held / held_most)", TermKind::amount, -3.5, 0.0, how_held},
-    VerdictTerm{"stands out", "stands_out", TermKind::rivals, 0.0, 6.0, [](const F& f) { return f.stands_out; }},
+    VerdictTerm{"stands out", "stands_out", TermKind::rivals, 0.0, 6.0,
+                [](const F& f) { return f.stands_out; }},
     VerdictTerm{"met locally", "-ln(1.05 - walls_met_locally)", TermKind::quality, 0.0, 2.5, met_locally}};
 static_assert(kTerms.size() == kScaledWeights.size(), "each term has its weight");
 
@@ -45,10 +46,6 @@ static_assert(kTerms.size() == kScaledWeights.size(), "each term has its weight"
 VerdictModel scaled_model(std::size_t levels) {
   const double freedom = std::max(0.0, std::log(static_cast<double>(levels) / kFittedLevels));
   return {kRankTerms, kScaledRankWeights, kTerms, kScaledWeights, kScaledBias - freedom};
-}
-
-double scaled_rank_of(const PoseFigures& figures) {
-  return rank_of(figures, scaled_model(1));
 }
 
 void weigh_scaled(std::vector<Hypothesis>& hypotheses, std::size_t levels,

@@ -15,11 +15,8 @@ namespace gridmerge::internal {
 /// believed.
 VerdictModel scaled_model(std::size_t levels);
 
-/// rank_of() of that model, which does not depend on the levels.
-double scaled_rank_of(const PoseFigures& figures);
-
-/// Gives each its probability, and sorts by it, best first: as weigh(), by scaled_model(). Poses that are near
-/// each other are no rivals, as in compare_rivals().
+/// Gives each its probability, and sorts by it, best first: as weigh(), by scaled_model(). Poses that are
+/// near each other are no rivals, as in compare_rivals().
 void weigh_scaled(std::vector<Hypothesis>& hypotheses, std::size_t levels,
                   const std::function<bool(const Hypothesis&, const Hypothesis&)>& are_near);
 

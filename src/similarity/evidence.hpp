@@ -76,8 +76,8 @@ class WallEvidence {
 
   /// Evidence for a pose between the grid frames, in cells. Only models of sigma >= min_sigma [cells] are
   /// tried. O(points + models * bins).
-  /// With a scale near 1 the moving map is that much larger: a wall point p of it lies at scale * R * p + t in
-  /// the fixed map. Distances in the moving map stay in its own cells, so they are wrong by the scale.
+  /// With a scale near 1 the moving map is that much larger: a wall point p of it lies at scale * R * p + t
+  /// in the fixed map. Distances in the moving map stay in its own cells, so they are wrong by the scale.
   Evidence operator()(const SE2& T_fixed_moving_cells, double min_sigma = 0.0, double scale = 1.0) const;
 
  private:

@@ -33,8 +33,8 @@ Cell at(const OccupancyGrid& map, double x, double y) {
 TEST(Drawing, IsTold) {
   EXPECT_TRUE(is_drawing(outline(Cell::unknown, 0)));
   EXPECT_TRUE(is_drawing(outline(Cell::free, 0)));
-  EXPECT_FALSE(is_drawing(test::draw_building(1)));           // walls along its rim
-  EXPECT_FALSE(is_drawing(make_grid(10, 10, 0.1)));           // nothing is drawn
+  EXPECT_FALSE(is_drawing(test::draw_building(1)));  // walls along its rim
+  EXPECT_FALSE(is_drawing(make_grid(10, 10, 0.1)));  // nothing is drawn
   OccupancyGrid map = outline(Cell::unknown, 0);
   map.at(50, 40) = Cell::free;
   EXPECT_FALSE(is_drawing(map));

@@ -55,9 +55,9 @@ const PlanAndMap& office() {
 /// How far apart two scaled poses put the corners of a map.
 double apart(const OccupancyGrid& map, const ScaledPose& a, const ScaledPose& b) {
   double most = 0.0;
-  for (const Point2 corner : {Point2{0.0, 0.0}, Point2{map.width * map.resolution, 0.0},
-                              Point2{0.0, map.height * map.resolution},
-                              Point2{map.width * map.resolution, map.height * map.resolution}}) {
+  for (const Point2 corner :
+       {Point2{0.0, 0.0}, Point2{map.width * map.resolution, 0.0}, Point2{0.0, map.height * map.resolution},
+        Point2{map.width * map.resolution, map.height * map.resolution}}) {
     const Point2 p = a * (map.origin * corner), q = b * (map.origin * corner);
     most = std::max(most, std::hypot(p.x - q.x, p.y - q.y));
   }
@@ -112,7 +112,8 @@ TEST(MatchAtScales, RefusesStrangers) {
   other.width = 15.0;
   other.height = 12.0;
   for (std::uint64_t seed : {11, 12, 13}) {
-    const OccupancyGrid plan = draw_building(make_building(other.kind, other.width, other.height, seed), 0.05);
+    const OccupancyGrid plan =
+        draw_building(make_building(other.kind, other.width, other.height, seed), 0.05);
     EXPECT_EQ(match(plan, office().map, at_scales(0.5, 2.0)).verdict, Verdict::refused) << seed;
   }
 }
@@ -175,7 +176,7 @@ TEST(MatchAtScales, SenselessRangesAreErrors) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinite = std::numeric_limits<double>::infinity();
   const std::vector<std::pair<double, double>> senseless{
-      {0.0, 1.0}, {-1.0, 1.0}, {2.0, 0.5}, {nan, 1.0},     {1.0, nan},
+      {0.0, 1.0}, {-1.0, 1.0}, {2.0, 0.5},   {nan, 1.0},  {1.0, nan},
       {nan, nan}, {1.0, 1e4},  {1e-4, 1e-3}, {0.5, 10.5}, {1.0, infinite}};
   for (const auto& [least, most] : senseless) {
     EXPECT_THROW(validate(ScaleRange{least, most}), std::invalid_argument) << least << " " << most;

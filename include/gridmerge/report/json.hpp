@@ -17,8 +17,8 @@ namespace gridmerge {
 // is not UTF-8 appears as U+FFFD. A number that is not finite (no result of the library holds one) throws
 // std::invalid_argument, since JSON cannot say it.
 
-/// What `gridmerge match --json` prints: one line, with its end. `with_scale` adds the scales of the result and
-/// of its hypotheses, which are 1 unless a match looked for them (MatchOptions::scales).
+/// What `gridmerge match --json` prints: one line, with its end. `with_scale` adds the scales of the result
+/// and of its hypotheses, which are 1 unless a match looked for them (MatchOptions::scales).
 GRIDMERGE_EXPORT std::string match_json(const std::string& fixed, const std::string& moving,
                                         const MatchResult& result, bool with_scale = false);
 
