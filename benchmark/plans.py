@@ -4,10 +4,10 @@
 
 usage: benchmark/plans.py --gridmerge GRIDMERGE --output DIR [--data DATA] [--limit N]
 
-Writes DIR/plans.md and DIR/plans.tsv. Plans of simulated buildings are drawn at scales of their own: as maps, as lines
-and on white paper. Where DATA has them, real maps of E5 and HIH are laid on their architects' layouts, with marks as the
-truth, and on each other's. N unrelated pairs at most, 200 unless told, and half as many simulated ones. A map is right if
-its scale is within 3 % and it lies within 1.5 m (root mean square, of its marks or its known cells).
+Writes DIR/plans.md and DIR/plans.tsv. Plans of simulated buildings are drawn at scales of their own: as maps, as
+lines and on white paper. Where DATA has them, real maps of E5 and HIH are laid on their architects' layouts, with
+marks as the truth, and on each other's. N unrelated pairs at most, 200 unless told, and half as many simulated ones.
+A map is right if its scale is within 3 % and it lies within 1.5 m (root mean square, of its marks or its known cells).
 """
 
 import argparse
@@ -288,9 +288,11 @@ def report(outcomes: list[Outcome]) -> str:
     for name, of_table in tables.items():
         wrong = [one for one in of_table if not one.right]
         likeliest = max((one.probability for one in wrong), default=0.0)
+        right = sum(one.accepted and one.right for one in of_table)
+        seconds = statistics.median(one.seconds for one in of_table)
         lines.append(
-            f"| {name} | {len(of_table)} | {len(of_table) - len(wrong)} | {sum(one.accepted and one.right for one in of_table)} | "
-            f"{sum(one.accepted for one in wrong)} | {likeliest:.3f} | {statistics.median(one.seconds for one in of_table):.1f} |"
+            f"| {name} | {len(of_table)} | {len(of_table) - len(wrong)} | {right} | "
+            f"{sum(one.accepted for one in wrong)} | {likeliest:.3f} | {seconds:.1f} |"
         )
     return "\n".join(lines) + "\n"
 

@@ -5,8 +5,9 @@
 usage: gridmerge_plan_cases 0 53 > plan_cases.tsv; calibration/fit_plans.py plan_cases.tsv
 
 The model has the form of calibration/fit.py's: which of a case's hypotheses is the best one, and whether that is
-believed. Names and values of its terms come from the engine, as columns "rank: ..." and "term: ...". The term "stands out"
-depends on the ranking: when the ranking's weights change, build the engine with them, make the cases anew, and fit again.
+believed. Names and values of its terms come from the engine, as columns "rank: ..." and "term: ...". The term
+"stands out" depends on the ranking: when the ranking's weights change, build the engine with them, make the cases
+anew, and fit again.
 Penalised maximum likelihood (Newton steps), true and unrelated cases as they come. A summary goes to standard error.
 Needs numpy; the same cases give the same digits.
 """

@@ -29,7 +29,7 @@ ScaledPair::ScaledPair(const PreparedMap& fixed, const PreparedMap& moving, doub
       fixed_(fixed),
       swapped_(is_smaller(fixed, moving_)),
       maps_(swapped_ ? moving_ : fixed, swapped_ ? fixed : moving_,
-            std::max({cell, fixed.known().resolution, moving_.known().resolution})),
+            std::max(cell, working_cell(fixed, moving_))),
       metric_(make_pose_metric(maps_.moving_walls)),
       judge_(maps_) {}
 

@@ -13,7 +13,8 @@ namespace gridmerge::internal {
 /// Two maps, the moving one drawn at one scale.
 class ScaledPair {
  public:
-  /// In cells of `cell` metres. `fixed` must outlive this. O(cells).
+  /// In cells of `cell` metres, or larger ones where working_cell() is larger. `fixed` must outlive this.
+  /// O(cells).
   ScaledPair(const PreparedMap& fixed, const PreparedMap& moving, double scale, double cell);
 
   /// What find_hypotheses() says of the pair at this scale: the `count` most probable.
