@@ -41,14 +41,16 @@ class ScaledSearch {
   ScaledSearch(const PreparedMap& fixed, const PreparedMap& moving, const ScaleRange& scales)
       : fixed_(fixed), moving_(moving), scales_(scales), levels_(levels_of(scales)) {
     // One size of cells for all levels as far as can be: what is scored in larger cells scores less.
+    const PreparedMap smallest = DrawnWalls::scaled(moving, scales.least);
     const double coarsest = std::min(kCoarsestCell, scales.most * moving.known().resolution);
-    cell_ = std::max(working_cell(fixed, moving), coarsest);
+    cell_ = std::max(working_cell(fixed, smallest), coarsest);
     const double side = std::max(fixed.known().width, fixed.known().height) * fixed.known().resolution;
     distinct_ = std::max(kMinDistinctCells * cell_, kDistinctShare * side);
-    const LikelihoodField& walls = DrawnWalls::of(moving, std::max(cell_, moving.known().resolution));
+    const LikelihoodField& walls = DrawnWalls::of(smallest, cell_);
     const PoseMetric in_cells = make_pose_metric(walls);
-    metric_.pivot = walls.T_map_grid * Point2{in_cells.pivot.x * walls.cell, in_cells.pivot.y * walls.cell};
-    metric_.radius = in_cells.radius * walls.cell;
+    const Point2 pivot = walls.T_map_grid * Point2{in_cells.pivot.x * cell_, in_cells.pivot.y * cell_};
+    metric_.pivot = {pivot.x / scales.least, pivot.y / scales.least};
+    metric_.radius = in_cells.radius * cell_ / scales.least;
   }
 
   /// What a look at every level proposes.
