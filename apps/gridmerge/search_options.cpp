@@ -211,7 +211,8 @@ void add_scale_option(CLI::App& command, SearchOptions& options) {
           "--scale", options.scales,
           "MOVING may have any scale of this range, as 0.5:2: it is an architect's plan, or FIXED is. "
           "The answer has the scale too: p_fixed = scale * R(theta) * p_moving + (x, y). The metres "
-          "of FIXED count. Takes a few seconds")
+          "of FIXED count. Looks quickly at each scale, which takes seconds, unless --search is "
+          "thorough")
       ->type_name("LO:HI")
       ->check(kScales);
 }

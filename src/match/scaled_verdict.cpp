@@ -15,7 +15,7 @@ namespace {
 using F = PoseFigures;
 
 /// So many levels the model was fitted to: those of 0.5:2.
-constexpr double kFittedLevels = 47.0;
+constexpr double kFittedLevels = 48.0;
 
 /// -log of what is missing to all walls that meet.
 double met_locally(const F& f) {

@@ -70,15 +70,15 @@ TEST(ScaledVerdict, AnEqualPoseOfAnotherScaleIsARival) {
 }
 
 TEST(ScaledVerdict, MoreLevelsThanWereFittedAreBelievedLess) {
-  const double fitted = weighed({clear_pose()}, 47)[0].probability;
+  const double fitted = weighed({clear_pose()}, 48)[0].probability;
   EXPECT_EQ(weighed({clear_pose()}, 1)[0].probability, fitted);
   double before = fitted;
-  for (const std::size_t levels : {60, 94, 200}) {
+  for (const std::size_t levels : {60, 96, 200}) {
     const double now = weighed({clear_pose()}, levels)[0].probability;
     EXPECT_LT(now, before);
     before = now;
   }
-  EXPECT_NEAR(scaled_model(94).bias, scaled_model(47).bias - std::log(2.0), 1e-12);
+  EXPECT_NEAR(scaled_model(96).bias, scaled_model(48).bias - std::log(2.0), 1e-12);
 }
 
 TEST(ScaledVerdict, FiguresOutOfAllBoundsHaveAProbability) {
