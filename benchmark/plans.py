@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lays maps on plans of another scale, and counts those that find their place and unrelated ones that must not.
 
-usage: benchmark/plans.py --gridmerge GRIDMERGE --output DIR [--data DATA] [--limit N]
+usage: benchmark/plans.py --gridmerge GRIDMERGE --output DIR [--data DATA] [--limit N] [--jobs N]
 
 Writes DIR/plans.md and DIR/plans.tsv. Plans of simulated buildings are drawn at scales of their own: as maps, as
 lines and on white paper. Where DATA has them, real maps of E5 and HIH are laid on their architects' layouts, with
@@ -17,6 +17,7 @@ import csv
 import dataclasses
 import json
 import math
+import os
 import pathlib
 import statistics
 import subprocess
@@ -305,9 +306,10 @@ def main() -> None:
     parser.add_argument("--output", type=pathlib.Path, required=True)
     parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared/data"))
     parser.add_argument("--limit", type=int, default=200)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="matches at one time")
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as pool:
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         cases = real_cases(options.data, options.limit)
         cases += simulated_cases(options.gridmerge, pathlib.Path(folder), options.limit // 2)
         outcomes = []
