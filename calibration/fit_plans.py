@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits the verdict on maps of unknown scale, and writes it as src/match/scaled_verdict_model.hpp has it.
 
-usage: gridmerge_plan_cases 0 53 > plan_cases.tsv; calibration/fit_plans.py plan_cases.tsv
+usage: gridmerge_plan_cases 0 35 > plan_cases.tsv; calibration/fit_plans.py plan_cases.tsv
 
 The model has the form of calibration/fit.py's: which of a case's hypotheses is the best one, and whether that is
 believed. Names and values of its terms come from the engine, as columns "rank: ..." and "term: ...". The term
@@ -22,10 +22,16 @@ import numpy as np
 RANK_RIDGE = 0.1  # on the weights of the ranking, whose terms are logarithms
 RIDGE = 0.1  # on the belief's weights, of terms that are scaled to unit variance
 ACCEPT = 0.95
+# A hypothesis is right within the first, and wrong beyond the second: of the scale, and in metres. A bent map has no
+# exact pose, so what lies between is left out.
+SCALE_TOLERANCES = 0.03, 0.06
+TOLERANCES = 1.5, 3.0
+# Corridors slide, and of these the cases hold none. What speaks for a pose never counts against it.
+LEAST_WEIGHT = {"held": 1.0}
 RANK, TERM = "rank: ", "term: "
 STANDS_OUT = "stands out"
 
-Case = collections.namedtuple("Case", "name ranks terms right")
+Case = collections.namedtuple("Case", "name ranks terms right near")
 
 
 def read_cases(path: pathlib.Path) -> tuple[list[str], list[str], list[Case]]:
@@ -44,7 +50,15 @@ def read_cases(path: pathlib.Path) -> tuple[list[str], list[str], list[Case]]:
             name,
             np.array([[float(row[column]) for column in ranks] for row in of_case]),
             np.array([[float(row[column]) for column in terms] for row in of_case]),
-            np.array([row["right"] == "1" for row in of_case]),
+            *(
+                np.array(
+                    [
+                        float(row["scale_error"]) <= of_scale and float(row["error"]) <= metres
+                        for row in of_case
+                    ]
+                )
+                for of_scale, metres in zip(SCALE_TOLERANCES, TOLERANCES, strict=True)
+            ),
         )
         for name, of_case in by_case.items()
     ]
@@ -77,14 +91,14 @@ def logistic(log_odds: np.ndarray) -> np.ndarray:
     return 1.0 / (1.0 + np.exp(-log_odds))
 
 
-def fit_belief(terms: np.ndarray, right: np.ndarray) -> tuple[float, np.ndarray]:
-    """Logistic regression: the bias, and the weights of the terms as they are."""
+def fit_belief(terms: np.ndarray, right: np.ndarray, offset: np.ndarray) -> tuple[float, np.ndarray]:
+    """Logistic regression: the bias, and the weights of the terms as they are, beside log-odds that are given."""
     mean, spread = terms.mean(axis=0), terms.std(axis=0) + 1e-9
     scaled = np.column_stack([np.ones(len(terms)), (terms - mean) / spread])
     ridge = 2.0 * RIDGE * np.diag([0.0] + [1.0] * terms.shape[1])
     weights = np.zeros(scaled.shape[1])
     for _ in range(100):
-        share = logistic(scaled @ weights)
+        share = logistic(scaled @ weights + offset)
         gradient = scaled.T @ (right - share) - ridge @ weights
         curvature = (
             scaled.T @ (scaled * (share * (1.0 - share))[:, None]) + ridge + 1e-9 * np.eye(len(weights))
@@ -93,6 +107,19 @@ def fit_belief(terms: np.ndarray, right: np.ndarray) -> tuple[float, np.ndarray]
         weights += step / max(1.0, float(np.linalg.norm(step)))
     of_terms = weights[1:] / spread
     return float(weights[0] - of_terms @ mean), of_terms
+
+
+def fit_bounded_belief(terms: np.ndarray, right: np.ndarray, least: np.ndarray) -> tuple[float, np.ndarray]:
+    """The same with weights of `least` or more."""
+    used = np.ones(terms.shape[1], dtype=bool)
+    while True:
+        bias, of_used = fit_belief(terms[:, used], right, terms[:, ~used] @ least[~used])
+        weights = least.copy()
+        weights[used] = of_used
+        below = weights < least
+        if not below.any():
+            return bias, weights
+        used &= ~below
 
 
 def header(ranks: dict[str, float], bias: float, terms: dict[str, float]) -> str:
@@ -130,9 +157,11 @@ def main() -> None:
         sys.exit(__doc__)
     rank_names, term_names, cases = read_cases(pathlib.Path(sys.argv[1]))
     ranking = fit_ranking(cases)
+    cases = [case for case in cases if case.right[0] or not case.near[0]]
     terms = np.array([case.terms[0] for case in cases])
     right = np.array([case.right[0] for case in cases])
-    bias, weights = fit_belief(terms, right)
+    least = np.array([LEAST_WEIGHT.get(name, 0.0) for name in term_names])
+    bias, weights = fit_bounded_belief(terms, right, least)
     stands_out = terms[:, term_names.index(STANDS_OUT)]
     probability = logistic(bias + terms @ weights) * logistic(stands_out)
     accepted = probability >= ACCEPT

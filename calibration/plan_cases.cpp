@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -32,8 +33,6 @@ constexpr std::array kDrifts{0.5, 1.0, 2.0};
 constexpr int kRobots = 2;
 constexpr double kLargestThing = 2.5;  // [m]: what stands alone and is no larger is furniture
 constexpr double kLargestScale = 1.7;  // of a plan, or its inverse
-constexpr double kScaleTolerance = 0.03;
-constexpr double kTolerance = 1.5;  // [m], or so many times what the map is bent
 
 /// A plan shows no furniture.
 void take_furniture_away(OccupancyGrid& plan) {
@@ -115,7 +114,8 @@ double distance(const OccupancyGrid& map, const ScaledPose& a, const ScaledPose&
   return std::sqrt(sum / std::max(1.0, count)) / scale;
 }
 
-/// A row for each hypothesis, the best one first: with the terms of the model, which fit_plans.py weighs.
+/// A row for each hypothesis, the best one first: with the terms of the model, which fit_plans.py weighs. The
+/// error is in metres, or in parts of what the map is bent where that is more.
 void print_match(const std::string& name, const OccupancyGrid& plan, const SimulatedMap& map,
                  const Case* own) {
   MatchOptions options;
@@ -125,15 +125,15 @@ void print_match(const std::string& name, const OccupancyGrid& plan, const Simul
   const VerdictModel model = scaled_model(1);
   for (std::size_t i = 0; i < result.hypotheses.size(); ++i) {
     const Hypothesis& one = result.hypotheses[i];
-    bool is_right = false;
+    double error = std::numeric_limits<double>::infinity(), scale_error = error;
     if (own != nullptr) {
       const SE2 T = SE2{0.0, 0.0, own->turn} * map.T_building_map;
       const ScaledPose truth{{own->scale * T.x, own->scale * T.y, T.theta}, own->scale};
-      is_right = std::abs(one.scale / own->scale - 1.0) <= kScaleTolerance &&
-                 distance(map.grid, truth, {one.T_fixed_moving, one.scale}, own->scale) <=
-                     kTolerance * std::max(1.0, map.bend);
+      scale_error = std::abs(one.scale / own->scale - 1.0);
+      error =
+          distance(map.grid, truth, {one.T_fixed_moving, one.scale}, own->scale) / std::max(1.0, map.bend);
     }
-    fmt::print("{}\t{}\t{}\t{}\t{}", name, own != nullptr ? 1 : 0, i, is_right ? 1 : 0, one.scale);
+    fmt::print("{}\t{}\t{:.4f}\t{:.3f}", name, one.scale, scale_error, error);
     for (const RankTerm& term : model.rank_terms) fmt::print("\t{:.5g}", term.value(one.figures));
     for (const VerdictTerm& term : model.terms) fmt::print("\t{:.5g}", term(one.figures));
     fmt::print("\n");
@@ -156,7 +156,7 @@ int main(int argc, char** argv) {
   try {
     if (argc != 3) throw std::invalid_argument("usage: gridmerge_plan_cases FIRST LAST > plan_cases.tsv");
     const int first = number_of(argv[1]), last = number_of(argv[2]);
-    fmt::print("case\town\thypothesis\tright\tscale");
+    fmt::print("case\tscale\tscale_error\terror");
     const VerdictModel model = scaled_model(1);
     for (const RankTerm& term : model.rank_terms) fmt::print("\trank: {}", term.name);
     for (const VerdictTerm& term : model.terms) fmt::print("\tterm: {}", term.name);

@@ -28,7 +28,7 @@ double how_held(const F& f) {
 
 constexpr std::array kRankTerms{
     RankTerm{"evidence", "ln(score)", [](const F& f) { return std::log(std::max(f.score, 1.0)); }},
-    RankTerm{"seen", "-ln(seen_walls)", [](const F& f) { return -std::log(std::max(f.seen_walls, 1.0)); }},
+    RankTerm{"seen", "ln(seen_walls)", [](const F& f) { return std::log(std::max(f.seen_walls, 1.0)); }},
     RankTerm{"lines", "ln(wall_lines + 0.5)", [](const F& f) { return std::log(f.wall_lines + 0.5); }}};
 static_assert(kRankTerms.size() == kScaledRankWeights.size(), "each term has its weight");
 

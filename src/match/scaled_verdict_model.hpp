@@ -8,22 +8,22 @@
 
 namespace gridmerge::internal {
 
-inline constexpr double kScaledBias = -14.09;
+inline constexpr double kScaledBias = -20.21;
 
 /// In the order of the terms of scaled_model().
 // clang-format off
 inline constexpr std::array kScaledWeights{
-    VerdictWeight{"tells apart", 3.24},
-    VerdictWeight{"held", 2.32},
-    VerdictWeight{"stands out", 0.90},
-    VerdictWeight{"met locally", 4.43},
+    VerdictWeight{"tells apart", 5.06},
+    VerdictWeight{"held", 1.00},
+    VerdictWeight{"stands out", 0.65},
+    VerdictWeight{"met locally", 6.00},
 };
 
 /// In the order of the rank terms of scaled_model().
 inline constexpr std::array kScaledRankWeights{
-    VerdictWeight{"evidence", 4.74},
-    VerdictWeight{"seen", -0.21},
-    VerdictWeight{"lines", 2.38},
+    VerdictWeight{"evidence", 5.10},
+    VerdictWeight{"seen", 2.24},
+    VerdictWeight{"lines", 1.91},
 };
 // clang-format on
 
