@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "gridmerge/grid/cancellation.hpp"
