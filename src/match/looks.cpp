@@ -17,6 +17,12 @@ constexpr std::size_t kRankedPoses = 6;
 constexpr std::size_t kCountedPoses = 40;
 constexpr std::size_t kThoroughPoses = 12;
 
+/// What a pose promises before its dear figures are known: the quality of its walls and of its cells.
+double promise(const ScoredPose& pose, double acceptance_index) {
+  return std::log(std::max(rank_of(pose.evidence, RankBy::quality), 1e-9)) -
+         std::log(1.01 - acceptance_index);
+}
+
 std::vector<Hypothesis> judge_all(const PoseJudge& judge, const std::vector<SE2>& T_cells) {
   std::vector<Hypothesis> judged(T_cells.size());
   parallel_for(T_cells.size(), [&](std::size_t i) { judged[i] = judge.judge(T_cells[i]); });
@@ -34,14 +40,8 @@ RefineOptions refinement_of(const ComparedMaps& maps, double coarse_factor, std:
   return refinement;
 }
 
-}  // namespace
-
-double promise(const Evidence& walls, double acceptance_index) {
-  return std::log(std::max(rank_of(walls, RankBy::quality), 1e-9)) - std::log(1.01 - acceptance_index);
-}
-
-std::vector<SE2> propose_quickly(const ComparedMaps& maps, const PoseJudge& judge,
-                                 const std::function<void(double)>& report) {
+std::vector<Hypothesis> look_quickly(const ComparedMaps& maps, const PoseJudge& judge,
+                                     const std::function<void(double)>& report) {
   const ExhaustiveSearchOptions search = choose_search(maps);
   const std::vector<PoseCandidate> candidates = search_all_poses(maps.fixed_walls, maps.moving_walls, search);
   report(0.5);
@@ -50,11 +50,11 @@ std::vector<SE2> propose_quickly(const ComparedMaps& maps, const PoseJudge& judg
   for (const ScoredPose& pose : refine(judge.walls(), maps.moving_walls, candidates, refinement,
                                        [&](double share) { report(0.5 + 0.4 * share); }))
     T_cells.push_back(pose.T_fixed_moving);
-  return T_cells;
+  return judge_all(judge, T_cells);
 }
 
-std::vector<SE2> propose_thoroughly(const ComparedMaps& maps, const PoseJudge& judge,
-                                    const std::function<void(double)>& report) {
+std::vector<Hypothesis> look_thoroughly(const ComparedMaps& maps, const PoseJudge& judge,
+                                        const std::function<void(double)>& report) {
   const ExhaustiveSearchOptions quick = choose_search(maps);
   ThoroughSearchOptions search;
   search.coarse_factor = quick.coarse_factor;
@@ -73,17 +73,15 @@ std::vector<SE2> propose_thoroughly(const ComparedMaps& maps, const PoseJudge& j
   std::vector<Promising> promising(poses.size());
   parallel_for(poses.size(), [&](std::size_t i) {
     promising[i] = {poses[i].T_fixed_moving,
-                    promise(poses[i].evidence, judge.acceptance_index(poses[i].T_fixed_moving))};
+                    promise(poses[i], judge.acceptance_index(poses[i].T_fixed_moving))};
   });
   std::stable_sort(promising.begin(), promising.end(),
                    [](const Promising& a, const Promising& b) { return a.promise > b.promise; });
   std::vector<SE2> T_cells;
   for (std::size_t i = 0; i < std::min(promising.size(), kThoroughPoses); ++i)
     T_cells.push_back(promising[i].T_cells);
-  return T_cells;
+  return judge_all(judge, T_cells);
 }
-
-namespace {
 
 /// Of those that show one place the one that more speaks for.
 std::vector<Hypothesis> keep_distinct(std::vector<Hypothesis> all, const ComparedMaps& maps) {
@@ -131,14 +129,13 @@ std::vector<Hypothesis> find_hypotheses(const ComparedMaps& maps, const LookOpti
   std::vector<Hypothesis> hypotheses;
   if (options.search != SearchMethod::thorough) {
     const double share = may_look_twice ? 0.3 : 1.0;
-    hypotheses = judge_all(
-        judge, propose_quickly(maps, judge, [&](double done) { report(0.1 + share * 0.9 * done); }));
+    hypotheses = look_quickly(maps, judge, [&](double done) { report(0.1 + share * 0.9 * done); });
     weigh_and_settle(hypotheses, maps, judge);
     const double best = hypotheses.empty() ? 0.0 : hypotheses.front().probability;
     if (!may_look_twice || best >= options.decided_from) return hypotheses;
   }
   const std::vector<Hypothesis> found =
-      judge_all(judge, propose_thoroughly(maps, judge, [&](double done) { report(0.37 + 0.63 * done); }));
+      look_thoroughly(maps, judge, [&](double done) { report(0.37 + 0.63 * done); });
   hypotheses.insert(hypotheses.end(), found.begin(), found.end());
   hypotheses = keep_distinct(std::move(hypotheses), maps);
   weigh_and_settle(hypotheses, maps, judge);
