@@ -32,6 +32,8 @@ struct MatchCommandOptions {
   LoadOptions load;
   SearchOptions search;
   bool json = false;
+
+  bool scaled() const { return !search.scales.empty(); }
 };
 
 std::string describe_verdict(const MatchResult& result, const SearchOptions& search) {
@@ -75,6 +77,8 @@ std::string describe(const MatchResult& result, const MatchCommandOptions& optio
     fmt::format_to(std::back_inserter(text), "  {:<14}{}\n", name, value);
   };
   line("T_fixed_moving", " " + describe_pose(result.T_fixed_moving));
+  if (options.scaled())
+    line("scale", fmt::format(" {:.4f}, by which MOVING is enlarged first", result.scale));
   line("agreement", fmt::format(" {} cells agree, {} do not (acceptance index {:.3f})", result.agreement,
                                 result.disagreement, result.acceptance_index));
   line("overlap", fmt::format(" {:.1f} % of the smaller map", 100.0 * result.overlap));
@@ -82,14 +86,21 @@ std::string describe(const MatchResult& result, const MatchCommandOptions& optio
   if (!options.common.verbose) return text;
   for (std::size_t i = 0; i < result.hypotheses.size(); ++i) {
     const Hypothesis& hypothesis = result.hypotheses[i];
+    const std::string scale = options.scaled() ? fmt::format(", scale {:.4f}", hypothesis.scale) : "";
     const std::string figures =
         options.search.random_walk()
             ? fmt::format("acceptance index {:.4f}", hypothesis.score)
             : fmt::format("score {:.4g}, probability {:.4f}", hypothesis.score, hypothesis.probability);
     line(fmt::format("hypothesis {}", i + 1),
-         fmt::format(" {}, {}", describe_pose(hypothesis.T_fixed_moving), figures));
+         fmt::format(" {}{}, {}", describe_pose(hypothesis.T_fixed_moving), scale, figures));
   }
   return text;
+}
+
+/// Throws std::runtime_error for a map that tells no scale.
+void check_walls(const std::string& name, const OccupancyGrid& map) {
+  if (count_cells(map).occupied == 0)
+    throw std::runtime_error(name + ": has no walls by which to tell a scale");
 }
 
 /// A match, and what to say beside it.
@@ -109,13 +120,17 @@ Answer match_files(const MatchCommandOptions& options) {
     inputs.insert(inputs.end(), moving.files.begin(), moving.files.end());
     try_output_file(options.search.trace, inputs);
   }
+  if (options.scaled()) {
+    check_walls(options.fixed, fixed.grid);
+    check_walls(options.moving, moving.grid);
+  }
   PairMatcher matcher(options.common, options.search,
                       [&](double share) { console.progress("matching", share); });
   try {
     Answer answer{matcher(fixed.grid, moving.grid), {}};
     matcher.write_trace();
-    const bool is_for_people = !options.json && !options.search.random_walk();
-    if (is_for_people && answer.result.verdict == Verdict::refused) {
+    const bool may_hint = !options.json && !options.search.random_walk() && !options.scaled();
+    if (may_hint && answer.result.verdict == Verdict::refused) {
       console.progress("trying other scales");
       answer.hint = scale_hint({options.fixed, fixed.grid}, {options.moving, moving.grid},
                                match_options(options.common, options.search));
@@ -128,7 +143,8 @@ Answer match_files(const MatchCommandOptions& options) {
 
 int run_match(const MatchCommandOptions& options) {
   const auto [result, hint] = match_files(options);
-  print(options.json ? match_json(options.fixed, options.moving, result) : describe(result, options) + hint);
+  print(options.json ? match_json(options.fixed, options.moving, result, options.scaled())
+                     : describe(result, options) + hint);
   return result.verdict == Verdict::accepted ? kDone : kRefused;
 }
 
@@ -142,6 +158,7 @@ void add_match(CLI::App& app, Action& action) {
   command->add_option("MOVING", options->moving, "The map to lay on it")->type_name("FILE")->required();
   command->add_flag("--json", options->json, "Print JSON, on one line");
   add_search_options(*command, options->search);
+  add_scale_option(*command, options->search);
   add_start_option(*command, options->search);
   add_trace_option(*command, options->search);
   add_map_file_options(*command, options->load);
@@ -150,7 +167,7 @@ void add_match(CLI::App& app, Action& action) {
       "The transform takes points of MOVING to FIXED, in metres and radians of the map frames.\n"
       "It is given for a refused pair too; the exit code is 3 then.\n\n"
       "Example:\n  gridmerge match robot1.yaml robot2.yaml\n  gridmerge match team.mcap#/tb1/map "
-      "team.mcap#/tb2/map");
+      "team.mcap#/tb2/map\n  gridmerge match robot1.yaml layout.png --resolution 0.05 --scale 0.5:2");
   command->callback([options, &action] { action = [options] { return run_match(*options); }; });
 }
 

@@ -61,6 +61,30 @@ const CLI::Validator kStarts(
     },
     "");
 
+/// LO:HI. None if the text is anything else.
+std::optional<ScaleRange> parse_scales(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return std::nullopt;
+  ScaleRange scales;
+  if (!CLI::detail::lexical_cast(text.substr(0, colon), scales.least) ||
+      !CLI::detail::lexical_cast(text.substr(colon + 1), scales.most))
+    return std::nullopt;
+  return scales;
+}
+
+const CLI::Validator kScales(
+    [](std::string& text) {
+      const std::optional<ScaleRange> scales = parse_scales(text);
+      if (!scales) return "'" + text + "' is not LO:HI, as 0.5:2";
+      try {
+        validate(*scales);
+      } catch (const std::invalid_argument& error) {
+        return "'" + text + "': " + error.what();
+      }
+      return std::string();
+    },
+    "");
+
 /// The options that only the random walk has.
 std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& options) {
   RandomWalkMatchOptions& match = options.walk;
@@ -126,6 +150,7 @@ void check_walk(const SearchOptions& options) {
     throw CLI::ValidationError("--strategy", "joint needs several hypotheses a pair: --search exhaustive");
   if (options.restarts && static_cast<std::size_t>(*options.restarts) < options.walk.c_locks.size())
     throw CLI::ValidationError("--restarts", "is less than the number of --c-lock, which are used in turn");
+  if (!options.scales.empty()) throw CLI::ValidationError("--scale", "excludes --search random-walk");
   if (!options.start.empty() && !options.starts.empty())
     throw CLI::ValidationError("--start", "excludes --starts");
   try {
@@ -180,6 +205,18 @@ void add_start_option(CLI::App& command, SearchOptions& options) {
       ->check(kPose);
 }
 
+void add_scale_option(CLI::App& command, SearchOptions& options) {
+  command
+      .add_option(
+          "--scale", options.scales,
+          "MOVING may have any scale of this range, as 0.5:2: it is an architect's plan, or FIXED is. "
+          "The answer has the scale too: p_fixed = scale * R(theta) * p_moving + (x, y). The metres "
+          "of FIXED count. Looks quickly at each scale, which takes seconds, unless --search is "
+          "thorough")
+      ->type_name("LO:HI")
+      ->check(kScales);
+}
+
 void add_trace_option(CLI::App& command, SearchOptions& options) {
   CLI::Option* trace =
       command.add_option("--trace", options.trace, "Write every accepted sample to this CSV file")
@@ -205,6 +242,7 @@ MatchOptions match_options(const CommonOptions& common, const SearchOptions& opt
   engine.accept_probability = options.accept_from();
   if (options.lists_all) engine.max_hypotheses = std::numeric_limits<std::size_t>::max();
   engine.search = search_method(options.method).value();
+  if (!options.scales.empty()) engine.scales = parse_scales(options.scales);
   return engine;
 }
 

@@ -22,6 +22,7 @@ struct SearchOptions {
   std::optional<int> restarts;   // one for each c_lock if not given
   std::string starts;            // the lattice, as the command line says it; the usual one if empty
   std::string start;             // a pose instead
+  std::string scales;            // LO:HI; scales are not searched if empty
   std::string trace;
   bool trace_all = false;
   bool lists_all = false;               // results hold all poses that were judged
@@ -38,6 +39,9 @@ void add_search_options(CLI::App& command, SearchOptions& options);
 
 /// --start: needs add_search_options() of the same command.
 void add_start_option(CLI::App& command, SearchOptions& options);
+
+/// --scale: needs add_search_options() of the same command.
+void add_scale_option(CLI::App& command, SearchOptions& options);
 
 /// --trace and --trace-all: needs add_search_options() of the same command.
 void add_trace_option(CLI::App& command, SearchOptions& options);

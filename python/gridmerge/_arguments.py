@@ -73,6 +73,21 @@ def choice(name: str, value: object, choices: tuple[str, ...]) -> str:
     return value
 
 
+def scales(name: str, value: object, search: str) -> tuple[float, float]:
+    """A range of scales that match() searches."""
+    if not isinstance(value, (tuple, list)) or len(value) != 2:
+        raise TypeError(f"{name}: must be a pair of numbers, is {kind_of(value)}")
+    least, most = (number(name, one) for one in value)
+    if search == "random-walk":
+        raise ValueError(f"{name}: is not searched by the random walk")
+    if not 1e-3 <= least <= most <= 1e3 or most > 20.0 * least:
+        raise ValueError(
+            f"{name}: must go from a smaller to a larger one within [0.001, 1000], at most 20 times as large, "
+            f"is {least:g} to {most:g}"
+        )
+    return least, most
+
+
 def path(name: str, value: object) -> bytes:
     """A path as the file system spells it."""
     if not isinstance(value, (str, os.PathLike)):

@@ -8,7 +8,7 @@ from . import _arguments, _core
 from ._arguments import Progress
 from ._grid import MapLike
 from ._inputs import to_map
-from ._repr import probability, short_pose
+from ._repr import probability, short_pose, short_scale
 from ._transform import Transform
 
 Verdict: TypeAlias = Literal["accepted", "refused"]
@@ -35,10 +35,12 @@ class Hypothesis:
     """Log-likelihood ratio "same place" against "unrelated" [nats]; larger is better."""
     probability: float
     """That this pose is the true one."""
+    scale: float = 1.0
+    """What the moving map is enlarged by before the transform applies: 1 unless match() was given `scale`."""
 
     def __repr__(self) -> str:
         return (
-            f"Hypothesis(transform={short_pose(self.transform)}, score={self.score:.1f}, "
+            f"Hypothesis(transform={short_pose(self.transform)}{short_scale(self.scale)}, score={self.score:.1f}, "
             f"{probability(self.probability)})"
         )
 
@@ -76,6 +78,9 @@ class MatchResult(PairPose):
     """Wall time from maps in memory to the verdict."""
     hypotheses: tuple[Hypothesis, ...]
     """Distinct, best first; empty only when a map has nothing to go by."""
+    scale: float = 1.0
+    """What the moving map is enlarged by first: p_fixed = scale * R(theta) * p_moving + (x, y), theta, x and y those
+    of the transform. 1 unless match() was given `scale`."""
 
     @property
     def accepted(self) -> bool:
@@ -85,7 +90,7 @@ class MatchResult(PairPose):
     def __repr__(self) -> str:
         why = "" if self.accepted else f": {self.reason}"
         return (
-            f"MatchResult({self.verdict}{why}, transform={short_pose(self.transform)}, "
+            f"MatchResult({self.verdict}{why}, transform={short_pose(self.transform)}{short_scale(self.scale)}, "
             f"{probability(self.probability)}, overlap={self.overlap:.2f}, "
             f"hypotheses: {len(self.hypotheses)})"
         )
@@ -99,6 +104,7 @@ def match(
     accept: float | None = None,
     max_hypotheses: int = 10,
     search: str = "exhaustive",
+    scale: tuple[float, float] | None = None,
     progress: Progress | None = None,
 ) -> MatchResult:
     """Finds how `moving` lies on `fixed`, searching every pose, and says whether to believe it.
@@ -111,6 +117,9 @@ def match(
         max_hypotheses: how many distinct hypotheses the result lists.
         search: "exhaustive", a quick look at every pose, then a thorough one if that decides nothing; "quick" or
             "thorough", one of the two alone; "random-walk", the paper's search, as match_by_random_walk() makes it.
+        scale: the smallest and the largest factor by which `moving` may be too small, as (0.5, 2.0) for an architect's
+            plan or a map that is laid on one. The metres of `fixed` count. None: the maps have one scale. Not for
+            the random walk.
         progress: called now and then, in the calling thread, with the share of the work that is done.
 
     Other Python threads run meanwhile, and Ctrl-C ends the work. Raises FileError for a file that is no map, and
@@ -123,6 +132,7 @@ def match(
         None if accept is None else _arguments.share("accept", accept),
         _arguments.whole("max_hypotheses", max_hypotheses, 0, 2**31),
         _arguments.choice("search", search, tuple(_core.search_methods())),
+        None if scale is None else _arguments.scales("scale", scale, search),
         _arguments.progress(progress),
     )
     return to_match_result(result)
@@ -147,6 +157,8 @@ def to_match_result(core: _core.MatchResult) -> MatchResult:
         reason=cast(Reason, core.reason),
         seconds=core.seconds,
         hypotheses=tuple(
-            Hypothesis(Transform(*one.transform), one.score, one.probability) for one in core.hypotheses
+            Hypothesis(Transform(*one.transform), one.score, one.probability, one.scale)
+            for one in core.hypotheses
         ),
+        scale=core.scale,
     )

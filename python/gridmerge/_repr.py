@@ -16,6 +16,11 @@ def short_pose(transform: Transform) -> str:
     return f"({round(x, 3) + 0.0:.3f}, {round(y, 3) + 0.0:.3f}, {round(theta, 4) + 0.0:.4f})"
 
 
+def short_scale(scale: float) -> str:
+    """``, scale=0.826`` for a map of another scale."""
+    return "" if scale == 1.0 else f", scale={scale:.4f}"
+
+
 def probability(value: float | None) -> str:
     """``probability=0.998``; never rounded up to certainty."""
     if value is None:

@@ -94,7 +94,8 @@ class Simulation:
 
     def save(self, directory: str | os.PathLike[str], *, probabilities: bool = False) -> None:
         """Writes the files that `gridmerge simulate` writes: robot_1.yaml and so on, elsewhere_1.yaml and so on,
-        building.yaml, and the truth as evaluate() reads it: pairs.tsv, negatives.tsv and sets.tsv.
+        building.yaml, and the truth as evaluate() reads it: pairs.tsv, negatives.tsv and sets.tsv, and building.tsv
+        of the robots' maps on building.yaml.
 
         With `probabilities` the maps are written in mode raw. Raises FileError when they cannot be written.
         """

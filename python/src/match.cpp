@@ -8,11 +8,13 @@ namespace gridmerge::python {
 namespace {
 
 MatchResult match_maps(const Map& fixed, const Map& moving, int threads, std::optional<double> accept,
-                       std::size_t max_hypotheses, const std::string& search, const nb::object& progress) {
+                       std::size_t max_hypotheses, const std::string& search,
+                       std::optional<std::pair<double, double>> scales, const nb::object& progress) {
   MatchOptions options;
   options.threads = threads;
   options.max_hypotheses = max_hypotheses;
   set_search(options, search, accept);
+  if (scales) options.scales = ScaleRange{scales->first, scales->second};
   return compute_in_worker(progress, [&](const Report& report) {
     options.progress = report;
     return match(*fixed.grid, *moving.grid, options);
@@ -33,6 +35,7 @@ void bind_match(nb::module_& module) {
   nb::class_<Hypothesis>(module, "Hypothesis")
       .def_prop_ro("transform", [](const Hypothesis& it) { return to_pose(it.T_fixed_moving); })
       .def_ro("score", &Hypothesis::score)
+      .def_ro("scale", &Hypothesis::scale)
       .def_ro("probability", &Hypothesis::probability);
   nb::class_<PairPose>(module, "PairPose")
       .def_prop_ro("transform", [](const PairPose& pose) { return to_pose(pose.T_fixed_moving); })
@@ -45,6 +48,7 @@ void bind_match(nb::module_& module) {
       .def_prop_ro("verdict", [](const MatchResult& result) { return name_of(result.verdict); })
       .def_prop_ro("reason", [](const MatchResult& result) { return name_of(result.reason); })
       .def_ro("seconds", &MatchResult::seconds)
+      .def_ro("scale", &MatchResult::scale)
       .def_ro("hypotheses", &MatchResult::hypotheses);
   module.def("search_methods", [] {
     std::vector<std::string> names;
@@ -52,7 +56,7 @@ void bind_match(nb::module_& module) {
     return names;
   });
   module.def("match", &match_maps, nb::arg("fixed"), nb::arg("moving"), nb::arg("threads"),
-             nb::arg("accept").none(), nb::arg("max_hypotheses"), nb::arg("search"),
+             nb::arg("accept").none(), nb::arg("max_hypotheses"), nb::arg("search"), nb::arg("scales").none(),
              nb::arg("progress").none());
 }
 

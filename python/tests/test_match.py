@@ -56,6 +56,42 @@ def test_so_do_those_of_simulated_maps(cli: Cli, team: gridmerge.Simulation, tea
     assert to_bits(as_json(gridmerge.match(*of_arrays, accept=0.99))) == expected
 
 
+def test_a_plan_of_another_scale(cli: Cli, robots: list[str], tmp_path: Path) -> None:
+    plan = gridmerge.load(robots[0])
+    larger = gridmerge.OccupancyGrid(plan.to_numpy(), plan.resolution * 1.25)
+    result = gridmerge.match(larger, robots[0], scale=(1.1, 1.4))
+    assert result.accepted
+    assert result.scale == pytest.approx(1.25, rel=0.02)
+    assert result.hypotheses[0].scale == result.scale
+    assert f"scale={result.scale:.4f}" in repr(result)
+    gridmerge.save(larger, tmp_path / "plan.yaml")
+    answer = ask(cli, tmp_path / "plan.yaml", robots[0], "--scale", "1.1:1.4")
+    assert answer["scale"] == result.scale
+    assert to_bits(answer["transform"]) == to_bits(pose_of(result.transform))
+
+
+@pytest.mark.parametrize(
+    ("scale", "error"),
+    [
+        ((0.0, 1.0), ValueError),
+        ((2.0, 0.5), ValueError),
+        ((float("nan"), 1.0), ValueError),
+        ((0.1, 9.0), ValueError),
+        ((1.0,), TypeError),
+        (2.0, TypeError),
+        (("a", 1.0), TypeError),
+    ],
+)
+def test_scales_that_make_no_sense(robots: list[str], scale: Any, error: type[Exception]) -> None:
+    with pytest.raises(error, match="^scale: "):
+        gridmerge.match(robots[0], robots[1], scale=scale)
+
+
+def test_the_random_walk_searches_no_scale(robots: list[str]) -> None:
+    with pytest.raises(ValueError, match="^scale: "):
+        gridmerge.match(robots[0], robots[1], scale=(0.5, 2.0), search="random-walk")
+
+
 def test_threads_change_nothing(robots: list[str]) -> None:
     results = [as_json(gridmerge.match(*robots[:2], threads=threads)) for threads in (0, 1, 2, 5)]
     assert all(to_bits(result) == to_bits(results[0]) for result in results)

@@ -15,6 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kBuilding = "building.yaml";
+
 TruthMap robot_map(std::size_t robot) {
   return {fmt::format("robot_{}.yaml", robot + 1), {}};
 }
@@ -28,6 +30,22 @@ std::vector<TruePair> true_pairs(const Simulation& simulation) {
   for (const SimulatedPair& pair : simulation.pairs) {
     pairs.push_back({robot_map(pair.fixed), robot_map(pair.moving), pair.T_fixed_moving, pair.tolerance,
                      std::string(1, pair.tier), pair.overlap, pair.shared_wall});
+  }
+  return pairs;
+}
+
+/// Each robot's map on the building as it is drawn.
+std::vector<TruePair> on_building(const Simulation& simulation) {
+  std::vector<TruePair> pairs;
+  for (std::size_t robot = 0; robot < simulation.maps.size(); ++robot) {
+    const SimulatedMap& map = simulation.maps[robot];
+    pairs.push_back({{kBuilding, {}},
+                     robot_map(robot),
+                     map.T_building_map,
+                     std::max(kMinTolerance, 0.3 + 2.0 * map.bend),
+                     "A",
+                     1.0,
+                     0.0});
   }
   return pairs;
 }
@@ -74,8 +92,9 @@ void write_dataset(const fs::path& directory, const Simulation& simulation,
     for (const SimulatedMap& map : other.maps)
       add(map.grid, elsewhere_map(others++).name, options.probabilities);
   }
-  add(draw_building(simulation.building, 0.05), "building.yaml", false);
+  add(draw_building(simulation.building, 0.05), kBuilding, false);
   files.add("pairs.tsv", format_pairs(true_pairs(simulation)));
+  files.add("building.tsv", format_pairs(on_building(simulation)));
   files.add("negatives.tsv", format_negatives(negatives(simulation, others)));
   files.add("sets.tsv", format_sets(sets(simulation)));
   files.commit();

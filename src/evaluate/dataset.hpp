@@ -16,9 +16,10 @@ struct DatasetOptions {
 
 /// Writes a simulation to `directory`, which is made if need be: `robot_1.yaml` and so on with their images
 /// (and `robot_1_step_1.yaml` and so on, as they were before),
-/// `building.yaml` (the building itself, for a person to look at), and `pairs.tsv`, `negatives.tsv` and
-/// `sets.tsv`. The maps of `elsewhere`, which are of other buildings, become `elsewhere_1.yaml` and so on,
-/// each of them a negative with every robot's map. Negatives are also the strangers of the simulation.
+/// `building.yaml` (the building itself), `building.tsv` (where each robot's map lies on it), and
+/// `pairs.tsv`, `negatives.tsv` and `sets.tsv`. The maps of `elsewhere`, which are of other buildings, become
+/// `elsewhere_1.yaml` and so on, each of them a negative with every robot's map. Negatives are also the
+/// strangers of the simulation.
 ///
 /// All files take their places at one point of time, even if the program is killed. Throws FileError.
 GRIDMERGE_INTERNAL_EXPORT void write_dataset(const std::filesystem::path& directory,

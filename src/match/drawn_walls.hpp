@@ -17,6 +17,9 @@ class GRIDMERGE_INTERNAL_EXPORT DrawnWalls {
   /// In cells of `cell` metres; drawn when first asked for, O(cells) then. Lives as long as the map.
   static const LikelihoodField& of(const PreparedMap& map, double cell);
 
+  /// The map drawn `factor` times as large, with walls yet to be drawn. O(cells), with a small factor.
+  static PreparedMap scaled(const PreparedMap& map, double factor);
+
  private:
   std::mutex drawing_;
   std::map<double, std::unique_ptr<const LikelihoodField>> by_cell_;

@@ -51,9 +51,12 @@ double longest_side(const ComparedMaps& maps) {
 }  // namespace
 
 ComparedMaps::ComparedMaps(const PreparedMap& fixed_map, const PreparedMap& moving_map)
+    : ComparedMaps(fixed_map, moving_map, working_cell(fixed_map, moving_map)) {}
+
+ComparedMaps::ComparedMaps(const PreparedMap& fixed_map, const PreparedMap& moving_map, double cell_side)
     : fixed(fixed_map.known()),
       moving(moving_map.known()),
-      cell(working_cell(fixed_map, moving_map)),
+      cell(cell_side),
       smaller_area(std::min(known_area(fixed_map), known_area(moving_map))),
       fixed_walls(DrawnWalls::of(fixed_map, cell)),
       moving_walls(DrawnWalls::of(moving_map, cell)) {}

@@ -19,6 +19,8 @@ namespace gridmerge::internal {
 struct ComparedMaps {
   /// `moving` is the smaller one by is_smaller(): its walls have the best chance to be met in the other one.
   ComparedMaps(const PreparedMap& fixed, const PreparedMap& moving);
+  /// The same in cells of `cell` metres, no smaller than either map's.
+  ComparedMaps(const PreparedMap& fixed, const PreparedMap& moving, double cell);
 
   const OccupancyGrid& fixed;
   const OccupancyGrid& moving;

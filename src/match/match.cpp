@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "grid/parallel.hpp"
+#include "match/drawing.hpp"
 #include "match/looks.hpp"
+#include "match/match_at_scales.hpp"
 #include "match/pair_pose.hpp"
 
 namespace gridmerge {
@@ -63,8 +65,13 @@ MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const
   if (options.search == SearchMethod::random_walk) return walk(fixed, moving, options);
   const auto start = std::chrono::steady_clock::now();
   MatchResult result;
-  const PreparedMap prepared_fixed(fixed), prepared_moving(moving);
-  with_threads(options.threads, [&] { result = match(prepared_fixed, prepared_moving, options); });
+  if (options.scales) {
+    const PreparedMap plan_fixed(with_enclosed_free(fixed)), plan_moving(with_enclosed_free(moving));
+    with_threads(options.threads, [&] { result = match_at_scales(plan_fixed, plan_moving, options); });
+  } else {
+    const PreparedMap prepared_fixed(fixed), prepared_moving(moving);
+    with_threads(options.threads, [&] { result = match(prepared_fixed, prepared_moving, options); });
+  }
   result.seconds = seconds_since(start);
   if (options.progress) options.progress(1.0);
   return result;
@@ -74,7 +81,8 @@ MatchResult match(const PreparedMap& fixed, const PreparedMap& moving, const Mat
   validate(options);
   if (options.search == SearchMethod::random_walk) return walk(fixed.known(), moving.known(), options);
   const auto start = std::chrono::steady_clock::now();
-  MatchResult result = match_in_arena(fixed, moving, options);
+  MatchResult result =
+      options.scales ? match_at_scales(fixed, moving, options) : match_in_arena(fixed, moving, options);
   result.seconds = seconds_since(start);
   return result;
 }
@@ -88,7 +96,19 @@ double working_cell(const PreparedMap& fixed, const PreparedMap& moving) {
   return resolution * std::max({1.0, least, std::min(wanted, most)});
 }
 
+void validate(const ScaleRange& scales) {
+  if (!(scales.least >= kMinScale && scales.most <= kMaxScale && scales.least <= scales.most))
+    throw std::invalid_argument("scales must go from a smaller to a larger one, within [0.001, 1000]");
+  if (!(scales.most <= kMaxScaleRatio * scales.least))
+    throw std::invalid_argument("scales must not differ by more than a factor of 20");
+}
+
 void validate(const MatchOptions& options) {
+  if (options.scales) {
+    validate(*options.scales);
+    if (options.search == SearchMethod::random_walk)
+      throw std::invalid_argument("scales are not searched by the random walk");
+  }
   if (options.threads < 0) throw std::invalid_argument("threads must not be negative");
   if (!(options.accept_probability >= 0.0 && options.accept_probability <= 1.0)) {
     throw std::invalid_argument("accept_probability must lie in [0, 1]");

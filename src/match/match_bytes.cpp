@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/match/match_bytes.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "match/pair_pose_bytes.hpp"
@@ -15,7 +16,12 @@ constexpr std::uint8_t kLastVerdict = static_cast<std::uint8_t>(Verdict::accepte
 constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::contradicts_others);
 
 std::size_t bytes_of_a_hypothesis() {
-  return 8 * (5 + pose_figures().size());
+  return 8 * (6 + pose_figures().size());
+}
+
+/// Throws std::invalid_argument for what no match can have found.
+void check_scale(double scale) {
+  if (!(std::isfinite(scale) && scale > 0.0)) throw std::invalid_argument("holds a scale that no match has");
 }
 
 }  // namespace
@@ -26,11 +32,13 @@ std::string to_bytes(const MatchResult& match) {
   writer.byte(static_cast<std::uint8_t>(match.verdict));
   writer.byte(static_cast<std::uint8_t>(match.reason));
   writer.number(match.seconds);
+  writer.number(match.scale);
   writer.whole(match.hypotheses.size());
   for (const Hypothesis& one : match.hypotheses) {
     writer.pose(one.T_fixed_moving);
     writer.number(one.score);
     writer.number(one.probability);
+    writer.number(one.scale);
     for (const PoseFigure& figure : pose_figures()) writer.number(one.figures.*figure.value);
   }
   return writer.take();
@@ -46,12 +54,16 @@ MatchResult match_from_bytes(std::string_view bytes) {
   match.verdict = static_cast<Verdict>(verdict);
   match.reason = static_cast<Reason>(reason);
   match.seconds = reader.number();
+  match.scale = reader.number();
+  check_scale(match.scale);
   match.hypotheses.resize(reader.count(bytes_of_a_hypothesis()));
   for (Hypothesis& one : match.hypotheses) {
     one.T_fixed_moving = reader.pose();
     one.score = reader.number();
     one.probability = reader.number();
     check_pose(one.T_fixed_moving, one.probability);
+    one.scale = reader.number();
+    check_scale(one.scale);
     for (const PoseFigure& figure : pose_figures()) one.figures.*figure.value = reader.number();
   }
   if (!reader.is_at_end()) throw std::invalid_argument("holds more than a match");

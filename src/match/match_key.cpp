@@ -42,6 +42,10 @@ std::string match_key(const std::string& fixed_content, const std::string& movin
   key.text(name_of(options.search));
   key.whole(options.max_hypotheses);
   key.number(options.accept_probability);
+  if (options.scales) {
+    key.number(options.scales->least);
+    key.number(options.scales->most);
+  }
   return to_hex(Sha256().add(key.take()).digest());
 }
 

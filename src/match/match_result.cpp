@@ -78,10 +78,23 @@ const char* name_of(Reason reason) {
   return "none";
 }
 
+namespace {
+
+/// Of p_fixed = scale * R * p_moving + t: what takes p_fixed to p_moving.
+void invert(SE2& T_fixed_moving, double& scale) {
+  T_fixed_moving = inverse(T_fixed_moving);
+  if (scale == 1.0) return;
+  T_fixed_moving.x /= scale;
+  T_fixed_moving.y /= scale;
+  scale = 1.0 / scale;
+}
+
+}  // namespace
+
 MatchResult inverse(MatchResult result) {
-  result.T_fixed_moving = inverse(result.T_fixed_moving);
+  invert(result.T_fixed_moving, result.scale);
   for (Hypothesis& hypothesis : result.hypotheses) {
-    hypothesis.T_fixed_moving = inverse(hypothesis.T_fixed_moving);
+    invert(hypothesis.T_fixed_moving, hypothesis.scale);
     double& free_direction = hypothesis.figures.free_direction;
     free_direction = undirected_angle(free_direction + hypothesis.T_fixed_moving.theta);
   }

@@ -7,6 +7,7 @@
 
 #include "gridmerge/grid/resample.hpp"
 #include "match/drawn_walls.hpp"
+#include "match/scaled_pose.hpp"
 
 namespace gridmerge {
 
@@ -60,7 +61,14 @@ PreparedMap::PreparedMap(const OccupancyGrid& grid) : drawn_(std::make_unique<Dr
   counts_ = count_cells(known_);
 }
 
+PreparedMap::PreparedMap(OccupancyGrid known, const CellCounts& counts)
+    : known_(std::move(known)), counts_(counts), drawn_(std::make_unique<DrawnWalls>()) {}
+
 PreparedMap::~PreparedMap() = default;
+
+PreparedMap DrawnWalls::scaled(const PreparedMap& map, double factor) {
+  return {internal::scaled(map.known_, factor), map.counts_};
+}
 
 const LikelihoodField& DrawnWalls::of(const PreparedMap& map, double cell) {
   DrawnWalls& drawn = *map.drawn_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "match/scaled_pose.hpp"
+
 namespace gridmerge::internal {
 
 namespace {
@@ -13,13 +15,6 @@ constexpr double kMinProbability = 0.99;
 /// A map that was scaled to this or that side [m] shows no place to compare.
 constexpr double kMinSide = 2.0;
 constexpr double kMaxSide = 1000.0;
-
-OccupancyGrid scaled(OccupancyGrid map, double factor) {
-  map.resolution *= factor;
-  map.origin.x *= factor;
-  map.origin.y *= factor;
-  return map;
-}
 
 }  // namespace
 

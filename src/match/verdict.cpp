@@ -104,17 +104,22 @@ std::span<const RankTerm> rank_terms() {
   return kTerms;
 }
 
-double rank_of(const PoseFigures& figures) {
-  const auto terms = rank_terms();
+const VerdictModel& rigid_model() {
+  static const VerdictModel model{rank_terms(), kRankWeights, verdict_terms(), kVerdictWeights, kVerdictBias};
+  return model;
+}
+
+double rank_of(const PoseFigures& figures, const VerdictModel& model) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < terms.size(); ++i) sum += kRankWeights[i].weight * terms[i].value(figures);
+  for (std::size_t i = 0; i < model.rank_terms.size(); ++i)
+    sum += model.rank_weights[i].weight * model.rank_terms[i].value(figures);
   return sum;
 }
 
-double log_odds_of(const PoseFigures& figures) {
-  const auto terms = verdict_terms();
-  double sum = kVerdictBias;
-  for (std::size_t i = 0; i < terms.size(); ++i) sum += kVerdictWeights[i].weight * terms[i](figures);
+double log_odds_of(const PoseFigures& figures, const VerdictModel& model) {
+  double sum = model.bias;
+  for (std::size_t i = 0; i < model.terms.size(); ++i)
+    sum += model.weights[i].weight * model.terms[i](figures);
   return sum;
 }
 
@@ -129,17 +134,18 @@ constexpr double kRivalScore = 0.5;
 }  // namespace
 
 void compare_rivals(std::span<PoseFigures> hypotheses,
-                    const std::function<bool(std::size_t, std::size_t)>& are_near) {
+                    const std::function<bool(std::size_t, std::size_t)>& are_near,
+                    const VerdictModel& model) {
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     PoseFigures& one = hypotheses[i];
-    const double rank = rank_of(one);
+    const double rank = rank_of(one, model);
     double next_score = 0.0, others = std::exp(-kMaxStandingOut);
     one.next_acceptance_index = 0.0;
     for (std::size_t j = 0; j < hypotheses.size(); ++j) {
       const PoseFigures& other = hypotheses[j];
       if (j == i || (other.score < one.score && are_near && are_near(i, j))) continue;
       next_score = std::max(next_score, other.score);
-      others += std::exp(rank_of(other) - rank);
+      others += std::exp(rank_of(other, model) - rank);
       if (other.score >= kRivalScore * one.score)
         one.next_acceptance_index = std::max(one.next_acceptance_index, other.acceptance_index);
     }
@@ -148,13 +154,13 @@ void compare_rivals(std::span<PoseFigures> hypotheses,
   }
 }
 
-std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses) {
+std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses, const VerdictModel& model) {
   if (hypotheses.empty()) return {};
   std::vector<double> odds;
-  for (const PoseFigures& figures : hypotheses) odds.push_back(rank_of(figures));
+  for (const PoseFigures& figures : hypotheses) odds.push_back(rank_of(figures, model));
   const auto best = std::max_element(odds.begin(), odds.end());
   const PoseFigures& figures = hypotheses[static_cast<std::size_t>(best - odds.begin())];
-  const double belief = logistic(log_odds_of(figures)), share = logistic(figures.stands_out);
+  const double belief = logistic(log_odds_of(figures, model)), share = logistic(figures.stands_out);
   const double most = *best;
   double others = 0.0;
   for (auto one = odds.begin(); one != odds.end(); ++one) {
@@ -173,17 +179,18 @@ bool slides(const PoseFigures& figures) {
   return how_held(figures) < kSlides;
 }
 
-Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_probability) {
+Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_probability,
+                       const VerdictModel& model) {
   if (hypotheses.empty()) return Reason::nothing_to_compare;
-  const std::vector<double> probabilities = probabilities_of(hypotheses);
+  const std::vector<double> probabilities = probabilities_of(hypotheses, model);
   if (probabilities[0] >= accept_probability) return Reason::none;
   // What the best one would be worth by itself, if all terms of a kind were as good as can be.
   const auto mended = [&](auto is_mended) {
-    const auto terms = verdict_terms();
-    double log_odds = log_odds_of(hypotheses[0]);
+    const auto terms = model.terms;
+    double log_odds = log_odds_of(hypotheses[0], model);
     for (std::size_t i = 0; i < terms.size(); ++i) {
       if (is_mended(terms[i].kind))
-        log_odds += kVerdictWeights[i].weight * (terms[i].most - terms[i](hypotheses[0]));
+        log_odds += model.weights[i].weight * (terms[i].most - terms[i](hypotheses[0]));
     }
     return logistic(log_odds);
   };

@@ -49,28 +49,44 @@ struct RankTerm {
 /// All of them, in the order of the ranking's weights.
 GRIDMERGE_INTERNAL_EXPORT std::span<const RankTerm> rank_terms();
 
+struct VerdictWeight;
+
+/// What ranks poses of a pair and says whether to believe the best one: terms, and what each of them weighs.
+struct VerdictModel {
+  std::span<const RankTerm> rank_terms;
+  std::span<const VerdictWeight> rank_weights;  ///< in the order of rank_terms
+  std::span<const VerdictTerm> terms;
+  std::span<const VerdictWeight> weights;  ///< in the order of terms
+  double bias;                             ///< [nats]
+};
+
+/// The model of maps of one scale: verdict_terms() and rank_terms() with the weights of verdict_model.hpp.
+const VerdictModel& rigid_model();
+
 /// What speaks for a pose against others of its pair: the weighted sum of its rank terms [nats]. Quality
 /// counts more here than amount, so that a true pose that overlaps little stands before wrong ones that
 /// overlap much.
-double rank_of(const PoseFigures& figures);
+double rank_of(const PoseFigures& figures, const VerdictModel& model = rigid_model());
 
 /// Gives each of several distinct hypotheses of one pair what it has before its rivals: `score_margin`,
 /// `stands_out` and, of the rivals that have half of its score or more, `next_acceptance_index`. All others
 /// are its rivals, except those that are near (`are_near`, of two indices) and score less: bent maps have no
 /// exact pose, so that a second maximum beside the first says nothing against it. O(hypotheses^2).
 void compare_rivals(std::span<PoseFigures> hypotheses,
-                    const std::function<bool(std::size_t, std::size_t)>& are_near = {});
+                    const std::function<bool(std::size_t, std::size_t)>& are_near = {},
+                    const VerdictModel& model = rigid_model());
 
 /// What speaks for a pose against "none of these", its rivals left aside: the weighted sum of its terms
 /// [nats].
-double log_odds_of(const PoseFigures& figures);
+double log_odds_of(const PoseFigures& figures, const VerdictModel& model = rigid_model());
 
 /// The probability of each of several distinct hypotheses of one pair, after compare_rivals(). The best one,
 /// b, is that of the largest rank_of(). It has its share among its rivals times the belief in it,
 ///   p_b = 1 / (1 + exp(-stands_out_b)) * 1 / (1 + exp(-log_odds_of(b))),
 /// a nested logit model (McFadden 1978). The others divide what it leaves of the belief by their exp(rank).
 /// So two that are equally good share what there is, and the order is that of the ranks. O(hypotheses).
-std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses);
+std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses,
+                                     const VerdictModel& model = rigid_model());
 
 /// Whether the maps can slide along each other at hardly any loss, as two pieces of a corridor can:
 /// PoseFigures::free_direction says which way.
@@ -78,6 +94,7 @@ GRIDMERGE_INTERNAL_EXPORT bool slides(const PoseFigures& figures);
 
 /// Why the first of these hypotheses, which is the best, is refused where `accept_probability` is asked for;
 /// `none` if it is not, `nothing_to_compare` if there is no hypothesis.
-Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_probability);
+Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_probability,
+                       const VerdictModel& model = rigid_model());
 
 }  // namespace gridmerge::internal

@@ -29,6 +29,8 @@ MergeOptions checked(MergeOptions options) {
     throw std::invalid_argument(
         "joint merging needs several hypotheses for each pair, with probabilities: a random walk has none "
         "(merge_up_tree() takes it)");
+  if (options.match.scales)
+    throw std::invalid_argument("maps are merged at one scale: only match() searches scales");
   validate_merge({}, options.resolution);
   if (!(options.max_false_joins >= 0.0) || !std::isfinite(options.max_false_joins))
     throw std::invalid_argument("max_false_joins must be a number from 0 on");

@@ -132,16 +132,20 @@ Json pair_measure_json(const std::string& fixed, const std::string& moving, cons
 
 }  // namespace
 
-std::string match_json(const std::string& fixed, const std::string& moving, const MatchResult& result) {
+std::string match_json(const std::string& fixed, const std::string& moving, const MatchResult& result,
+                       bool with_scale) {
   Json json{{"fixed", fixed},
             {"moving", moving},
             {"verdict", name_of(result.verdict)},
             {"reason", reason_json(own_reason(result))},
-            {"transform", transform_json(result.T_fixed_moving)},
-            {"probability", number_json(result.probability)}};
+            {"transform", transform_json(result.T_fixed_moving)}};
+  if (with_scale) json["scale"] = number_json(result.scale);
+  json["probability"] = number_json(result.probability);
   json.update(common_json(result));
   json["seconds"] = number_json(result.seconds);
   json["hypotheses"] = hypotheses_json(result.hypotheses);
+  for (std::size_t i = 0; with_scale && i < result.hypotheses.size(); ++i)
+    json["hypotheses"][i]["scale"] = number_json(result.hypotheses[i].scale);
   return text_of(json, -1) + "\n";
 }
 

@@ -258,9 +258,9 @@ WallEvidence WallEvidence::with_points(std::size_t max_points) const {
 }
 
 WallEvidence::Histogram WallEvidence::count_encounters(const LookUp& map, const Points& points,
-                                                       const SE2& T_map_points) {
-  const float c = static_cast<float>(std::cos(T_map_points.theta));
-  const float s = static_cast<float>(std::sin(T_map_points.theta));
+                                                       const SE2& T_map_points, double scale) {
+  const float c = static_cast<float>(scale * std::cos(T_map_points.theta));
+  const float s = static_cast<float>(scale * std::sin(T_map_points.theta));
   constexpr double kFarAway = 1e6;  // beyond any map
   const float tx = static_cast<float>(std::clamp(T_map_points.x, -kFarAway, kFarAway));
   const float ty = static_cast<float>(std::clamp(T_map_points.y, -kFarAway, kFarAway));
@@ -300,9 +300,12 @@ WallEvidence::Histogram WallEvidence::count_encounters(const LookUp& map, const 
   return histogram;
 }
 
-Evidence WallEvidence::operator()(const SE2& T_fixed_moving_cells, double min_sigma) const {
-  const Histogram in_fixed = count_encounters(*fixed_, moving_walls_, T_fixed_moving_cells);
-  const Histogram in_moving = count_encounters(*moving_, fixed_walls_, inverse(T_fixed_moving_cells));
+Evidence WallEvidence::operator()(const SE2& T_fixed_moving_cells, double min_sigma, double scale) const {
+  const Histogram in_fixed = count_encounters(*fixed_, moving_walls_, T_fixed_moving_cells, scale);
+  SE2 T_moving_fixed = inverse(T_fixed_moving_cells);
+  T_moving_fixed.x /= scale;
+  T_moving_fixed.y /= scale;
+  const Histogram in_moving = count_encounters(*moving_, fixed_walls_, T_moving_fixed, 1.0 / scale);
   const auto models = error_models();
   std::size_t first = 0;
   while (models[first].sigma < min_sigma && models[first].sigma < models.back().sigma) ++first;

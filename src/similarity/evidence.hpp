@@ -76,7 +76,9 @@ class WallEvidence {
 
   /// Evidence for a pose between the grid frames, in cells. Only models of sigma >= min_sigma [cells] are
   /// tried. O(points + models * bins).
-  Evidence operator()(const SE2& T_fixed_moving_cells, double min_sigma = 0.0) const;
+  /// With a scale near 1 the moving map is that much larger: a wall point p of it lies at scale * R * p + t
+  /// in the fixed map. Distances in the moving map stay in its own cells, so they are wrong by the scale.
+  Evidence operator()(const SE2& T_fixed_moving_cells, double min_sigma = 0.0, double scale = 1.0) const;
 
  private:
   /// How often each encounter happened, and behind them how often the other map had not seen the place.
@@ -105,7 +107,8 @@ class WallEvidence {
     float weight = 0.0F;  // walls that each of them stands for
   };
 
-  static Histogram count_encounters(const LookUp& map, const Points& points, const SE2& T_map_points);
+  static Histogram count_encounters(const LookUp& map, const Points& points, const SE2& T_map_points,
+                                    double scale);
 
   std::shared_ptr<const LookUp> fixed_;  // shared by all that differ in their points only
   std::shared_ptr<const LookUp> moving_;

@@ -160,5 +160,62 @@ TEST_F(Match, AMapWhoseCellsSwallowTheOtherIsRefused) {
   }
 }
 
+TEST_F(Match, FindsTheScaleOfAPlan) {
+  OccupancyGrid plan = draw_building(1);
+  plan.resolution *= 1.3;
+  plan.origin = {0.0, 0.0, 0.0};
+  const std::string larger = write_map(directory, "plan", plan);
+  const Outcome outcome = run({"match", larger, left, "--scale", "0.8:1.8", "--json"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const Json json = Json::parse(outcome.out);
+  EXPECT_EQ(json.at("verdict"), "accepted");
+  const double scale = json.at("scale");
+  EXPECT_NEAR(scale, 1.3, 0.02);
+  EXPECT_EQ(json.at("hypotheses").at(0).at("scale"), scale);
+  // A corner of the left map's window, through p_fixed = scale * R * p_moving + t.
+  const Point2 in_left = T_left_building * Point2{3.0, 4.0};
+  const Json& T = json.at("transform");
+  const Point2 in_plan =
+      SE2{T.at("x"), T.at("y"), T.at("theta")} * Point2{scale * in_left.x, scale * in_left.y};
+  EXPECT_NEAR(in_plan.x, 1.3 * 3.0, 0.4);
+  EXPECT_NEAR(in_plan.y, 1.3 * 4.0, 0.4);
+
+  const Outcome for_people = run({"match", larger, left, "--scale", "1.2:1.4", "--verbose"});
+  EXPECT_EQ(for_people.exit_code, 0);
+  EXPECT_NE(for_people.out.find("scale"), std::string::npos) << for_people.out;
+}
+
+TEST_F(Match, RefusesStrangersAtEveryScale) {
+  const Outcome outcome = run({"match", other, left, "--scale", "0.7:1.4"});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.out;
+  EXPECT_EQ(outcome.out.find("refused: "), 0u) << outcome.out;
+}
+
+TEST_F(Match, HasNoScaleUnlessItIsAskedFor) {
+  EXPECT_FALSE(Json::parse(run({"match", left, right, "--json"}).out).contains("scale"));
+}
+
+TEST_F(Match, ScalesThatMakeNoSenseAreUsageErrors) {
+  for (const char* range : {"0:1", "-1:2", "2:0.5", "nan:1", "0.5:nan", "0.1:9", "0.5", "a:b", ":",
+                            "1:", "1:2:3", "0.5:inf", "1e-9:1e-8", ""}) {
+    const Outcome outcome = run({"match", left, right, "--scale", range});
+    EXPECT_EQ(outcome.exit_code, 2) << range;
+    EXPECT_EQ(outcome.out, "") << range;
+    EXPECT_NE(outcome.err.find("--scale"), std::string::npos) << outcome.err;
+  }
+  const Outcome walk = run({"match", left, right, "--scale", "0.5:2", "--search", "random-walk"});
+  EXPECT_EQ(walk.exit_code, 2);
+  EXPECT_NE(walk.err.find("--scale"), std::string::npos) << walk.err;
+}
+
+TEST_F(Match, APlanWithoutWallsIsAnError) {
+  OccupancyGrid floor = make_grid(40, 30, 0.1);
+  for (Cell& cell : floor.cells) cell = Cell::free;
+  const std::string empty = write_map(directory, "empty", floor);
+  expect_error(run({"match", empty, left, "--scale", "0.5:2"}), empty, "no walls");
+  expect_error(run({"match", left, empty, "--scale", "0.5:2", "--json"}), empty, "no walls");
+}
+
 }  // namespace
 }  // namespace gridmerge::test

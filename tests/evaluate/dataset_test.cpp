@@ -82,6 +82,13 @@ TEST(Dataset, HoldsMapsAndTruthThatBelongTogether) {
     EXPECT_EQ(pairs[i].fixed.name, "robot_" + std::to_string(simulation.pairs[i].fixed + 1) + ".yaml");
     EXPECT_TRUE(std::filesystem::exists(pairs[i].moving.path));
   }
+  const std::vector<TruePair> on_building = read_pairs(folder / "building.tsv");
+  ASSERT_EQ(on_building.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(on_building[i].fixed.name, "building.yaml");
+    EXPECT_EQ(on_building[i].moving.name, "robot_" + std::to_string(i + 1) + ".yaml");
+    EXPECT_EQ(on_building[i].T_fixed_moving, simulation.maps[i].T_building_map);
+  }
   EXPECT_EQ(read_negatives(folder / "negatives.tsv").size(), 3U + simulation.strangers.size());
   const std::vector<TrueSet> sets = read_sets(folder / "sets.tsv");
   ASSERT_EQ(sets.size(), 1U);

@@ -30,11 +30,13 @@ MatchResult drawn_match() {
   match.verdict = *rc::gen::element(Verdict::refused, Verdict::accepted);
   match.reason = static_cast<Reason>(*rc::gen::inRange(0, 7));
   match.seconds = number();
+  match.scale = *rc::gen::inRange(1, 5000) / 977.0;
   match.hypotheses.resize(*rc::gen::inRange<std::size_t>(0, 5));
   for (Hypothesis& one : match.hypotheses) {
     one.T_fixed_moving = {finite(), finite(), -0.0};
     one.score = std::numeric_limits<double>::quiet_NaN();
     one.probability = share();
+    one.scale = *rc::gen::inRange(1, 5000) / 977.0;
     for (const PoseFigure& figure : pose_figures()) one.figures.*figure.value = number();
   }
   return match;
@@ -46,6 +48,7 @@ RC_GTEST_PROP(MatchBytes, ComeBackBitForBit, ()) {
   const MatchResult back = match_from_bytes(bytes);
   RC_ASSERT(to_bytes(back) == bytes);
   RC_ASSERT(back.T_fixed_moving == match.T_fixed_moving);
+  RC_ASSERT(back.scale == match.scale);
   RC_ASSERT(back.verdict == match.verdict);
   RC_ASSERT(back.reason == match.reason);
   RC_ASSERT(back.agreement == match.agreement);
@@ -119,6 +122,12 @@ TEST(MatchKey, TellsApartWhatMayDiffer) {
   changed = {};
   changed.search = SearchMethod::quick;
   EXPECT_NE(match_key("a", "b", changed), key);
+  changed = {};
+  changed.scales = ScaleRange{0.5, 2.0};
+  EXPECT_NE(match_key("a", "b", changed), key);
+  const std::string scaled = match_key("a", "b", changed);
+  changed.scales->most = 1.9;
+  EXPECT_NE(match_key("a", "b", changed), scaled);
   changed.search = SearchMethod::random_walk;
   EXPECT_THROW(match_key("a", "b", changed), std::invalid_argument);
 }

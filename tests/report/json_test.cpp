@@ -38,6 +38,17 @@ TEST(MatchJson, IsTheDocumentedText) {
       "\n");
 }
 
+TEST(MatchJson, HasScalesWhereTheyWereLookedFor) {
+  MatchResult match = any_match();
+  match.scale = 0.75;
+  match.hypotheses[0].scale = 0.75;
+  const nlohmann::json json = nlohmann::json::parse(match_json("a.yaml", "b.yaml", match, true));
+  EXPECT_EQ(json["scale"], 0.75);
+  EXPECT_EQ(json["hypotheses"][0]["scale"], 0.75);
+  EXPECT_EQ(json["hypotheses"][1]["scale"], 1.0);
+  EXPECT_FALSE(nlohmann::json::parse(match_json("a.yaml", "b.yaml", match)).contains("scale"));
+}
+
 TEST(MatchJson, OfARefusedPairWithNothingToGoBy) {
   EXPECT_EQ(
       match_json("a", "b", {}),

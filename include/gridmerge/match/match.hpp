@@ -39,9 +39,26 @@ GRIDMERGE_EXPORT const char* name_of(SearchMethod method);
 /// The method of that name; none if there is none.
 GRIDMERGE_EXPORT std::optional<SearchMethod> search_method(std::string_view name);
 
+/// The scales at which a moving map is tried: by how much it may be too small, and how much too large.
+struct ScaleRange {
+  double least = 1.0;  ///< the smallest factor that the moving map is enlarged by
+  double most = 1.0;   ///< the largest one, no less
+};
+
+/// Bounds of a ScaleRange: of both ends, and of one end by the other.
+inline constexpr double kMinScale = 1e-3, kMaxScale = 1e3, kMaxScaleRatio = 20.0;
+
+/// Throws std::invalid_argument, with a message that begins with "scales", for a range that makes no sense.
+GRIDMERGE_EXPORT void validate(const ScaleRange& scales);
+
 /// How two maps are matched.
 struct MatchOptions {
   SearchMethod search = SearchMethod::exhaustive;  ///< how poses are found
+  /// If given, the moving map may have any scale of this range, as an architect's plan has: match() looks at
+  /// scales 3 % apart, fits the scale of the best poses, and gives it in MatchResult::scale. The fixed map's
+  /// metres count. The look at each scale is the quick one unless SearchMethod::thorough is asked for, which
+  /// takes four times as long. Not for SearchMethod::random_walk, and not for merging.
+  std::optional<ScaleRange> scales = std::nullopt;
   /// Of SearchMethod::random_walk, which has its own rule of acceptance. Its threads, number of hypotheses
   /// and progress are those below.
   RandomWalkMatchOptions random_walk = {};

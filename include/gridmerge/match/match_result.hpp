@@ -80,6 +80,7 @@ struct Hypothesis {
   double score = 0.0;
   double probability = 0.0;  ///< that this pose is the true one
   PoseFigures figures = {};  ///< what speaks for it
+  double scale = 1.0;        ///< by which the moving map is too small, as MatchResult::scale
 };
 
 /// A pose of a pair, and what its two maps say of it.
@@ -98,6 +99,9 @@ struct MatchResult : PairPose {
   Verdict verdict = Verdict::refused;          ///< on the best hypothesis
   Reason reason = Reason::nothing_to_compare;  ///< why it was refused
   double seconds = 0.0;                        ///< wall time from grids in memory to the verdict
+  /// What the moving map is enlarged by before its pose applies: p_fixed = scale * R * p_moving + t, R and t
+  /// those of T_fixed_moving. 1 unless MatchOptions::scales asks for others.
+  double scale = 1.0;
   /// Distinct, most probable first; empty only when a map has nothing to go by.
   std::vector<Hypothesis> hypotheses;
 };

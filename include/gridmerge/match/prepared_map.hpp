@@ -25,6 +25,8 @@ class GRIDMERGE_EXPORT PreparedMap {
 
  private:
   friend class internal::DrawnWalls;
+  /// `known` as a prepared map has it.
+  PreparedMap(OccupancyGrid known, const CellCounts& counts);
 
   OccupancyGrid known_;
   CellCounts counts_;

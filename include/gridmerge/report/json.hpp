@@ -17,9 +17,10 @@ namespace gridmerge {
 // is not UTF-8 appears as U+FFFD. A number that is not finite (no result of the library holds one) throws
 // std::invalid_argument, since JSON cannot say it.
 
-/// What `gridmerge match --json` prints: one line, with its end.
+/// What `gridmerge match --json` prints: one line, with its end. `with_scale` adds the scales of the result
+/// and of its hypotheses, which are 1 unless a match looked for them (MatchOptions::scales).
 GRIDMERGE_EXPORT std::string match_json(const std::string& fixed, const std::string& moving,
-                                        const MatchResult& result);
+                                        const MatchResult& result, bool with_scale = false);
 
 /// What `gridmerge measure --json` prints: one line, with its end. For one moving map its measures, for
 /// several omega of all and the measures of each on the fixed one. `moving[i]` is what to call moving map i.

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "match/drawing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/resample.hpp"
+
+namespace gridmerge::internal {
+
+namespace {
+
+/// Of the walls' longer side: half of the widest gap that is closed.
+constexpr std::array kClosings{0.0, 0.005, 0.01, 0.02, 0.04};
+constexpr double kEnclosed = 0.5;  // share of the walls' bounding box
+constexpr double kUnknownPaper = 0.01;
+
+using Distances = std::vector<std::uint16_t>;
+constexpr std::uint16_t kFar = 60000;
+
+/// A raster with a margin around it.
+struct Raster {
+  int width;
+  int height;
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
+};
+
+/// In place: the chessboard distance to the nearest zero.
+void chessboard_distance(Distances& distance, const Raster& raster) {
+  const auto nearer = [&](int x, int y, int from_x, int from_y) {
+    if (from_x < 0 || from_y < 0 || from_x >= raster.width || from_y >= raster.height) return;
+    std::uint16_t& here = distance[raster.index(x, y)];
+    const int there = distance[raster.index(from_x, from_y)] + 1;
+    here = static_cast<std::uint16_t>(std::min<int>(here, there));
+  };
+  for (int y = 0; y < raster.height; ++y) {
+    throw_if_cancelled();
+    for (int x = 0; x < raster.width; ++x) {
+      nearer(x, y, x - 1, y);
+      for (int dx = -1; dx <= 1; ++dx) nearer(x, y, x + dx, y - 1);
+    }
+  }
+  for (int y = raster.height - 1; y >= 0; --y) {
+    throw_if_cancelled();
+    for (int x = raster.width - 1; x >= 0; --x) {
+      nearer(x, y, x + 1, y);
+      for (int dx = -1; dx <= 1; ++dx) nearer(x, y, x + dx, y + 1);
+    }
+  }
+}
+
+/// Of the raster's corner: what a disc of `reach` cells reaches from there without touching a wall, zero, and
+/// kFar elsewhere.
+Distances flooded(const Distances& to_wall, const Raster& raster, int reach) {
+  Distances flood(to_wall.size(), kFar);
+  std::vector<std::size_t> next{0};
+  flood[0] = 0;
+  while (!next.empty()) {
+    const std::size_t at = next.back();
+    next.pop_back();
+    const int x = static_cast<int>(at % raster.width), y = static_cast<int>(at / raster.width);
+    const auto visit = [&](int to_x, int to_y) {
+      if (to_x < 0 || to_y < 0 || to_x >= raster.width || to_y >= raster.height) return;
+      const std::size_t to = raster.index(to_x, to_y);
+      if (flood[to] == 0 || to_wall[to] <= reach) return;
+      flood[to] = 0;
+      next.push_back(to);
+    };
+    visit(x - 1, y);
+    visit(x + 1, y);
+    visit(x, y - 1);
+    visit(x, y + 1);
+  }
+  return flood;
+}
+
+/// `walls` with what they enclose as free, when gaps of up to 2 * reach cells are closed.
+OccupancyGrid enclose(const OccupancyGrid& walls, int reach) {
+  const int margin = reach + 1;
+  const Raster raster{walls.width + 2 * margin, walls.height + 2 * margin};
+  Distances to_wall(static_cast<std::size_t>(raster.width) * raster.height, kFar);
+  for (int row = 0; row < walls.height; ++row) {
+    for (int column = 0; column < walls.width; ++column) {
+      if (walls.at(column, row) == Cell::occupied) to_wall[raster.index(column + margin, row + margin)] = 0;
+    }
+  }
+  chessboard_distance(to_wall, raster);
+  Distances outside = flooded(to_wall, raster, reach);
+  if (reach > 0) chessboard_distance(outside, raster);
+  OccupancyGrid enclosed = walls;
+  for (int row = 0; row < walls.height; ++row) {
+    for (int column = 0; column < walls.width; ++column) {
+      const bool is_outside = outside[raster.index(column + margin, row + margin)] <= reach;
+      Cell& cell = enclosed.at(column, row);
+      if (cell != Cell::occupied) cell = is_outside ? Cell::unknown : Cell::free;
+    }
+  }
+  return enclosed;
+}
+
+}  // namespace
+
+bool is_drawing(const OccupancyGrid& grid) {
+  const CellCounts counts = count_cells(grid);
+  if (counts.occupied == 0) return false;
+  if (counts.free == 0) return true;
+  if (static_cast<double>(counts.unknown) > kUnknownPaper * static_cast<double>(grid.cells.size()))
+    return false;
+  for (int column = 0; column < grid.width; ++column) {
+    if (grid.at(column, 0) != Cell::free || grid.at(column, grid.height - 1) != Cell::free) return false;
+  }
+  for (int row = 0; row < grid.height; ++row) {
+    if (grid.at(0, row) != Cell::free || grid.at(grid.width - 1, row) != Cell::free) return false;
+  }
+  return true;
+}
+
+OccupancyGrid with_enclosed_free(const OccupancyGrid& grid) {
+  if (!is_drawing(grid)) return grid;
+  OccupancyGrid walls = grid;
+  walls.probability.clear();
+  for (Cell& cell : walls.cells) {
+    if (cell == Cell::free) cell = Cell::unknown;
+  }
+  walls = crop_to_known(walls);
+  const double box = static_cast<double>(walls.cells.size());
+  const int longer_side = std::max(walls.width, walls.height);
+  OccupancyGrid enclosed;
+  for (const double closing : kClosings) {
+    enclosed = enclose(walls, static_cast<int>(std::lround(closing * longer_side)));
+    if (static_cast<double>(count_cells(enclosed).known()) >= kEnclosed * box) break;
+  }
+  return enclosed;
+}
+
+}  // namespace gridmerge::internal

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "gridmerge/grid/occupancy_grid.hpp"
+
+namespace gridmerge::internal {
+
+/// Whether a grid is a drawing of walls, and no map: it has walls, but no cell of it is free, or all but a
+/// hundredth of it is known and free along its whole rim, as white paper is. O(cells).
+bool is_drawing(const OccupancyGrid& grid);
+
+/// A drawing as a map: what its walls enclose is free, and what lies outside is unknown. Gaps of the outline
+/// are closed for that, the least that encloses half of the walls' bounding box: up to 8 % of its longer
+/// side. If none does, what the widest closing encloses. Any other grid as it is. O(cells).
+OccupancyGrid with_enclosed_free(const OccupancyGrid& grid);
+
+}  // namespace gridmerge::internal
