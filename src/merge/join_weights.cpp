@@ -71,16 +71,27 @@ class SpokenOf {
 
 }  // namespace
 
-JoinWeights::JoinWeights(const JoinProblem& problem)
-    : problem_(problem), pair_index_(problem.maps.size() * problem.maps.size()) {
+JoinWeights::JoinWeights(const JoinProblem& problem) : problem_(problem), partners_(problem.maps.size()) {
+  marks_.reserve(problem.pairs.size());
   for (std::size_t i = 0; i < problem.pairs.size(); ++i) {
     const PairCandidates& pair = problem.pairs[i];
-    pair_index_[pair.fixed * problem.maps.size() + pair.moving] = i;
-    pair_index_[pair.moving * problem.maps.size() + pair.fixed] = i;
+    partners_[pair.fixed].push_back({pair.moving, i});
+    partners_[pair.moving].push_back({pair.fixed, i});
     std::vector<Mark>& marks = marks_.emplace_back();
     for (const CandidateJoin& candidate : pair.candidates)
       marks.push_back(mark_of(candidate.T_fixed_moving, problem.maps[pair.fixed], problem.maps[pair.moving]));
   }
+  for (std::vector<Partner>& partners : partners_)
+    std::sort(partners.begin(), partners.end(),
+              [](const Partner& a, const Partner& b) { return a.map < b.map; });
+}
+
+std::vector<std::size_t> JoinWeights::partners_of(std::size_t map) const {
+  std::vector<std::size_t> others;
+  for (const Partner& partner : partners_[map]) {
+    if (!problem_.pairs[partner.pair].candidates.empty()) others.push_back(partner.map);
+  }
+  return others;
 }
 
 JoinWeights::Mark JoinWeights::mark_of(const SE2& T_fixed_moving, const MapExtent& fixed,
@@ -89,22 +100,46 @@ JoinWeights::Mark JoinWeights::mark_of(const SE2& T_fixed_moving, const MapExten
           std::cos(T_fixed_moving.theta), std::sin(T_fixed_moving.theta)};
 }
 
-const std::optional<std::size_t>& JoinWeights::pair_of(std::size_t a, std::size_t b) const {
-  return pair_index_[a * problem_.maps.size() + b];
+std::optional<std::size_t> JoinWeights::pair_of(std::size_t a, std::size_t b) const {
+  const std::vector<Partner>& partners = partners_[a];
+  const auto found =
+      std::lower_bound(partners.begin(), partners.end(), b,
+                       [](const Partner& partner, std::size_t map) { return partner.map < map; });
+  return found == partners.end() || found->map != b ? std::nullopt : std::optional(found->pair);
 }
 
-std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t a, std::size_t b,
+std::vector<JoinWeights::Across> JoinWeights::pairs_across(const NodeGroup& a, const NodeGroup& b) const {
+  const bool from_a = a.size() <= b.size();
+  const NodeGroup &few = from_a ? a : b, &many = from_a ? b : a;
+  std::vector<std::pair<std::size_t, std::size_t>> places;  // of the larger group: map and place
+  for (std::size_t i = 0; i < many.size(); ++i) places.emplace_back(many[i].map, i);
+  std::sort(places.begin(), places.end());
+  std::vector<Across> across;
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    for (const Partner& partner : partners_[few[i].map]) {
+      if (marks_[partner.pair].empty()) continue;
+      const auto place =
+          std::lower_bound(places.begin(), places.end(), std::pair(partner.map, std::size_t{0}));
+      if (place == places.end() || place->first != partner.map) continue;
+      across.push_back(from_a ? Across{i, place->second, partner.pair}
+                              : Across{place->second, i, partner.pair});
+    }
+  }
+  std::sort(across.begin(), across.end(),
+            [](const Across& x, const Across& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
+  return across;
+}
+
+std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t index, std::size_t a,
                                                                   const SE2& T_a_b) const {
-  const std::optional<std::size_t>& index = pair_of(a, b);
-  if (!index) return std::nullopt;
-  const PairCandidates& pair = problem_.pairs[*index];
+  const PairCandidates& pair = problem_.pairs[index];
   const SE2 T = pair.fixed == a ? T_a_b : inverse(T_a_b);
   const MapExtent& fixed = problem_.maps[pair.fixed];
   const MapExtent& moving = problem_.maps[pair.moving];
   // As difference() to each candidate, without a sine or cosine for each.
   const Mark here = mark_of(T, fixed, moving);
   const double tolerance = agreement_tolerance(fixed, moving);
-  const std::vector<Mark>& marks = marks_[*index];
+  const std::vector<Mark>& marks = marks_[index];
   std::optional<Agreement> best;
   for (std::size_t i = 0; i < marks.size(); ++i) {
     const double turned = 2.0 * (1.0 - here.cos * marks[i].cos - here.sin * marks[i].sin);
@@ -116,7 +151,7 @@ std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t a,
     const double log_odds = pair.candidates[i].log_odds;
     if (!(off <= tolerance * tolerance) || (best && log_odds <= pair.candidates[best->candidate].log_odds))
       continue;
-    best = {*index, i, std::min(log_odds, kMaxLogOdds) + kPoseNats};
+    best = Agreement{index, i, std::min(log_odds, kMaxLogOdds) + kPoseNats};
   }
   return best;
 }
@@ -127,13 +162,15 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
   for (const PlacedNode& in_a : a) {
     const SE2 T_map_b = inverse(in_a.T_group_map) * T_a_b;
     for (const PlacedNode& in_b : b) {
+      const std::optional<std::size_t> pair = pair_of(in_a.map, in_b.map);
+      if (!pair) continue;  // nobody has looked at it: it says nothing, for or against
       const SE2 T = T_map_b * in_b.T_group_map;
       InCommon common;
       if (!problem_.coverage.empty())
         common = problem_.coverage[in_a.map]->in_common(*problem_.coverage[in_b.map], T, in_a.T_group_map);
       const double loss =
           -kMissNats * std::clamp((common.share - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
-      const std::optional<Agreement> agreement = find_agreement(in_a.map, in_b.map, T);
+      const std::optional<Agreement> agreement = find_agreement(*pair, in_a.map, T);
       if (agreement && agreement->worth > std::max(loss, 0.0)) {
         witnesses.push_back({agreement->worth, std::move(common.places)});
       } else {
@@ -158,12 +195,11 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
 
 std::vector<JoinWeights::Edge> JoinWeights::edges_of(const NodeGroup& group) const {
   std::vector<Edge> edges;
-  for (std::size_t a = 0; a < group.size(); ++a) {
-    for (std::size_t b = a + 1; b < group.size(); ++b) {
-      const SE2 T_a_b = inverse(group[a].T_group_map) * group[b].T_group_map;
-      if (const auto agreement = find_agreement(group[a].map, group[b].map, T_a_b))
-        edges.push_back({a, b, *agreement});
-    }
+  for (const Across& pair : pairs_across(group, group)) {
+    if (pair.a >= pair.b) continue;
+    const SE2 T_a_b = inverse(group[pair.a].T_group_map) * group[pair.b].T_group_map;
+    if (const auto agreement = find_agreement(pair.pair, group[pair.a].map, T_a_b))
+      edges.push_back({pair.a, pair.b, *agreement});
   }
   return edges;
 }
@@ -214,16 +250,38 @@ std::vector<std::pair<NodeGroup, NodeGroup>> JoinWeights::halves(const NodeGroup
     labels.unite(edge.a, edge.b);
     tree.push_back(edge);
   }
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> around(
+      group.size());  // place, edge of the tree
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    around[tree[i].a].emplace_back(tree[i].b, i);
+    around[tree[i].b].emplace_back(tree[i].a, i);
+  }
+  std::optional<std::size_t> fixed;  // fixed maps hold each other
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    if (!is_fixed(group[i].map)) continue;
+    if (fixed) {
+      around[*fixed].emplace_back(i, tree.size());
+      around[i].emplace_back(*fixed, tree.size());
+    }
+    fixed = i;
+  }
   std::vector<std::pair<NodeGroup, NodeGroup>> all;
   for (std::size_t cut = 0; cut < tree.size(); ++cut) {
-    Labels sides(group.size());
-    unite_fixed(group, sides);
-    for (std::size_t i = 0; i < tree.size(); ++i) {
-      if (i != cut) sides.unite(tree[i].a, tree[i].b);
+    std::vector<bool> is_first(group.size());
+    std::vector<std::size_t> reached{tree[cut].a};
+    is_first[tree[cut].a] = true;
+    while (!reached.empty()) {
+      const std::size_t from = reached.back();
+      reached.pop_back();
+      for (const auto& [place, edge] : around[from]) {
+        if (edge == cut || is_first[place]) continue;
+        is_first[place] = true;
+        reached.push_back(place);
+      }
     }
     std::pair<NodeGroup, NodeGroup> halves;
     for (std::size_t i = 0; i < group.size(); ++i)
-      (sides.same(i, tree[cut].a) ? halves.first : halves.second).push_back(group[i]);
+      (is_first[i] ? halves.first : halves.second).push_back(group[i]);
     all.push_back(std::move(halves));
   }
   return all;

@@ -51,8 +51,13 @@ struct WeighedJoin {
 /// set is worth.
 class JoinWeights {
  public:
-  /// `problem` must outlive this. O(k^2).
+  /// `problem` must outlive this. O(maps + pairs).
   explicit JoinWeights(const JoinProblem& problem);
+
+  std::size_t maps() const { return problem_.maps.size(); }
+
+  /// The other maps of the pairs of a map that have candidates, ascending.
+  std::vector<std::size_t> partners_of(std::size_t map) const;
 
   /// Whether the map's pose is the truth, whatever pairs say.
   bool is_fixed(std::size_t map) const {
@@ -78,7 +83,7 @@ class JoinWeights {
   NodeGroups connected(const NodeGroup& group) const;
 
   /// The ways to cut a group in two along the strongest candidates that hold it together: one for each edge
-  /// of their maximum spanning tree.
+  /// of their maximum spanning tree. O(edges + maps^2).
   std::vector<std::pair<NodeGroup, NodeGroup>> halves(const NodeGroup& group) const;
 
   /// The group with the poses that fit its candidates best; fixed ones are as they were.
@@ -104,17 +109,30 @@ class JoinWeights {
     Agreement agreement;
   };
 
-  const std::optional<std::size_t>& pair_of(std::size_t a, std::size_t b) const;
+  /// A pair of a map: the other one, and its index in the problem.
+  struct Partner {
+    std::size_t map;
+    std::size_t pair;
+  };
+
+  /// A pair with candidates across two groups: places in them, and its index in the problem.
+  struct Across {
+    std::size_t a, b, pair;
+  };
+
+  std::optional<std::size_t> pair_of(std::size_t a, std::size_t b) const;
   /// T takes points of map b to map a.
-  std::optional<Agreement> find_agreement(std::size_t a, std::size_t b, const SE2& T_a_b) const;
+  std::optional<Agreement> find_agreement(std::size_t pair, std::size_t a, const SE2& T_a_b) const;
+  /// In the order of the places. O(maps + pairs of the smaller group's maps).
+  std::vector<Across> pairs_across(const NodeGroup& a, const NodeGroup& b) const;
   void unite_fixed(const NodeGroup& group, Labels& labels) const;
   std::vector<WeighedJoin> ways_of_pair(const PlacedNode& a, const PlacedNode& b) const;
   std::vector<SE2> proposals(const NodeGroup& a, const NodeGroup& b) const;
   std::vector<Edge> edges_of(const NodeGroup& group) const;
 
   const JoinProblem& problem_;
-  std::vector<std::vector<Mark>> marks_;                // by pair, one a candidate
-  std::vector<std::optional<std::size_t>> pair_index_;  // by map * maps + map
+  std::vector<std::vector<Mark>> marks_;        // by pair, one a candidate
+  std::vector<std::vector<Partner>> partners_;  // by map, ascending
 };
 
 /// A group without one of its maps, and that map, both in the group's frame.

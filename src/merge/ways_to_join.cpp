@@ -65,26 +65,21 @@ std::vector<SE2> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) 
     SE2 T_a_b;
     double agreement = 0.0;
   };
+  const std::vector<Across> across = pairs_across(a, b);
   std::vector<Proposal> all;
-  for (const PlacedNode& in_a : a) {
-    for (const PlacedNode& in_b : b) {
-      const std::optional<std::size_t>& index = pair_of(in_a.map, in_b.map);
-      if (!index) continue;
-      const PairCandidates& pair = problem_.pairs[*index];
-      for (const CandidateJoin& candidate : pair.candidates) {
-        if (candidate.log_odds < kMinLogOdds) continue;
-        const SE2 T = pair.fixed == in_a.map ? candidate.T_fixed_moving : inverse(candidate.T_fixed_moving);
-        all.push_back({in_a.T_group_map * T * inverse(in_b.T_group_map)});
-      }
+  for (const Across& one : across) {
+    const PairCandidates& pair = problem_.pairs[one.pair];
+    for (const CandidateJoin& candidate : pair.candidates) {
+      if (candidate.log_odds < kMinLogOdds) continue;
+      const SE2 T = pair.fixed == a[one.a].map ? candidate.T_fixed_moving : inverse(candidate.T_fixed_moving);
+      all.push_back({a[one.a].T_group_map * T * inverse(b[one.b].T_group_map)});
     }
   }
   for (Proposal& proposal : all) {
-    for (const PlacedNode& in_a : a) {
-      const SE2 T_map_b = inverse(in_a.T_group_map) * proposal.T_a_b;
-      for (const PlacedNode& in_b : b) {
-        if (const auto agreement = find_agreement(in_a.map, in_b.map, T_map_b * in_b.T_group_map))
-          proposal.agreement += agreement->worth;
-      }
+    for (const Across& one : across) {
+      const SE2 T_map_b = inverse(a[one.a].T_group_map) * proposal.T_a_b;
+      if (const auto agreement = find_agreement(one.pair, a[one.a].map, T_map_b * b[one.b].T_group_map))
+        proposal.agreement += agreement->worth;
     }
   }
   std::stable_sort(all.begin(), all.end(),
@@ -104,7 +99,7 @@ std::vector<SE2> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) 
 
 /// Two maps alone lie as their pair says, which has weighed all that there is.
 std::vector<WeighedJoin> JoinWeights::ways_of_pair(const PlacedNode& a, const PlacedNode& b) const {
-  const std::optional<std::size_t>& index = pair_of(a.map, b.map);
+  const std::optional<std::size_t> index = pair_of(a.map, b.map);
   if (!index) return {};
   const PairCandidates& pair = problem_.pairs[*index];
   const bool of_many = problem_.maps.size() > 2;

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "merge/arrangement.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "grid/parallel.hpp"
+
+namespace gridmerge::internal {
+
+namespace {
+
+/// A map that moves elsewhere must gain so much, or rounding would keep it moving [nats].
+constexpr double kMinGain = 0.1;
+
+/// The groups of one connected part while they are arranged. A group has a number that grows with time: of
+/// two that are joined the lower one stays, and what is cut off gets new ones.
+class Arranger {
+ public:
+  using Number = std::size_t;
+
+  Arranger(const JoinWeights& weights, double accept_probability, NodeGroups groups)
+      : weights_(weights), accept_(accept_probability), group_of_(weights.maps()) {
+    for (NodeGroup& group : groups) add(std::move(group));
+  }
+
+  NodeGroups settle() {
+    join_all();
+    // Every move gains, so this ends; the bound is for consistent sets that are worth the same within
+    // rounding.
+    for (std::size_t moves = 0; moves < 4 * groups_.size() + 64 && move_one(); ++moves) join_all();
+    NodeGroups all;
+    for (auto& [number, group] : groups_) all.push_back(std::move(group));
+    return all;
+  }
+
+ private:
+  using Sides = std::pair<Number, Number>;  // ascending
+
+  void add(NodeGroup group) { set(next_++, std::move(group)); }
+
+  void set(Number number, NodeGroup group) {
+    for (const PlacedNode& node : group) group_of_[node.map] = number;
+    groups_[number] = std::move(group);
+    changed_.insert(number);
+  }
+
+  /// The group is no more, or no more what it was: what was found out about it is void.
+  void remove(Number number) {
+    forget(number);
+    groups_.erase(number);
+    changed_.erase(number);
+  }
+
+  void forget(Number number) {
+    for (const Number other : near_[number]) {
+      const Sides sides = std::minmax(number, other);
+      if (const auto join = joins_.find(sides); join != joins_.end()) {
+        best_.erase(key_of(sides, *join));
+        joins_.erase(join);
+      }
+      near_[other].erase(number);
+    }
+    near_.erase(number);
+    for (const PlacedNode& node : groups_.at(number)) {
+      gains_.erase(node.map);
+      for (const std::size_t map : weights_.partners_of(node.map)) gains_.erase(map);
+    }
+  }
+
+  /// The groups to which a pair proposes a way.
+  std::set<Number> groups_near(const NodeGroup& group) const {
+    std::set<Number> near;
+    for (const PlacedNode& node : group) {
+      for (const std::size_t map : weights_.partners_of(node.map)) near.insert(group_of_[map]);
+    }
+    return near;
+  }
+
+  /// Most is said for the first one; the order of the groups decides between equals.
+  using Best = std::tuple<double, Number, Number>;
+  static Best key_of(const Sides& sides, const std::pair<const Sides, WeighedJoin>& join) {
+    return {-join.second.worth.against_apart, sides.first, sides.second};
+  }
+
+  /// Weighs the joins of the groups that have changed.
+  void weigh_joins() {
+    std::set<Sides> due;
+    for (const Number number : changed_) {
+      for (const Number other : groups_near(groups_.at(number))) {
+        if (other != number) due.insert(std::minmax(number, other));
+      }
+    }
+    changed_.clear();
+    const std::vector<Sides> all(due.begin(), due.end());
+    std::vector<std::optional<WeighedJoin>> found(all.size());
+    parallel_for(all.size(), [&](std::size_t i) {
+      found[i] = weights_.best_join(groups_.at(all[i].first), groups_.at(all[i].second));
+    });
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!found[i] || found[i]->probability < accept_) continue;
+      const auto& join = *joins_.emplace(all[i], *found[i]).first;
+      best_.insert(key_of(all[i], join));
+      near_[all[i].first].insert(all[i].second);
+      near_[all[i].second].insert(all[i].first);
+    }
+  }
+
+  /// Joins the two groups that belong together most surely, until none do surely enough.
+  void join_all() {
+    while (true) {
+      weigh_joins();
+      if (best_.empty()) return;
+      const auto [worth, a, b] = *best_.begin();
+      join(a, b, joins_.at({a, b}).T_a_b);
+    }
+  }
+
+  void join(Number a, Number b, SE2 T_a_b) {
+    NodeGroup joined = groups_.at(a);
+    for (const PlacedNode& node : groups_.at(b)) joined.push_back({node.map, T_a_b * node.T_group_map});
+    remove(a);
+    remove(b);
+    set(a, weights_.adjusted(std::move(joined)));
+  }
+
+  /// Takes out the map that gains most by lying elsewhere, or alone, and puts it there; false if none gains.
+  bool move_one() {
+    weigh_moves();
+    double most = kMinGain;
+    std::optional<std::pair<Number, std::size_t>> which;  // group, place in it
+    for (const auto& [number, group] : groups_) {
+      if (group.size() < 2) continue;
+      for (std::size_t i = 0; i < group.size(); ++i) {
+        const auto gain = gains_.find(group[i].map);
+        if (gain == gains_.end() || gain->second <= most) continue;
+        most = gain->second;
+        which = {number, i};
+      }
+    }
+    if (!which) return false;
+    const auto [rest, alone] = taken_out(groups_.at(which->first), which->second);
+    remove(which->first);
+    for (NodeGroup& part : weights_.connected(rest)) add(std::move(part));
+    place_best(alone);
+    return true;
+  }
+
+  void weigh_moves() {
+    std::vector<std::pair<Number, std::size_t>> due;
+    for (const auto& [number, group] : groups_) {
+      for (std::size_t i = 0; group.size() > 1 && i < group.size(); ++i) {
+        if (!weights_.is_fixed(group[i].map) && !gains_.contains(group[i].map)) due.emplace_back(number, i);
+      }
+    }
+    std::vector<double> gains(due.size());
+    parallel_for(due.size(), [&](std::size_t i) { gains[i] = gain_of_moving(due[i].first, due[i].second); });
+    for (std::size_t i = 0; i < due.size(); ++i)
+      gains_[groups_.at(due[i].first)[due[i].second].map] = gains[i];
+  }
+
+  double gain_of_moving(Number number, std::size_t place) const {
+    const auto [rest, alone] = taken_out(groups_.at(number), place);
+    const double stays = weights_.worth_of(rest, alone, {}).against_apart;
+    double elsewhere = std::max(0.0, gain_of_joining(rest, alone));
+    for (const Number other : groups_near(alone)) {
+      if (other != number) elsewhere = std::max(elsewhere, gain_of_joining(groups_.at(other), alone));
+    }
+    return elsewhere - stays;
+  }
+
+  /// Beside being apart.
+  double gain_of_joining(const NodeGroup& a, const NodeGroup& b) const {
+    const std::optional<WeighedJoin> join = weights_.best_join(a, b);
+    return join ? join->worth.against_apart : 0.0;
+  }
+
+  /// Joins a map where it is worth most, if it is worth anything.
+  void place_best(const NodeGroup& alone) {
+    double most = 0.0;
+    std::optional<Number> where;
+    SE2 T_where_alone;
+    for (const Number number : groups_near(alone)) {
+      const std::optional<WeighedJoin> join = weights_.best_join(groups_.at(number), alone);
+      if (!join || join->worth.against_apart <= most) continue;
+      most = join->worth.against_apart;
+      where = number;
+      T_where_alone = join->T_a_b;
+    }
+    const Number last = next_;
+    add(alone);
+    if (where) join(*where, last, T_where_alone);
+  }
+
+  const JoinWeights& weights_;
+  double accept_;
+  Number next_ = 0;
+  std::map<Number, NodeGroup> groups_;
+  std::vector<Number> group_of_;             // by map
+  std::set<Number> changed_;                 // groups whose joins are not weighed
+  std::map<Sides, WeighedJoin> joins_;       // that are sure enough
+  std::set<Best> best_;                      // the same
+  std::map<Number, std::set<Number>> near_;  // the groups of each group's joins
+  std::map<std::size_t, double> gains_;      // of moving a map
+};
+
+/// The group itself if all its halves belong together surely enough.
+NodeGroups weakest_halves(const JoinWeights& weights, const NodeGroup& group, double keep_probability) {
+  const std::vector<std::pair<NodeGroup, NodeGroup>> halves = weights.halves(group);
+  std::vector<double> probabilities(halves.size());
+  parallel_for(halves.size(), [&](std::size_t i) {
+    probabilities[i] = weights.probability_of_lying_so(halves[i].first, halves[i].second);
+  });
+  const auto least = std::min_element(probabilities.begin(), probabilities.end());
+  if (least == probabilities.end() || *least >= keep_probability) return {group};
+  const auto& weakest = halves[static_cast<std::size_t>(least - probabilities.begin())];
+  return {weakest.first, weakest.second};
+}
+
+/// Cuts a group where its parts belong together least surely, as long as that is not surely enough, and where
+/// nothing holds them together.
+NodeGroups cut_group(const JoinWeights& weights, NodeGroup group, double keep_probability) {
+  NodeGroups whole, uncertain{std::move(group)};
+  while (!uncertain.empty()) {
+    NodeGroup next = std::move(uncertain.back());
+    uncertain.pop_back();
+    NodeGroups parts;
+    if (next.size() > 1) {
+      parts = weights.connected(next);
+      if (parts.size() == 1) parts = weakest_halves(weights, next, keep_probability);
+    }
+    if (parts.size() < 2) {
+      whole.push_back(std::move(next));
+    } else {
+      for (NodeGroup& part : parts) uncertain.push_back(weights.adjusted(std::move(part)));
+    }
+  }
+  return whole;
+}
+
+/// Maps that candidates or being fixed connect, each part ascending: first that of the lowest map.
+std::vector<std::vector<std::size_t>> connected_maps(const JoinProblem& problem, const JoinWeights& weights) {
+  std::vector<std::size_t> root(problem.maps.size());
+  std::iota(root.begin(), root.end(), std::size_t{0});
+  const auto find = [&](std::size_t map) {
+    while (root[map] != map) map = root[map] = root[root[map]];
+    return map;
+  };
+  const auto unite = [&](std::size_t a, std::size_t b) {
+    const std::size_t first = find(a), second = find(b);
+    root[std::max(first, second)] = std::min(first, second);
+  };
+  for (const PairCandidates& pair : problem.pairs) {
+    if (!pair.candidates.empty()) unite(pair.fixed, pair.moving);
+  }
+  std::optional<std::size_t> fixed;
+  for (std::size_t map = 0; map < problem.maps.size(); ++map) {
+    if (!weights.is_fixed(map)) continue;
+    if (fixed) unite(*fixed, map);
+    fixed = map;
+  }
+  std::map<std::size_t, std::vector<std::size_t>> parts;
+  for (std::size_t map = 0; map < problem.maps.size(); ++map) parts[find(map)].push_back(map);
+  std::vector<std::vector<std::size_t>> all;
+  for (auto& [first, maps] : parts) all.push_back(std::move(maps));
+  return all;
+}
+
+}  // namespace
+
+Arrangement::Arrangement(const JoinWeights& weights, const JoinProblem& problem, double accept_probability)
+    : weights_(weights) {
+  const std::vector<std::vector<std::size_t>> parts = connected_maps(problem, weights);
+  parts_.resize(parts.size());
+  parallel_for(parts.size(), [&](std::size_t i) {
+    NodeGroups groups;
+    NodeGroup fixed;
+    for (const std::size_t map : parts[i]) {
+      if (weights.is_fixed(map)) {
+        fixed.push_back({map, *problem.fixed[map]});
+      } else {
+        groups.push_back({PlacedNode{map, {}}});
+      }
+    }
+    if (!fixed.empty()) groups.push_back(std::move(fixed));
+    parts_[i] = groups.size() == 1 ? std::move(groups)
+                                   : Arranger(weights, accept_probability, std::move(groups)).settle();
+  });
+}
+
+NodeGroups Arrangement::cut(double keep_probability) const {
+  std::vector<const NodeGroup*> groups;
+  for (const NodeGroups& part : parts_) {
+    for (const NodeGroup& group : part) groups.push_back(&group);
+  }
+  std::vector<NodeGroups> cut(groups.size());
+  parallel_for(groups.size(),
+               [&](std::size_t i) { cut[i] = cut_group(weights_, *groups[i], keep_probability); });
+  NodeGroups all;
+  for (NodeGroups& some : cut) {
+    for (NodeGroup& group : some) all.push_back(std::move(group));
+  }
+  return all;
+}
+
+}  // namespace gridmerge::internal
