@@ -65,6 +65,7 @@ def make_building(gridmerge: str, campus: str, number: int, folder: pathlib.Path
     if not done.exists():
         subprocess.run([gridmerge, "simulate", "-o", str(folder), "--threads", "1", "--quiet", *options_of(campus, number)],
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        folder.mkdir(parents=True, exist_ok=True)
         done.touch()
     if not (folder / "sets.tsv").exists():
         return []

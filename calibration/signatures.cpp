@@ -38,17 +38,20 @@ int main(int argc, char** argv) try {
     std::fprintf(stderr, "signatures %.3f s, comparisons %.3f s\n", seconds(begin, made),
                  seconds(made, now()));
     std::printf(
-        "fixed\tmoving\tx\ty\ttheta\tscore\tnext\tmet\tseen\tlikeness\twalls_a\twalls_b\tarea_a\tarea_"
+        "fixed\tmoving\tx\ty\ttheta\tseen\tmet\topen\tchance\tvotes\tnext_votes\tlikeness\twalls_a\twalls_"
+        "b\tarea_a\tarea_"
         "b\tkeys_a\tkeys_b\n");
     for (std::size_t a = 0; a < names.size(); ++a) {
       for (std::size_t b = a + 1; b < names.size(); ++b) {
         const SignatureMatch& m = matches[a][b - a - 1];
         const Signature &sa = signatures[a], &sb = signatures[b];
         std::printf(
-            "%s\t%s\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%zu\t%zu\n",
+            "%s\t%s\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%.6g\t%"
+            "zu\t%zu\n",
             names[a].c_str(), names[b].c_str(), m.T_fixed_moving.x, m.T_fixed_moving.y,
-            m.T_fixed_moving.theta, m.score, m.next, m.met, m.seen, m.likeness, sa.wall_length,
-            sb.wall_length, sa.known_area, sb.known_area, sa.keypoints.size(), sb.keypoints.size());
+            m.T_fixed_moving.theta, m.seen, m.met, m.open, m.chance, m.votes, m.next_votes, m.likeness,
+            sa.wall_length, sb.wall_length, sa.known_area, sb.known_area, sa.keypoints.size(),
+            sb.keypoints.size());
       }
     }
   });

@@ -17,5 +17,12 @@ GRIDMERGE_MULTIVERSION void dot_products(const std::int16_t* one, const std::int
   }
 }
 
+GRIDMERGE_MULTIVERSION std::int32_t dot_product(const std::int16_t* a, const std::int16_t* b,
+                                                std::size_t count) {
+  std::int32_t sum = 0;
+  for (std::size_t i = 0; i < count; ++i) sum += std::int32_t{a[i]} * b[i];
+  return sum;
+}
+
 }  // namespace multiversion
 }  // namespace gridmerge::internal

@@ -12,5 +12,8 @@ inline namespace multiversion {
 void dot_products(const std::int16_t* one, const std::int16_t* many, std::size_t count,
                   std::int32_t* products);
 
+/// Of two vectors of any length, whose sum must fit 32 bits.
+std::int32_t dot_product(const std::int16_t* a, const std::int16_t* b, std::size_t count);
+
 }  // namespace multiversion
 }  // namespace gridmerge::internal

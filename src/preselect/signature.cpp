@@ -31,15 +31,15 @@ struct Ring {
   int places;
   double near;  // [m]
 };
-constexpr std::array<Ring, 5> kRings{
-    {{0.6, 8, 0.3}, {1.3, 8, 0.4}, {2.2, 12, 0.5}, {3.3, 16, 0.65}, {4.7, 20, 0.8}}};
+constexpr std::array<Ring, 6> kRings{
+    {{0.6, 8, 0.3}, {1.3, 12, 0.4}, {2.2, 16, 0.5}, {3.3, 20, 0.65}, {4.7, 20, 0.8}, {6.5, 20, 1.0}}};
 constexpr double kLength = 4096.0;  // of a descriptor
-constexpr double kMinSeen = 24.0;   // places: with fewer a descriptor is shorter
+constexpr double kMinSeen = 36.0;   // places: with fewer a descriptor is shorter
 
-/// A wall of another map lies so near to a wall of this one if both show the same place [m], and the share
-/// that does not: what moved, what only one robot saw, and what bends.
-constexpr double kWallSd = 0.3;
-constexpr double kStrayShare = 0.3;
+constexpr double kMetWithin = 0.5;  // [m]
+constexpr double kOpenFrom = 1.0;   // [m]
+/// Of all ways in which walls face, the share that counts as the same: nine of 32 parts of a turn.
+constexpr double kFacesAlike = 9.0 / kDirections;
 
 double angle_of(std::uint8_t facing) {
   const int steps = is_axis(facing) ? facing - kDirections : facing;
@@ -172,21 +172,6 @@ std::array<double, kRings.size()> usual_nearness(const LikelihoodField& field) {
   return usual;
 }
 
-std::array<float, kDistanceBins> log_ratios_of(const LikelihoodField& field) {
-  std::array<double, kDistanceBins> same{};
-  double sum = 0.0;
-  for (int bin = 0; bin < kDistanceBins; ++bin) {
-    const double far = bin * field.cell / kWallSd;
-    same[bin] = std::exp(-0.5 * far * far) * (bin == 0 ? 0.5 : 1.0);  // half as wide as the others
-    sum += same[bin];
-  }
-  std::array<float, kDistanceBins> ratios{};
-  for (int bin = 0; bin < kDistanceBins; ++bin)
-    ratios[bin] = static_cast<float>(
-        std::log((1.0 - kStrayShare) * same[bin] / sum / field.background[bin] + kStrayShare));
-  return ratios;
-}
-
 double cell_for(const OccupancyGrid& grid) {
   const double area = static_cast<double>(grid.width) * grid.height * grid.resolution * grid.resolution;
   return std::max({kCell, grid.resolution, std::sqrt(area / kMaxCells)});
@@ -216,7 +201,10 @@ Signature make_signature(const OccupancyGrid& grid) {
   signature.places = field.places;
   signature.wall_length = field.cell * static_cast<double>(field.walls.size());
   signature.known_area = static_cast<double>(count_cells(grid).known()) * grid.resolution * grid.resolution;
-  signature.log_ratios = log_ratios_of(field);
+  signature.met_within = static_cast<int>(kMetWithin / field.cell);
+  signature.open_from = std::min(static_cast<int>(std::ceil(kOpenFrom / field.cell)), kDistanceBins - 1);
+  for (int bin = 0; bin <= signature.met_within; ++bin)
+    signature.chance_of_meeting += kFacesAlike * field.background[bin];
 
   std::vector<const WallPoint*> facing;
   for (const WallPoint& wall : field.walls) {
@@ -227,6 +215,8 @@ Signature make_signature(const OccupancyGrid& grid) {
     const WallPoint& wall = *facing[(2 * i + 1) * facing.size() / (2 * samples)];
     signature.walls.push_back({{wall.position.x * field.cell, wall.position.y * field.cell}, wall.facing});
   }
+
+  signature.profiles = make_profiles(field);
 
   const Nearby nearby(field);
   const std::array<double, kRings.size()> usual = usual_nearness(field);

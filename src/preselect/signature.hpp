@@ -9,6 +9,7 @@
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "internal_export.hpp"
+#include "preselect/profiles.hpp"
 #include "similarity/likelihood_field.hpp"
 
 namespace gridmerge::internal {
@@ -19,8 +20,8 @@ struct Keypoint {
   double theta = 0.0;  ///< direction of its walls, known up to quarters of a turn [rad, in [0, pi/2)]
 };
 
-/// So many places about a keypoint make its descriptor: on five rings, each with a multiple of four places.
-inline constexpr std::size_t kDescriptorSize = 64;
+/// So many places about a keypoint make its descriptor: on six rings, each with a multiple of four places.
+inline constexpr std::size_t kDescriptorSize = 96;
 
 /// How near the nearest wall is at places about a keypoint, turned with it: positive at walls, negative in
 /// the open, 0 where nothing was seen. Of length 4096 or less: it is shorter where little was seen.
@@ -45,8 +46,10 @@ struct Signature {
   double wall_length = 0.0;  ///< of all walls, a cell's side each [m]
   std::vector<Place> places;
   std::vector<SampledWall> walls;
-  std::array<float, kDistanceBins>
-      log_ratios{};  ///< of a wall of another map at this distance: same place / any
+  int met_within = 0;              ///< a wall at most so far from one of this map meets it [distance bin]
+  int open_from = 0;               ///< and one so far from all lies in the open [distance bin]
+  double chance_of_meeting = 0.0;  ///< of a wall that lies anywhere and faces any side
+  WallProfiles profiles;
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;  ///< one a keypoint
 
