@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cached_merge.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "evaluate/tables.hpp"
@@ -27,6 +28,7 @@ struct EvaluateCommandOptions {
   std::string features;
   LoadOptions load;
   SearchOptions search;
+  CacheOptions cache;
 
   bool writes_json_file() const { return !json.empty() && json != "-"; }
 };
@@ -50,12 +52,17 @@ Evaluation evaluate_files(const EvaluateCommandOptions& options) {
   engine.load = options.load;
   SearchOptions search = options.search;
   search.lists_all = !options.features.empty();
-  engine.matcher = PairMatcher(options.common, search);
+  CachedEngine cached(options.cache, console);
+  PairMatcher matcher(options.common, search);
+  engine.matcher = [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+    return cached.match(fixed, moving, match_options(options.common, search),
+                        [&] { return matcher(fixed, moving); });
+  };
   engine.merger = [&](const std::vector<OccupancyGrid>& maps) {
     if (options.search.up_the_tree()) return merge_up_tree(maps, engine.matcher);
     MergeOptions joint;
     joint.match = match_options(options.common, options.search);
-    return merge(maps, joint);
+    return cached.merge(maps, joint);
   };
   engine.progress = [&](std::size_t done, std::size_t total) {
     console.progress("evaluating", static_cast<double>(done) / static_cast<double>(total));
@@ -97,6 +104,7 @@ void add_evaluate(CLI::App& app, Action& action) {
       ->type_name("FILE");
   add_search_options(*command, options->search);
   add_strategy_option(*command, options->search);
+  add_cache_option(*command, options->cache);
   add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
   command->footer(
@@ -115,6 +123,8 @@ void add_evaluate(CLI::App& app, Action& action) {
     }
     if (!options->features.empty() && options->search.random_walk())
       throw CLI::ValidationError("--features", "does not go with --search random-walk");
+    if (options->cache.is_used() && options->search.random_walk())
+      throw CLI::ValidationError("--cache", "does not go with --search random-walk");
     action = [options] { return run_evaluate(*options); };
   });
 }

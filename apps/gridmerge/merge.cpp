@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "cached_merge.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "gridmerge/bag/any_map.hpp"
@@ -40,6 +41,7 @@ struct MergeCommandOptions {
   double max_false_joins = MergeOptions{}.max_false_joins;
   SearchOptions search;
   KnownPoseOptions known;
+  CacheOptions cache;
 };
 
 struct Inputs {
@@ -104,26 +106,30 @@ MergeResult merge_up_tree_named(const std::vector<OccupancyGrid>& maps, const Me
   return merge_up_tree(maps, match_named, engine);
 }
 
-MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
-                       const std::vector<std::optional<KnownPose>>& known_poses,
-                       const MergeCommandOptions& options, PairMatcher& matcher,
-                       const std::optional<double>& coarser, Console& console) {
-  const auto progress = [&](std::size_t done, std::size_t total) {
+MergeOptions merge_options(const MergeCommandOptions& options, Console& console) {
+  MergeOptions engine;
+  engine.match = match_options(options.common, options.search);
+  engine.resolution = options.output_resolution;
+  engine.max_false_joins = options.max_false_joins;
+  engine.progress = [&console](std::size_t done, std::size_t total) {
     if (done < total) {
       console.progress("matching pairs", static_cast<double>(done) / static_cast<double>(total));
     } else {
       console.progress("arranging the maps");
     }
   };
+  return engine;
+}
+
+MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
+                       const std::vector<std::optional<KnownPose>>& known_poses,
+                       const MergeCommandOptions& options, PairMatcher& matcher, CachedEngine& cached,
+                       const std::optional<double>& coarser, Console& console) {
+  const MergeOptions engine = merge_options(options, console);
   try {
     if (options.search.up_the_tree())
-      return merge_up_tree_named(maps, options, matcher, {options.output_resolution, progress});
-    MergeOptions engine;
-    engine.match = match_options(options.common, options.search);
-    engine.resolution = options.output_resolution;
-    engine.max_false_joins = options.max_false_joins;
-    engine.progress = progress;
-    return merge(maps, engine, known_poses);
+      return merge_up_tree_named(maps, options, matcher, {engine.resolution, engine.progress});
+    return cached.merge(maps, engine, known_poses);
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one
     throw FileError(
         options.output,
@@ -256,9 +262,22 @@ void try_trace(const MergeCommandOptions& options, const std::vector<std::filesy
   if (!beside || std::filesystem::exists(options.output)) try_output_file(options.search.trace, inputs);
 }
 
+int run_shard(const MergeCommandOptions& options) {
+  Console console(options.common);
+  const KnownPoses known_poses(options.known, options.maps, console);
+  CachedEngine cached(options.cache, console);
+  const Inputs inputs = load_inputs(options, console);
+  const std::string text =
+      cached.make_shard(inputs.maps, merge_options(options, console), known_poses.poses());
+  console.clear();
+  print(text);
+  return kDone;
+}
+
 int run_merge(const MergeCommandOptions& options) {
   Console console(options.common);
   const KnownPoses known_poses(options.known, options.maps, console);
+  CachedEngine cached(options.cache, console);
   Inputs inputs = load_inputs(options, console);
   if (!options.known.init.empty()) inputs.files.emplace_back(options.known.init);
   prepare_merge_output(options.output, inputs.files);
@@ -271,7 +290,8 @@ int run_merge(const MergeCommandOptions& options) {
                     *coarser));
   PairMatcher matcher(options.common, options.search);
   if (!options.search.trace.empty()) try_trace(options, inputs.files);
-  const MergeResult result = merge_maps(inputs.maps, known_poses.poses(), options, matcher, coarser, console);
+  const MergeResult result =
+      merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
   console.progress("writing the result");
   write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   matcher.write_trace();
@@ -294,8 +314,7 @@ void add_merge(CLI::App& app, Action& action) {
       ->required()
       ->expected(2, -1);
   command->add_option("-o,--output", options->output, "Directory for the results; made if need be")
-      ->type_name("DIR")
-      ->required();
+      ->type_name("DIR");
   command
       ->add_option("--output-resolution", options->output_resolution,
                    "Metres per cell of the merged map; if not given, those of the finest map")
@@ -313,6 +332,8 @@ void add_merge(CLI::App& app, Action& action) {
           ->check(CLI::Range(0.0, 1e6).description(""))
           ->capture_default_str();
   add_trace_option(*command, options->search);
+  add_cache_option(*command, options->cache);
+  add_shard_option(*command, options->cache);
   add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
   command->footer(
@@ -320,6 +341,16 @@ void add_merge(CLI::App& app, Action& action) {
       "that do not fit are left out and the exit code is 3.\n\n"
       "Every pair is matched, and what all pairs say together decides: a weak pair that agrees with the\n"
       "others is used (rescued), a strong one that contradicts them is not (rejected).\n\n"
+      "With --cache a run that was ended goes on where it was. --shard shares the matches among machines "
+      "that\n"
+      "see one directory. Pairs are looked at in two rounds: quickly, and thoroughly those whose maps that\n"
+      "leaves apart. A shard needs no other for the first round, and all others for the second. So run "
+      "every\n"
+      "shard, wait for all, and run every shard once more; the merge itself makes what is missing:\n"
+      "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (and 2/2 elsewhere)\n"
+      "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (when both have ended; and 2/2 "
+      "elsewhere)\n"
+      "  gridmerge merge --cache matches robot*.yaml -o merged\n\n"
       "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged\n"
       "  gridmerge merge robot1.mcap team.mcap#/tb2/map team.mcap#/tb3/map -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged\n"
@@ -331,7 +362,14 @@ void add_merge(CLI::App& app, Action& action) {
     const bool knows_poses = !options->known.init.empty() || !options->known.fix.empty();
     if (knows_poses && options->search.up_the_tree())
       throw CLI::ValidationError(options->known.init.empty() ? "--fix" : "--init", "needs --strategy joint");
-    action = [options] { return run_merge(*options); };
+    if (options->cache.is_used() && options->search.up_the_tree())
+      throw CLI::ValidationError("--cache", "needs --strategy joint");
+    const bool is_shard = !options->cache.shard.empty();
+    if (is_shard && !options->cache.is_used()) throw CLI::ValidationError("--shard", "needs --cache");
+    if (is_shard && !options->output.empty())
+      throw CLI::ValidationError("--shard", "merges nothing: leave -o out");
+    if (!is_shard && options->output.empty()) throw CLI::RequiredError("--output");
+    action = [options, is_shard] { return is_shard ? run_shard(*options) : run_merge(*options); };
   });
 }
 

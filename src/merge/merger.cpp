@@ -101,6 +101,14 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     return due;
   }
 
+  MatchResult make(const DueMatch& due) const {
+    store_.require(due.fixed);
+    store_.require(due.moving);
+    return match(store_.at(due.fixed).prepared, store_.at(due.moving).prepared, match_options(due.search));
+  }
+
+  std::vector<std::pair<DueMatch, MatchResult>> matches() const { return looks_.matches(); }
+
   void hand_in(const DueMatch& made, MatchResult match) {
     store_.require(made.fixed);
     store_.require(made.moving);
@@ -225,6 +233,14 @@ std::vector<DueMatch> Merger::due() {
 
 void Merger::hand_in(const DueMatch& made, MatchResult match) {
   state_->hand_in(made, std::move(match));
+}
+
+MatchResult Merger::make(const DueMatch& due) const {
+  return state_->make(due);
+}
+
+std::vector<std::pair<DueMatch, MatchResult>> Merger::matches() const {
+  return state_->matches();
 }
 
 MatchOptions Merger::match_options(SearchMethod search) const {

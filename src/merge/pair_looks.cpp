@@ -60,6 +60,18 @@ void PairLooks::hand_in(const Pair& pair, SearchMethod search, MatchResult match
   }
 }
 
+std::vector<std::pair<DueMatch, MatchResult>> PairLooks::matches() const {
+  std::vector<std::pair<DueMatch, MatchResult>> matches;
+  const auto add = [&](const PairMatches& made, SearchMethod search) {
+    made.for_each([&](const Pair& pair, const MatchResult& match) {
+      matches.emplace_back(DueMatch{pair.first, pair.second, search}, match);
+    });
+  };
+  add(first_, first_search());
+  if (looks_twice()) add(second_, second_search());
+  return matches;
+}
+
 std::set<PairLooks::Pair> PairLooks::seen_again(const std::vector<Pair>& pairs) const {
   std::set<Pair> again;
   for (const Pair& pair : pairs) {

@@ -55,6 +55,9 @@ class PairLooks {
   /// that is neither look's.
   void hand_in(const Pair& pair, SearchMethod search, MatchResult match);
 
+  /// All that are made and up to date.
+  std::vector<std::pair<DueMatch, MatchResult>> matches() const;
+
   /// Those of the pairs that have had a second look, up to date or not: the lower id and the higher one.
   std::set<Pair> seen_again(const std::vector<Pair>& pairs) const;
 

@@ -55,6 +55,12 @@ MatchResult PairMatches::between(MapId fixed, MapId moving) const {
   return made.fixed == fixed ? made.match : inverse(made.match);
 }
 
+void PairMatches::for_each(const std::function<void(const Pair&, const MatchResult&)>& take) const {
+  for (const auto& [pair, made] : made_) {
+    if (!made.is_outdated) take(made.fixed == pair.first ? pair : Pair(pair.second, pair.first), made.match);
+  }
+}
+
 void PairMatches::outdate(MapId id) {
   for (auto& [pair, made] : made_) {
     if (pair.first == id || pair.second == id) made.is_outdated = true;

@@ -36,6 +36,9 @@ class PairMatches {
   /// The last match, outdated or not. Throws std::out_of_range for a pair that it does not hold.
   MatchResult between(MapId fixed, MapId moving) const;
 
+  /// Calls `take` with the pair, as it was matched, and the match of each that is up to date.
+  void for_each(const std::function<void(const Pair&, const MatchResult&)>& take) const;
+
   /// The map has changed: what is held of it serves until add() replaces it.
   void outdate(MapId id);
 

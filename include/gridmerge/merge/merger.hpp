@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "gridmerge/export.hpp"
@@ -73,10 +74,18 @@ class GRIDMERGE_EXPORT Merger {
   /// lie alone say to merged groups is matched by solve() itself.
   std::vector<DueMatch> due();
 
+  /// Makes a match that is due, of the maps as they are, and hands nothing in: for who makes some of them
+  /// here. Runs in the calling TBB arena, as match() of prepared maps; may be called by several threads at
+  /// once. Throws std::out_of_range for an unknown id.
+  MatchResult make(const DueMatch& due) const;
+
   /// Takes a match that was made elsewhere, as if solve() had made it: of the two maps as they were added
   /// last, with match_options(). Also serves for a match that is not due any more. Throws std::out_of_range
   /// for an unknown id, and std::invalid_argument for two equal ids or a search that no look takes.
   void hand_in(const DueMatch& made, MatchResult match);
+
+  /// The matches that are made and still hold, for who wants to go on elsewhere: hand_in() takes them.
+  std::vector<std::pair<DueMatch, MatchResult>> matches() const;
 
   /// How a match is made; without a progress callback.
   MatchOptions match_options(SearchMethod search) const;

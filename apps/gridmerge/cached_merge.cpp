@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cached_merge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+#include <utility>
+
+#include "gridmerge/io/file_error.hpp"
+#include "gridmerge/match/match_key.hpp"
+
+namespace gridmerge::cli {
+
+namespace {
+
+constexpr std::size_t kMaxShards = 1'000'000;
+
+std::optional<std::size_t> to_whole(std::string_view text) {
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// "2/8" is the second of eight shards.
+std::optional<Shard> to_shard(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) return std::nullopt;
+  const std::optional<std::size_t> index = to_whole(std::string_view(text).substr(0, slash)),
+                                   count = to_whole(std::string_view(text).substr(slash + 1));
+  if (!index || !count || *index == 0 || *index > *count || *count > kMaxShards) return std::nullopt;
+  return Shard{*index - 1, *count};
+}
+
+const CLI::Validator kShard(
+    [](const std::string& text) {
+      return to_shard(text)
+                 ? std::string()
+                 : fmt::format("{} is no shard: 2/8 is the second of eight, and there are at most {}", text,
+                               kMaxShards);
+    },
+    "");
+
+Merger merger_of(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
+                 const std::vector<std::optional<KnownPose>>& known_poses) {
+  Merger merger(options);
+  for (std::size_t i = 0; i < maps.size(); ++i)
+    merger.add(maps[i], i < known_poses.size() ? known_poses[i] : std::nullopt);
+  return merger;
+}
+
+std::string matches(std::size_t count) {
+  return fmt::format("{} {}", count, count == 1 ? "match" : "matches");
+}
+
+}  // namespace
+
+void add_cache_option(CLI::App& command, CacheOptions& options) {
+  command
+      .add_option(
+          "--cache", options.directory,
+          "Directory in which the match of each pair is kept, by what the two maps hold and the options "
+          "that matter; made if need be. A run that was ended goes on from it, and several may share it")
+      ->type_name("DIR")
+      ->check(CLI::Validator(
+          [](const std::string& text) { return text.empty() ? "the directory has no name" : std::string(); },
+          ""));
+}
+
+void add_shard_option(CLI::App& command, CacheOptions& options) {
+  command
+      .add_option("--shard", options.shard,
+                  "Make the I-th of N parts of the matches, keep them in --cache, and merge nothing")
+      ->type_name("I/N")
+      ->check(kShard);
+}
+
+CachedEngine::CachedEngine(const CacheOptions& options, Console& console)
+    : options_(options), console_(console) {
+  if (options.is_used())
+    cache_ = std::make_unique<MatchCache>(options.directory,
+                                          [&console](const std::string& message) { console.warn(message); });
+}
+
+MergeResult CachedEngine::merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
+                                const std::vector<std::optional<KnownPose>>& known_poses) {
+  if (!cache_) return gridmerge::merge(maps, options, known_poses);
+  Merger merger = merger_of(maps, options, known_poses);
+  MatchWorkOptions work;
+  work.progress = options.progress;
+  const MatchWork done = match_with_cache(merger, maps, *cache_, work);
+  console_.remark(fmt::format("{} of the cache, {} made", matches(done.found), done.made));
+  return merger.solve();
+}
+
+MatchResult CachedEngine::match(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                const MatchOptions& options, const std::function<MatchResult()>& make) {
+  if (!cache_) return make();
+  const std::string key = match_key(content_id(fixed), content_id(moving), options);
+  if (std::optional<MatchResult> match = cache_->find(key)) return *std::move(match);
+  MatchResult match = make();
+  try {
+    cache_->keep(key, match);
+  } catch (const FileError& error) {
+    if (keeps_)
+      console_.warn(fmt::format("{}: matches that cannot be kept are made all the same", error.what()));
+    keeps_ = false;
+  }
+  return match;
+}
+
+std::string CachedEngine::make_shard(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
+                                     const std::vector<std::optional<KnownPose>>& known_poses) {
+  Merger merger = merger_of(maps, options, known_poses);
+  MatchWorkOptions work;
+  work.shard = to_shard(options_.shard).value();
+  work.goes_on_when_full = false;
+  work.progress = options.progress;
+  const MatchWork done = match_with_cache(merger, maps, *cache_, work);
+  std::string text = fmt::format("shard {}: {} made, {} were in the cache\n", options_.shard,
+                                 matches(done.made), done.found);
+  if (done.missing == 0) return text + "all pairs are matched: merge with --cache and without --shard\n";
+  return text + fmt::format(
+                    "{} missing, of other shards: run each shard again when all have ended, for the pairs "
+                    "that are looked at twice; or merge with --cache, which makes the rest\n",
+                    done.missing == 1 ? "1 match is" : fmt::format("{} matches are", done.missing));
+}
+
+}  // namespace gridmerge::cli

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "console.hpp"
+#include "gridmerge/cache/match_work.hpp"
+#include "gridmerge/merge/merge.hpp"
+
+namespace gridmerge::cli {
+
+/// Where matches are kept, and which part of them is made.
+struct CacheOptions {
+  std::string directory;
+  std::string shard;  // as the command line says it
+
+  bool is_used() const { return !directory.empty(); }
+};
+
+/// --cache.
+void add_cache_option(CLI::App& command, CacheOptions& options);
+
+/// --shard: needs add_cache_option() of the same command.
+void add_shard_option(CLI::App& command, CacheOptions& options);
+
+/// Merges and matches as the engine does, through a cache if one is asked for.
+class CachedEngine {
+ public:
+  /// Throws FileError for a directory that cannot be written to. `console` must outlive this.
+  CachedEngine(const CacheOptions& options, Console& console);
+
+  MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
+                    const std::vector<std::optional<KnownPose>>& known_poses = {});
+
+  /// Of one pair. `make` is what makes it where the cache does not have it.
+  MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options,
+                    const std::function<MatchResult()>& make);
+
+  /// Makes the shard's part of the matches of a merge, and says in words what became of them.
+  std::string make_shard(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
+                         const std::vector<std::optional<KnownPose>>& known_poses);
+
+ private:
+  CacheOptions options_;
+  Console& console_;
+  std::unique_ptr<MatchCache> cache_;  // none if none is asked for
+  bool keeps_ = true;
+};
+
+}  // namespace gridmerge::cli

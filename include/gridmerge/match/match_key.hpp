@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a match is a match of, wherever its maps lie.
+#pragma once
+
+#include <string>
+
+#include "gridmerge/export.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/match/match.hpp"
+
+namespace gridmerge {
+
+/// The version of the engine that matches pairs, and a digest of its sources: engines of one id give the same
+/// answers.
+GRIDMERGE_EXPORT const char* engine_id();
+
+/// A name for what a grid holds: its size, resolution, origin, cells and probabilities. 64 hexadecimal
+/// digits, of SHA-256. O(cells).
+GRIDMERGE_EXPORT std::string content_id(const OccupancyGrid& grid);
+
+/// A name for a match of two grids: by what they hold, this engine, and the options that change the answer.
+/// 64 hexadecimal digits. Throws std::invalid_argument for a random walk, which has more options than these.
+GRIDMERGE_EXPORT std::string match_key(const std::string& fixed_content, const std::string& moving_content,
+                                       const MatchOptions& options);
+
+}  // namespace gridmerge

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/cache/match_cache.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "cache/match_file.hpp"
+#include "gridmerge/io/file_error.hpp"
+#include "io/atomic_file.hpp"
+#include "io/file_reader.hpp"
+
+namespace gridmerge {
+
+using namespace internal;
+
+namespace {
+
+constexpr std::size_t kFolderDigits = 2;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 24;  // of thousands of hypotheses
+
+void make_directory(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw FileError(directory, "cannot be made: " + error.message());
+}
+
+}  // namespace
+
+MatchCache::MatchCache(std::filesystem::path directory, Warn warn)
+    : directory_(std::move(directory)), warn_(std::move(warn)) {
+  make_directory(directory_);
+  if (!std::filesystem::is_directory(directory_)) throw FileError(directory_, "is no directory");
+  // Whether it can be written to is known for sure when something was.
+  const std::filesystem::path trial = directory_ / fmt::format("trial-{}", ::getpid());
+  try {
+    StagedFile(trial, "trial\n");
+  } catch (const FileError& error) {
+    const std::string_view why = error.what();
+    const std::size_t cause = why.rfind(": ");
+    throw FileError(directory_, fmt::format("cannot be written to: {}",
+                                            why.substr(cause == std::string_view::npos ? 0 : cause + 2)));
+  }
+}
+
+std::optional<MatchResult> MatchCache::find(const std::string& key) {
+  const std::filesystem::path file = file_of(key);
+  std::error_code error;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(file, error))) return {};
+  try {
+    FileReader reader(file, NamedBy::file);
+    return parse_match_file(reader.read_all(kMaxBytes), key);
+  } catch (const std::invalid_argument& why) {
+    if (++damaged_ == 1)
+      warn(fmt::format("{}: {}: it is not used, and its maps are matched again", file.string(), why.what()));
+  } catch (const FileError& why) {
+    if (++damaged_ == 1) warn(fmt::format("{}: it is not used, and its maps are matched again", why.what()));
+  }
+  return {};
+}
+
+void MatchCache::keep(const std::string& key, const MatchResult& match) const {
+  const std::filesystem::path file = file_of(key);
+  make_directory(file.parent_path());
+  write_file_atomically(file, format_match_file(match, key));
+}
+
+void MatchCache::warn(const std::string& message) const {
+  if (warn_) warn_(message);
+}
+
+std::filesystem::path MatchCache::file_of(const std::string& key) const {
+  return directory_ / key.substr(0, kFolderDigits) / (key.substr(kFolderDigits) + ".match");
+}
+
+}  // namespace gridmerge

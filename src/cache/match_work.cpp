@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/cache/match_work.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "grid/parallel.hpp"
+#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/io/file_error.hpp"
+#include "gridmerge/match/match_key.hpp"
+
+namespace gridmerge {
+
+using namespace internal;
+
+namespace {
+
+/// A match that the cache does not have.
+struct Missing {
+  DueMatch due;
+  std::string key;
+};
+
+class Round {
+ public:
+  Round(Merger& merger, MatchCache& cache, const MatchWorkOptions& options, bool& keeps)
+      : merger_(merger), cache_(cache), options_(options), keeps_(keeps) {}
+
+  void make(const std::vector<Missing>& missing, std::size_t done, std::size_t total) {
+    std::vector<MatchResult> made(missing.size());
+    std::mutex telling;
+    const auto make_one = [&](std::size_t i) {
+      throw_if_cancelled();
+      made[i] = merger_.make(missing[i].due);
+      keep(missing[i].key, made[i], telling);
+      const std::lock_guard lock(telling);
+      if (options_.progress) options_.progress(++done, total);
+    };
+    // As Merger does: a single pair by all threads, several by one each.
+    if (missing.size() == 1) {
+      make_one(0);
+    } else {
+      parallel_for(missing.size(), [&](std::size_t i) { with_threads(1, [&] { make_one(i); }); });
+    }
+    for (std::size_t i = 0; i < missing.size(); ++i) merger_.hand_in(missing[i].due, std::move(made[i]));
+  }
+
+ private:
+  void keep(const std::string& key, const MatchResult& match, std::mutex& telling) {
+    try {
+      cache_.keep(key, match);
+    } catch (const FileError& error) {
+      if (!options_.goes_on_when_full) throw;
+      const std::lock_guard lock(telling);
+      if (keeps_)
+        cache_.warn(fmt::format("{}: matches that cannot be kept are made all the same", error.what()));
+      keeps_ = false;
+    }
+  }
+
+  Merger& merger_;
+  MatchCache& cache_;
+  const MatchWorkOptions& options_;
+  bool& keeps_;
+};
+
+}  // namespace
+
+MatchWork match_with_cache(Merger& merger, const std::vector<OccupancyGrid>& maps, MatchCache& cache,
+                           const MatchWorkOptions& options) {
+  if (options.shard.index >= options.shard.count) throw std::invalid_argument("there is no such shard");
+  const std::vector<Merger::MapId> ids = merger.maps();
+  if (ids.size() != maps.size()) throw std::invalid_argument("these are not the maps that were added");
+  std::map<Merger::MapId, std::string> contents;
+  for (std::size_t i = 0; i < ids.size(); ++i) contents[ids[i]] = content_id(maps[i]);
+  MatchWork work;
+  bool keeps = true;
+  while (work.missing == 0) {
+    const std::vector<DueMatch> due = merger.due();
+    if (due.empty()) break;
+    const MatchOptions how = merger.match_options(due.front().search);
+    std::vector<Missing> missing;
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < due.size(); ++i) {
+      throw_if_cancelled();
+      const std::string key = match_key(contents.at(due[i].fixed), contents.at(due[i].moving), how);
+      if (std::optional<MatchResult> match = cache.find(key)) {
+        merger.hand_in(due[i], std::move(*match));
+        ++found;
+      } else if (i % options.shard.count == options.shard.index) {
+        missing.push_back({due[i], key});
+      } else {
+        ++work.missing;
+      }
+    }
+    if (options.progress) options.progress(found, due.size());
+    with_threads(how.threads, [&] { Round(merger, cache, options, keeps).make(missing, found, due.size()); });
+    work.found += found;
+    work.made += missing.size();
+  }
+  return work;
+}
+
+}  // namespace gridmerge

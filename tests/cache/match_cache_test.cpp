@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/cache/match_cache.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cache/match_file.hpp"
+#include "gridmerge/io/file_error.hpp"
+#include "gridmerge/match/match_bytes.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace gridmerge {
+namespace {
+
+MatchResult some_match(double x) {
+  MatchResult match;
+  match.T_fixed_moving = {x, -1.0 / 3.0, 0.1};
+  match.probability = 0.75;
+  match.hypotheses.resize(2);
+  return match;
+}
+
+class MatchCacheTest : public testing::Test {
+ protected:
+  MatchCache open() {
+    return MatchCache(directory.file("matches"), [this](const std::string& line) { warned.push_back(line); });
+  }
+
+  std::string file_of(const std::string& name) const {
+    return directory.file("matches/" + name.substr(0, 2) + "/" + name.substr(2) + ".match");
+  }
+
+  const test::TemporaryDirectory directory;
+  const std::string key = std::string(63, 'a') + "1";
+  const std::string other_key = std::string(63, 'a') + "2";
+  std::vector<std::string> warned;
+};
+
+TEST_F(MatchCacheTest, GivesWhatWasKeptToAnyProcess) {
+  MatchCache cache = open();
+  EXPECT_FALSE(cache.find(key));
+  cache.keep(key, some_match(1.0));
+  cache.keep(other_key, some_match(2.0));
+  EXPECT_EQ(to_bytes(cache.find(key).value()), to_bytes(some_match(1.0)));
+  cache.keep(key, some_match(3.0));  // replaces it
+  MatchCache again = open();
+  EXPECT_EQ(again.find(key).value().T_fixed_moving.x, 3.0);
+  EXPECT_EQ(again.find(other_key).value().T_fixed_moving.x, 2.0);
+  EXPECT_TRUE(warned.empty());
+  EXPECT_EQ(directory.names(), std::vector<std::string>{"matches"});
+}
+
+TEST_F(MatchCacheTest, WhatIsDamagedIsMissingAndToldOnce) {
+  MatchCache cache = open();
+  cache.keep(key, some_match(1.0));
+  const std::string good = test::read_file(file_of(key));
+  const std::string name = "matches/" + key.substr(0, 2) + "/" + key.substr(2) + ".match";
+  std::vector<std::string> bad{"", "gridmerge match 1\n", "somebody's notes", good + "x",
+                               "gridmerge match 2" + good.substr(17)};
+  for (std::size_t i = 0; i < good.size(); i += 7) {
+    bad.push_back(good.substr(0, i));
+    bad.push_back(good);
+    bad.back()[i] = static_cast<char>(bad.back()[i] ^ 1);
+  }
+  for (const std::string& content : bad) {
+    directory.write(name, content);
+    EXPECT_FALSE(cache.find(key)) << content.size();
+  }
+  EXPECT_EQ(cache.damaged(), bad.size());
+  ASSERT_EQ(warned.size(), 1u);
+  EXPECT_NE(warned[0].find(file_of(key)), std::string::npos) << warned[0];
+  cache.keep(key, some_match(1.0));
+  EXPECT_TRUE(cache.find(key));
+}
+
+TEST_F(MatchCacheTest, AMatchUnderAnothersNameIsMissing) {
+  MatchCache cache = open();
+  cache.keep(key, some_match(1.0));
+  std::filesystem::rename(file_of(key), file_of(other_key));
+  EXPECT_FALSE(cache.find(other_key));
+  EXPECT_EQ(cache.damaged(), 1u);
+}
+
+TEST_F(MatchCacheTest, WhatIsNoFileIsMissing) {
+  MatchCache cache = open();
+  std::filesystem::create_directories(file_of(key));  // a folder
+  EXPECT_FALSE(cache.find(key));
+  EXPECT_THROW(cache.keep(key, some_match(1.0)), FileError);
+  ASSERT_EQ(::mkfifo(file_of(other_key).c_str(), 0600), 0);  // nobody writes to it
+  EXPECT_FALSE(cache.find(other_key));
+  EXPECT_EQ(warned.size(), 1u);
+}
+
+TEST_F(MatchCacheTest, NeedsADirectoryThatCanBeWrittenTo) {
+  const std::string file = directory.write("a_file", "");
+  EXPECT_THROW(MatchCache{file}, FileError);
+  EXPECT_THROW(MatchCache{file + "/below"}, FileError);
+  try {
+    MatchCache{"/proc/self"};
+    FAIL() << "there is no writing to /proc";
+  } catch (const FileError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind("/proc/self: cannot be written to", 0), 0u) << error.what();
+  }
+}
+
+TEST_F(MatchCacheTest, SeveralMayWriteAtOnce) {
+  MatchCache cache = open();
+  std::vector<std::thread> writers;
+  for (int i = 0; i < 4; ++i)
+    writers.emplace_back([&] {
+      for (int round = 0; round < 20; ++round) cache.keep(key, some_match(1.0));
+    });
+  for (int round = 0; round < 200; ++round) cache.find(key);
+  for (std::thread& writer : writers) writer.join();
+  EXPECT_TRUE(cache.find(key));
+  EXPECT_EQ(cache.damaged(), 0u);
+}
+
+}  // namespace
+}  // namespace gridmerge

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/cache/match_work.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/io/file_error.hpp"
+#include "merge/team.hpp"
+
+namespace gridmerge {
+
+using test::expect_same;
+using test::Team;
+
+namespace {
+
+class MatchWorkTest : public testing::Test {
+ protected:
+  MatchWork work(std::size_t index, std::size_t count) {
+    Merger merger = filled();
+    MatchCache cache(directory.file("matches"));
+    MatchWorkOptions options;
+    options.shard = {index, count};
+    return match_with_cache(merger, team.maps, cache, options);
+  }
+
+  Merger filled(const MergeOptions& options = {}) {
+    Merger merger(options);
+    for (const OccupancyGrid& map : team.maps) merger.add(map);
+    return merger;
+  }
+
+  const Team team;
+  const test::TemporaryDirectory directory;
+};
+
+TEST_F(MatchWorkTest, ShardsMakeEachMatchOnceAndTheMergeIsThatOfOneMachine) {
+  // Each has ten pairs in the first round and the stranger's four in the second.
+  std::size_t made = 0;
+  for (std::size_t shard = 0; shard < 3; ++shard) {
+    const MatchWork first = work(shard, 3);
+    made += first.made;
+    EXPECT_EQ(first.missing > 0, true);  // the second round waits for others
+  }
+  for (std::size_t shard = 0; shard < 3; ++shard) made += work(shard, 3).made;
+  EXPECT_EQ(made, 14u);
+  std::size_t matched = 0;
+  MergeOptions options;
+  options.progress = [&](std::size_t, std::size_t) { ++matched; };
+  Merger merger = filled(options);
+  MatchCache cache(directory.file("matches"));
+  const MatchWork last = match_with_cache(merger, team.maps, cache);
+  EXPECT_EQ(last.found, 14u);
+  EXPECT_EQ(last.made, 0u);
+  EXPECT_EQ(last.missing, 0u);
+  expect_same(merger.solve(), merge(team.maps));
+  EXPECT_EQ(matched, 0u);
+}
+
+TEST_F(MatchWorkTest, GoesOnWhereItWasCancelled) {
+  std::atomic<bool> cancelled = false;
+  MergeOptions one_thread;
+  one_thread.match.threads = 1;
+  Merger merger = filled(one_thread);
+  MatchCache cache(directory.file("matches"));
+  MatchWorkOptions options;
+  options.progress = [&](std::size_t done, std::size_t) { cancelled = done == 4; };
+  EXPECT_THROW(with_cancellation(cancelled, [&] { match_with_cache(merger, team.maps, cache, options); }),
+               Cancelled);
+  Merger again = filled();
+  const MatchWork rest = match_with_cache(again, team.maps, cache);
+  EXPECT_GE(rest.found, 4u);
+  EXPECT_EQ(rest.found + rest.made, 14u);
+  expect_same(again.solve(), merge(team.maps));
+}
+
+TEST_F(MatchWorkTest, OtherOptionsAndMapsFindNothing) {
+  EXPECT_EQ(work(0, 1).made, 14u);
+  MergeOptions options;
+  options.match.accept_probability = 0.9;
+  Merger merger = filled(options);
+  MatchCache cache(directory.file("matches"));
+  EXPECT_EQ(match_with_cache(merger, team.maps, cache).found, 0u);
+}
+
+TEST_F(MatchWorkTest, RefusesWhatMakesNoSense) {
+  Merger merger = filled();
+  MatchCache cache(directory.file("matches"));
+  MatchWorkOptions options;
+  options.shard = {2, 2};
+  EXPECT_THROW(match_with_cache(merger, team.maps, cache, options), std::invalid_argument);
+  EXPECT_THROW(match_with_cache(merger, {}, cache), std::invalid_argument);
+}
+
+TEST_F(MatchWorkTest, WhatCannotBeKeptIsMadeAllTheSameIfThatIsAskedFor) {
+  std::vector<std::string> warned;
+  MatchCache cache(directory.file("matches"), [&](const std::string& line) { warned.push_back(line); });
+  std::filesystem::remove_all(directory.file("matches"));
+  directory.write("matches", "a file now");
+  Merger merger = filled();
+  EXPECT_EQ(match_with_cache(merger, team.maps, cache).made, 14u);
+  EXPECT_EQ(warned.size(), 1u);
+  expect_same(merger.solve(), merge(team.maps));
+  Merger another = filled();
+  MatchWorkOptions options;
+  options.goes_on_when_full = false;
+  EXPECT_THROW(match_with_cache(another, team.maps, cache, options), FileError);
+}
+
+}  // namespace
+}  // namespace gridmerge

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// Matches that are kept, and shards.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <regex>
+#include <thread>
+
+#include "fixture.hpp"
+
+namespace gridmerge::test {
+namespace {
+
+class CacheTest : public CliTest {
+ protected:
+  std::vector<std::string> with_cache(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{
+        "merge", left, middle, right, other, "--cache", directory.file("matches")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  /// transforms.json of a merge, but for its times.
+  std::string answer(const std::string& output) const {
+    return std::regex_replace(read_file(directory.file(output + "/transforms.json")),
+                              std::regex(R"re("seconds": *[0-9.eE+-]+)re"), "");
+  }
+
+  void expect_answer_of_one_machine(const std::string& output) {
+    if (!std::filesystem::exists(directory.file("plain"))) {
+      EXPECT_EQ(run({"merge", left, middle, right, other, "-o", directory.file("plain")}).exit_code, 3);
+    }
+    const std::string expected = answer("plain");
+    EXPECT_GT(expected.size(), 500u);
+    EXPECT_EQ(answer(output), expected);
+    EXPECT_EQ(read_file(directory.file(output + "/merged.pgm")),
+              read_file(directory.file("plain/merged.pgm")));
+  }
+
+  std::vector<std::filesystem::path> kept() const {
+    std::vector<std::filesystem::path> files;
+    if (!std::filesystem::exists(directory.file("matches"))) return files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(directory.file("matches")))
+      if (entry.is_regular_file()) files.push_back(entry.path());
+    return files;
+  }
+
+  static constexpr std::size_t kMatches = 9;  // six pairs, and the stranger's three again
+
+  const std::string middle =
+      write_map(directory, "middle", map_part(draw_building(1), {3, 0, 15, 12}, {2.0, 1.0, 2.5}));
+};
+
+TEST_F(CacheTest, AMergeThroughItIsThatWithoutIt) {
+  const Outcome first = run(with_cache({"-o", directory.file("first"), "--verbose"}));
+  EXPECT_EQ(first.exit_code, 3) << first.err;
+  EXPECT_NE(first.err.find("0 matches of the cache, 9 made"), std::string::npos) << first.err;
+  expect_answer_of_one_machine("first");
+  const Outcome second = run(with_cache({"-o", directory.file("second"), "--verbose"}));
+  EXPECT_NE(second.err.find("9 matches of the cache, 0 made"), std::string::npos) << second.err;
+  expect_answer_of_one_machine("second");
+  EXPECT_EQ(read_file(directory.file("second/transforms.json")),
+            read_file(directory.file("first/transforms.json")))
+      << "with the times, too";
+  EXPECT_EQ(kept().size(), kMatches);
+}
+
+TEST_F(CacheTest, ShardsAndAMergeAreOneMachine) {
+  for (int round = 0; round < 2; ++round) {
+    for (int shard = 1; shard <= 3; ++shard) {
+      const Outcome outcome = run(with_cache({"--shard", fmt::format("{}/3", shard)}));
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+      EXPECT_EQ(outcome.err, "");
+      EXPECT_EQ(outcome.out.rfind(fmt::format("shard {}/3: ", shard), 0), 0u) << outcome.out;
+    }
+  }
+  EXPECT_EQ(kept().size(), kMatches);
+  const Outcome last = run(with_cache({"-o", directory.file("o"), "--verbose"}));
+  EXPECT_NE(last.err.find("9 matches of the cache, 0 made"), std::string::npos) << last.err;
+  expect_answer_of_one_machine("o");
+}
+
+TEST_F(CacheTest, TheMergeMakesWhatShardsHaveLeft) {
+  EXPECT_EQ(run(with_cache({"--shard", "2/3"})).exit_code, 0);
+  EXPECT_EQ(kept().size(), 2u);
+  EXPECT_EQ(run(with_cache({"-o", directory.file("o")})).exit_code, 3);
+  EXPECT_EQ(kept().size(), kMatches);
+  expect_answer_of_one_machine("o");
+}
+
+TEST_F(CacheTest, ShardsOfOtherMapsOrOptionsAreNotUsed) {
+  EXPECT_EQ(
+      run({"merge", left, right, "--cache", directory.file("matches"), "--shard", "1/1", "--accept", "0.9"})
+          .exit_code,
+      0);
+  const Outcome outcome = run(with_cache({"-o", directory.file("o"), "--verbose"}));
+  EXPECT_NE(outcome.err.find("0 matches of the cache, 9 made"), std::string::npos) << outcome.err;
+  // A map by another name, of another folder, is the same map.
+  std::filesystem::create_directories(directory.file("copy"));
+  for (const char* name : {"left.yaml", "left.pgm"})
+    std::filesystem::copy_file(directory.file(name), directory.file(std::string("copy/") + name));
+  const Outcome moved = run({"merge", directory.file("copy/left.yaml"), right, "--cache",
+                             directory.file("matches"), "-o", directory.file("p"), "--verbose"});
+  EXPECT_NE(moved.err.find("1 match of the cache, 0 made"), std::string::npos) << moved.err;
+}
+
+TEST_F(CacheTest, AKilledRunGoesOn) {
+  RunOptions kill;
+  kill.faulty = true;
+  for (const int call : {20, 45, 70}) {
+    kill.environment = {fmt::format("GRIDMERGE_FAULT=kill {}", call)};
+    EXPECT_EQ(run(with_cache({"-o", directory.file("killed")}), kill).signal, SIGKILL);
+  }
+  const std::size_t kept_by_then = kept().size();
+  EXPECT_GT(kept_by_then, 0u);
+  const Outcome outcome = run(with_cache({"-o", directory.file("o")}));
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  EXPECT_EQ(outcome.err.find("checksum"), std::string::npos) << outcome.err;
+  expect_answer_of_one_machine("o");
+}
+
+TEST_F(CacheTest, TwoAtOnceDisturbNobody) {
+  Outcome one, two;
+  std::thread beside([&] { one = run(with_cache({"-o", directory.file("one")})); });
+  two = run(with_cache({"-o", directory.file("two")}));
+  beside.join();
+  EXPECT_EQ(one.err, "");
+  EXPECT_EQ(two.err, "");
+  expect_answer_of_one_machine("one");
+  expect_answer_of_one_machine("two");
+}
+
+TEST_F(CacheTest, DamagedFilesAreMatchedAgainWithOneWarning) {
+  EXPECT_EQ(run(with_cache({"-o", directory.file("o")})).exit_code, 3);
+  const std::vector<std::filesystem::path> files = kept();
+  ASSERT_EQ(files.size(), kMatches);
+  const std::string good = read_file(files[0]);
+  std::ofstream(files[0], std::ios::binary) << good.substr(0, good.size() / 2);
+  std::ofstream(files[1], std::ios::binary) << "something else";
+  std::ofstream(files[2], std::ios::binary) << good;  // another pair's
+  std::ofstream(directory.file("matches/notes.txt")) << "somebody's own";
+  const Outcome outcome = run(with_cache({"-o", directory.file("p"), "--verbose"}));
+  EXPECT_NE(outcome.err.find("6 matches of the cache, 3 made"), std::string::npos) << outcome.err;
+  const std::string told = "it is not used, and its maps are matched again";
+  const std::size_t at = outcome.err.find(told);
+  ASSERT_NE(at, std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find(told, at + 1), std::string::npos) << outcome.err;
+  expect_answer_of_one_machine("p");
+  EXPECT_EQ(read_file(directory.file("matches/notes.txt")), "somebody's own");
+}
+
+TEST_F(CacheTest, AFullDiskCostsTheCacheAndNotTheMerge) {
+  RunOptions full;
+  full.file_size_limit = 1000;  // [bytes]: less than a match takes
+  const Outcome shard = run(with_cache({"--shard", "1/2"}), full);
+  expect_error(shard, directory.file("matches"), "cannot be written");
+  // The merge's own outputs need a disk that is not full, so single calls fail here.
+  RunOptions faulty;
+  faulty.faulty = true;
+  faulty.environment = {fmt::format("GRIDMERGE_FAULT=fail 12 {}", ENOSPC)};
+  const Outcome merged = run(with_cache({"-o", directory.file("o")}), faulty);
+  EXPECT_EQ(merged.exit_code, 3) << merged.err;
+  EXPECT_EQ(count_lines(merged.err), 1u) << merged.err;
+  EXPECT_NE(merged.err.find("No space left on device"), std::string::npos) << merged.err;
+  EXPECT_EQ(kept().size(), kMatches - 1);
+  expect_answer_of_one_machine("o");
+}
+
+TEST_F(CacheTest, ADirectoryThatCannotBeWrittenToIsToldBeforeTheWork) {
+  const std::string file = directory.write("a_file", "");
+  for (const std::string& bad : {file, file + "/below", std::string("/proc/self")}) {
+    expect_error(run({"merge", left, right, "--cache", bad, "-o", directory.file("o")}), bad, "cannot be");
+    EXPECT_FALSE(std::filesystem::exists(directory.file("o")));
+    expect_error(run({"merge", left, right, "--cache", bad, "--shard", "1/2"}), bad, "cannot be");
+  }
+}
+
+TEST_F(CacheTest, UsageErrors) {
+  const auto expect_usage = [](const Outcome& outcome, const std::string& cause) {
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_NE(outcome.err.find(cause), std::string::npos) << outcome.err;
+  };
+  for (const char* bad : {"3/2", "0/2", "1", "/", "1/", "/2", "-1/2", "1/2/3", "a/b", "1/0", "1/2000000", ""})
+    expect_usage(run(with_cache({"--shard", bad})), "--shard");
+  expect_usage(run({"merge", left, right, "--shard", "1/2"}), "--shard: needs --cache");
+  expect_usage(run(with_cache({"--shard", "1/2", "-o", directory.file("o")})), "leave -o out");
+  expect_usage(run(with_cache({})), "--output is required");
+  expect_usage(run(with_cache({"-o", directory.file("o"), "--strategy", "tree"})),
+               "--cache: needs --strategy joint");
+  expect_usage(run({"evaluate", "pairs.tsv", "--cache", "m", "--search", "random-walk"}), "--cache");
+  EXPECT_FALSE(std::filesystem::exists(directory.file("matches")));
+}
+
+TEST_F(CacheTest, AnEvaluationThroughItIsThatWithoutIt) {
+  const std::string negatives = directory.write("negatives.tsv", "fixed\tmoving\nleft.yaml\tother.yaml\n");
+  const std::string sets = directory.write(
+      "sets.tsv",
+      "set\tmap\tx\ty\ttheta\ttolerance\none\tleft.yaml\t0\t0\t0\t1\none\tother.yaml\t0\t0\t0\t1\n");
+  const auto evaluate = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"evaluate", "--negatives", negatives, "--sets", sets, "--json", "-"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.out;
+  };
+  const std::string first = evaluate({"--cache", directory.file("matches")});
+  EXPECT_EQ(kept().size(), 3u);  // of the negative, and of the set the quick look and the thorough one
+  EXPECT_EQ(evaluate({"--cache", directory.file("matches")}), first) << "with the times";
+  const std::regex times(R"re("(seconds|median|p90|max)": *[0-9.eE+-]+)re");
+      EXPECT_EQ(std::regex_replace(evaluate({}), times, ""), std::regex_replace(first, times, ""));
+}
+
+}  // namespace
+}  // namespace gridmerge::test

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/match/match_bytes.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <bit>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "gridmerge/match/match.hpp"
+#include "gridmerge/match/match_key.hpp"
+#include "support/building.hpp"
+
+namespace gridmerge {
+namespace {
+
+MatchResult drawn_match() {
+  const auto number = [] { return *rc::gen::arbitrary<double>(); };
+  const auto share = [] { return *rc::gen::inRange(0, 1001) / 1000.0; };
+  const auto finite = [] { return *rc::gen::inRange(-1000000, 1000000) / 977.0; };
+  MatchResult match;
+  match.T_fixed_moving = {finite(), finite(), finite()};
+  match.probability = share();
+  match.acceptance_index = number();
+  match.agreement = *rc::gen::arbitrary<std::int64_t>();
+  match.disagreement = *rc::gen::arbitrary<std::int64_t>();
+  match.overlap = number();
+  match.verdict = *rc::gen::element(Verdict::refused, Verdict::accepted);
+  match.reason = static_cast<Reason>(*rc::gen::inRange(0, 7));
+  match.seconds = number();
+  match.hypotheses.resize(*rc::gen::inRange<std::size_t>(0, 5));
+  for (Hypothesis& one : match.hypotheses) {
+    one.T_fixed_moving = {finite(), finite(), -0.0};
+    one.score = std::numeric_limits<double>::quiet_NaN();
+    one.probability = share();
+    for (const PoseFigure& figure : pose_figures()) one.figures.*figure.value = number();
+  }
+  return match;
+}
+
+RC_GTEST_PROP(MatchBytes, ComeBackBitForBit, ()) {
+  const MatchResult match = drawn_match();
+  const std::string bytes = to_bytes(match);
+  const MatchResult back = match_from_bytes(bytes);
+  RC_ASSERT(to_bytes(back) == bytes);
+  RC_ASSERT(back.T_fixed_moving == match.T_fixed_moving);
+  RC_ASSERT(back.verdict == match.verdict);
+  RC_ASSERT(back.reason == match.reason);
+  RC_ASSERT(back.agreement == match.agreement);
+  RC_ASSERT(back.disagreement == match.disagreement);
+  RC_ASSERT(std::bit_cast<std::uint64_t>(back.overlap) == std::bit_cast<std::uint64_t>(match.overlap));
+  RC_ASSERT(back.hypotheses.size() == match.hypotheses.size());
+  for (std::size_t i = 0; i < back.hypotheses.size(); ++i) {
+    RC_ASSERT(back.hypotheses[i].T_fixed_moving == match.hypotheses[i].T_fixed_moving);
+    for (const PoseFigure& figure : pose_figures())
+      RC_ASSERT(std::bit_cast<std::uint64_t>(back.hypotheses[i].figures.*figure.value) ==
+                std::bit_cast<std::uint64_t>(match.hypotheses[i].figures.*figure.value));
+  }
+}
+
+RC_GTEST_PROP(MatchBytes, CutShortOrLengthenedTheyAreNoMatch, (std::uint32_t at)) {
+  const std::string bytes = to_bytes(drawn_match());
+  RC_ASSERT_THROWS_AS(match_from_bytes(bytes.substr(0, at % bytes.size())), std::invalid_argument);
+  RC_ASSERT_THROWS_AS(match_from_bytes(bytes + "x"), std::invalid_argument);
+}
+
+TEST(MatchBytes, RefuseWhatNoMatchHas) {
+  MatchResult match;
+  match.T_fixed_moving.x = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(match_from_bytes(to_bytes(match)), std::invalid_argument);
+  match.T_fixed_moving.x = 0.0;
+  match.probability = 1.5;
+  EXPECT_THROW(match_from_bytes(to_bytes(match)), std::invalid_argument);
+  match.probability = 0.5;
+  match.reason = static_cast<Reason>(77);
+  EXPECT_THROW(match_from_bytes(to_bytes(match)), std::invalid_argument);
+  match.reason = Reason::none;
+  std::string bytes = to_bytes(match);
+  bytes[bytes.size() - 1] = '\x7f';  // more hypotheses than there can be
+  EXPECT_THROW(match_from_bytes(bytes), std::invalid_argument);
+}
+
+TEST(MatchKey, TellsApartWhatMayDiffer) {
+  const OccupancyGrid map = test::draw_building(1);
+  const std::string content = content_id(map);
+  EXPECT_EQ(content, content_id(OccupancyGrid(map)));
+  EXPECT_EQ(content.size(), 64u);
+  OccupancyGrid other = map;
+  other.cells[17] = other.cells[17] == Cell::free ? Cell::occupied : Cell::free;
+  EXPECT_NE(content_id(other), content);
+  other = map;
+  other.origin.x += 1e-12;
+  EXPECT_NE(content_id(other), content);
+  other = map;
+  other.resolution *= 1.0000001;
+  EXPECT_NE(content_id(other), content);
+  other = map;
+  std::swap(other.width, other.height);
+  EXPECT_NE(content_id(other), content);
+  other = map;
+  other.probability.assign(map.cells.size(), 0.5F);
+  EXPECT_NE(content_id(other), content);
+
+  const MatchOptions options;
+  const std::string key = match_key("a", "b", options);
+  EXPECT_EQ(key, match_key("a", "b", options));
+  EXPECT_NE(key, match_key("b", "a", options));
+  EXPECT_NE(key, match_key("ab", "", options));
+  MatchOptions changed;
+  changed.threads = 7;  // changes no answer
+  EXPECT_EQ(match_key("a", "b", changed), key);
+  changed.max_hypotheses = 11;
+  EXPECT_NE(match_key("a", "b", changed), key);
+  changed = {};
+  changed.accept_probability = 0.9;
+  EXPECT_NE(match_key("a", "b", changed), key);
+  changed = {};
+  changed.search = SearchMethod::quick;
+  EXPECT_NE(match_key("a", "b", changed), key);
+  changed.search = SearchMethod::random_walk;
+  EXPECT_THROW(match_key("a", "b", changed), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gridmerge
