@@ -39,6 +39,8 @@ struct MergeCommandOptions {
   LoadOptions load;
   double output_resolution = 0.0;
   double max_false_joins = MergeOptions{}.max_false_joins;
+  double max_missed = MergeOptions{}.max_missed;
+  bool all_pairs = false;
   SearchOptions search;
   KnownPoseOptions known;
   CacheOptions cache;
@@ -111,6 +113,7 @@ MergeOptions merge_options(const MergeCommandOptions& options, Console& console)
   engine.match = match_options(options.common, options.search);
   engine.resolution = options.output_resolution;
   engine.max_false_joins = options.max_false_joins;
+  engine.max_missed = options.all_pairs ? 0.0 : options.max_missed;
   engine.progress = [&console](std::size_t done, std::size_t total) {
     if (done < total) {
       console.progress("matching pairs", static_cast<double>(done) / static_cast<double>(total));
@@ -331,6 +334,17 @@ void add_merge(CLI::App& app, Action& action) {
           ->type_name("NUMBER")
           ->check(CLI::Range(0.0, 1e6).description(""))
           ->capture_default_str();
+  CLI::Option* missed =
+      command
+          ->add_option("--max-missed", options->max_missed,
+                       "Of more than 24 maps only likely pairs are looked at: the others may hide this share "
+                       "of all joins. Less is slower")
+          ->type_name("SHARE")
+          ->check(CLI::Range(0.0, 0.99).description(""))
+          ->capture_default_str();
+  CLI::Option* all_pairs =
+      command->add_flag("--all-pairs", options->all_pairs, "Look at every pair, however many maps there are")
+          ->excludes(missed);
   add_trace_option(*command, options->search);
   add_cache_option(*command, options->cache);
   add_shard_option(*command, options->cache);
@@ -356,9 +370,13 @@ void add_merge(CLI::App& app, Action& action) {
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml --fix robot2.yaml -o "
       "merged");
-  command->callback([options, budget, &action] {
+  command->callback([options, budget, missed, all_pairs, &action] {
     if (budget->count() > 0 && options->search.up_the_tree())
       throw CLI::ValidationError("--max-false-joins", "needs --strategy joint");
+    for (const CLI::Option* option : {missed, all_pairs}) {
+      if (option->count() > 0 && options->search.up_the_tree())
+        throw CLI::ValidationError(option->get_name(), "needs --strategy joint");
+    }
     const bool knows_poses = !options->known.init.empty() || !options->known.fix.empty();
     if (knows_poses && options->search.up_the_tree())
       throw CLI::ValidationError(options->known.init.empty() ? "--fix" : "--init", "needs --strategy joint");

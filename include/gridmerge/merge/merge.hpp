@@ -22,6 +22,9 @@ struct MergeOptions {
   /// So many joins of the whole merge may be expected to be false, beside what `match.accept_probability`
   /// asks of each: the least sure ones are not made (see find_consistent_set_within()).
   double max_false_joins = 0.05;
+  /// Of more than two dozen maps only likely pairs are matched: those left out hide, as far as is known, at
+  /// most this share of all joins. 0 = all pairs are matched. In [0, 1).
+  double max_missed = 0.01;
   double resolution = 0.0;  ///< of the merged maps [m]; 0 = the finest among a map's inputs
   /// Called with the numbers of pairs that are matched and to be matched, never from two threads at once. Of
   /// the second look, if there is one, the numbers begin anew.
@@ -30,7 +33,8 @@ struct MergeOptions {
 
 /// Merges `maps` by what all pairs of them say together.
 ///
-/// Every pair is matched, and all hypotheses are kept. The consistent set of all maps that they speak for
+/// Every pair is matched, or of many maps every likely one (see MergeOptions::max_missed), and all hypotheses
+/// are kept. The consistent set of all maps that they speak for
 /// most is chosen (see find_consistent_set_within()): a weak pair that agrees with the others is used, a
 /// strong one that contradicts them is not. Then all poses are adjusted together, to what the pairs and the
 /// maps' walls say (robust least squares), and the maps of each component are fused in one pass. Maps that
@@ -46,7 +50,7 @@ struct MergeOptions {
 /// The result does not depend on the number of threads, nor on the order of the maps, except that the frame
 /// of a component is its first member's and `joins` are in the order (0, 1), (0, 2), ... Throws
 /// std::invalid_argument for an invalid grid, option or known pose, naming the map by its index, and when a
-/// merged map would exceed 2^28 cells. k * (k - 1) / 2 matches for k maps.
+/// merged map would exceed 2^28 cells. At most k * (k - 1) / 2 matches for k maps.
 GRIDMERGE_EXPORT MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
                                    const std::vector<std::optional<KnownPose>>& known_poses = {});
 
