@@ -35,6 +35,51 @@ double damping(std::size_t size_a, std::size_t size_b) {
   return std::pow(1.0 - kShownByAnother, std::min(others, kMostOthers));
 }
 
+/// How many of the joins of a consistent set hold maps together that nothing else does. O(joins).
+std::size_t count_bridges(const JoinProblem& problem, const ConsistentSet& consistent_set) {
+  struct Visit {
+    std::size_t map;
+    std::size_t came_by;  // index of a join
+    std::size_t next;     // place among its joins
+  };
+  const std::size_t none = consistent_set.used.size();
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> joins(
+      problem.maps.size());  // other map, join
+  for (std::size_t i = 0; i < none; ++i) {
+    const PairCandidates& pair = problem.pairs[consistent_set.used[i].pair];
+    joins[pair.fixed].emplace_back(pair.moving, i);
+    joins[pair.moving].emplace_back(pair.fixed, i);
+  }
+  // Depth first (Tarjan 1974): a join is a bridge if nothing beyond it leads back.
+  std::vector<std::size_t> found(problem.maps.size()), lowest(problem.maps.size());
+  std::size_t time = 0, bridges = 0;
+  for (std::size_t start = 0; start < problem.maps.size(); ++start) {
+    if (found[start] != 0) continue;
+    std::vector<Visit> path{{start, none, 0}};
+    found[start] = lowest[start] = ++time;
+    while (!path.empty()) {
+      const std::size_t map = path.back().map, came_by = path.back().came_by;
+      if (path.back().next == joins[map].size()) {
+        path.pop_back();
+        if (path.empty()) continue;
+        std::size_t& of_last = lowest[path.back().map];
+        of_last = std::min(of_last, lowest[map]);
+        if (lowest[map] > found[path.back().map]) ++bridges;
+        continue;
+      }
+      const auto [other, join] = joins[map][path.back().next++];
+      if (join == came_by) continue;
+      if (found[other] != 0) {
+        lowest[map] = std::min(lowest[map], found[other]);
+      } else {
+        found[other] = lowest[other] = ++time;
+        path.push_back({other, join, 0});
+      }
+    }
+  }
+  return bridges;
+}
+
 double sum_of(const std::vector<double>& weights) {
   double sum = 0.0;
   for (const double weight : weights) sum += weight;
@@ -109,7 +154,7 @@ bool PairChoice::known_to_meet(const MapStore& store, std::size_t a, std::size_t
 }
 
 std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore& store,
-                                               const std::set<Pair>& chosen,
+                                               const std::set<Pair>& chosen, const JoinProblem& problem,
                                                const ConsistentSet& consistent_set) const {
   std::vector<std::size_t> group_of;
   const std::vector<std::size_t> sizes = group_sizes(consistent_set, group_of);
@@ -132,6 +177,9 @@ std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore
   });
   double rest = 0.0;
   for (auto one = open.rbegin(); one != open.rend(); ++one) rest += one->weight;
+  // A join of which signatures say nothing matters where no other one holds its maps together: as many of
+  // those that are hidden as of those that were found.
+  rest += kHiddenShare * static_cast<double>(count_bridges(problem, consistent_set));
   const double all = static_cast<double>(consistent_set.used.size()) + rest;
   const double share =
       std::max(0.5 * max_missed_, kFirstShare * std::pow(kShareStep, static_cast<double>(round)));
@@ -144,7 +192,8 @@ std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore
     rest -= one.weight;
     pairs.emplace_back(maps_[one.a], maps_[one.b]);
   }
-  if (pairs.empty() && share > 0.5 * max_missed_) return next(round + 1, store, chosen, consistent_set);
+  if (pairs.empty() && share > 0.5 * max_missed_)
+    return next(round + 1, store, chosen, problem, consistent_set);
   return pairs.empty() ? laid_on_each_other(store, chosen, consistent_set) : pairs;
 }
 

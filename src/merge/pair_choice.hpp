@@ -45,7 +45,7 @@ class PairChoice {
   /// none when the rest may be left. `round` counts from 0. The first map of a pair stands before the second
   /// one in `maps`. O(pairs log(pairs)).
   std::vector<Pair> next(std::size_t round, const MapStore& store, const std::set<Pair>& chosen,
-                         const ConsistentSet& consistent_set) const;
+                         const JoinProblem& problem, const ConsistentSet& consistent_set) const;
 
   /// Of the pairs whose maps the first look leaves apart, those that get a second one.
   std::vector<Pair> worth_a_second_look(const std::vector<Pair>& apart, const PairLooks& looks,

@@ -13,9 +13,9 @@ namespace {
 
 /// Logistic regression (calibration/fit_preselection.py).
 // fitted: begin
-constexpr std::array<double, 9> kWeights{1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0};
-constexpr double kBias = -10.0;
-constexpr double kFittedShare = 0.006;
+constexpr std::array<double, 9> kWeights{1.541, 9.527, 0.0, -0.4243, 2.684, -1.862, 0.3186, -0.4701, -6.307};
+constexpr double kBias = -10.69;
+constexpr double kFittedShare = 0.002372;
 constexpr double kLookBias = -1.0, kLookSignature = 0.5, kLookMatch = 0.5;
 // fitted: end
 

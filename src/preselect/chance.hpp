@@ -8,6 +8,10 @@
 
 namespace gridmerge::internal {
 
+/// Of the pairs that match() joins, the share of which signatures say nothing: they look like unrelated ones
+/// (five of 116, calibration/fit_preselection.py).
+inline constexpr double kHiddenShare = 0.04;
+
 /// Log-odds that match() surely finds how two maps lie, from their signatures alone, if such pairs were as
 /// common as among those that the model was fitted to [nats]. O(1).
 GRIDMERGE_INTERNAL_EXPORT double log_odds_of_joining(const SignatureMatch& match, const Signature& fixed,

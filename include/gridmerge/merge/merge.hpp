@@ -24,7 +24,7 @@ struct MergeOptions {
   double max_false_joins = 0.05;
   /// Of more than two dozen maps only likely pairs are matched: those left out hide, as far as is known, at
   /// most this share of all joins. 0 = all pairs are matched. In [0, 1).
-  double max_missed = 0.01;
+  double max_missed = 0.05;
   double resolution = 0.0;  ///< of the merged maps [m]; 0 = the finest among a map's inputs
   /// Called with the numbers of pairs that are matched and to be matched, never from two threads at once. Of
   /// the second look, if there is one, the numbers begin anew.
