@@ -30,6 +30,11 @@ constexpr double kMostOthers = 8.0;
 constexpr double kLaidShare = 0.12;
 constexpr std::size_t kMostLaid = 16;
 
+/// Of the share of joins that may be missed, the part for pairs that get no look, and no second look.
+constexpr double kForTheFirstLook = 0.8;
+constexpr double kForTheSecondLook = 0.1;
+constexpr double kForGroups = 0.1;
+
 double damping(std::size_t size_a, std::size_t size_b) {
   const double others = static_cast<double>(size_a) * static_cast<double>(size_b) - 1.0;
   return std::pow(1.0 - kShownByAnother, std::min(others, kMostOthers));
@@ -181,8 +186,8 @@ std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore
   // those that are hidden as of those that were found.
   rest += kHiddenShare * static_cast<double>(count_bridges(problem, consistent_set));
   const double all = static_cast<double>(consistent_set.used.size()) + rest;
-  const double share =
-      std::max(0.5 * max_missed_, kFirstShare * std::pow(kShareStep, static_cast<double>(round)));
+  const double share = std::max(kForTheFirstLook * max_missed_,
+                                kFirstShare * std::pow(kShareStep, static_cast<double>(round)));
   std::vector<std::size_t> taken(maps_.size());
   for (const Weighed& one : open) {
     if (rest <= share * all) break;
@@ -192,7 +197,7 @@ std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore
     rest -= one.weight;
     pairs.emplace_back(maps_[one.a], maps_[one.b]);
   }
-  if (pairs.empty() && share > 0.5 * max_missed_)
+  if (pairs.empty() && share > kForTheFirstLook * max_missed_)
     return next(round + 1, store, chosen, problem, consistent_set);
   return pairs.empty() ? laid_on_each_other(store, chosen, consistent_set) : pairs;
 }
@@ -252,7 +257,7 @@ std::vector<PairChoice::Pair> PairChoice::worth_a_second_look(const std::vector<
   const double all = static_cast<double>(consistent_set.used.size()) + rest;
   std::vector<Pair> pairs;
   for (const Weighed& one : open) {
-    if (rest <= 0.5 * max_missed_ * all) break;
+    if (rest <= kForTheSecondLook * max_missed_ * all) break;
     rest -= one.weight;
     pairs.emplace_back(maps_[one.a], maps_[one.b]);
   }
@@ -285,7 +290,7 @@ std::vector<bool> PairChoice::worth_meeting(const std::vector<std::unique_ptr<Pr
   const double all = rest + static_cast<double>(joins);
   std::vector<bool> worth(meetings.size());
   for (const std::size_t i : order) {
-    if (rest <= 0.5 * max_missed_ * all) break;
+    if (rest <= kForGroups * max_missed_ * all) break;
     rest -= weights[i];
     worth[i] = true;
   }

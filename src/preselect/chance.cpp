@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<double, 9> kWeights{1.541, 9.527, 0.0, -0.4243, 2.684, -1.862, 0.3186, -0.4701, -6.307};
 constexpr double kBias = -10.69;
 constexpr double kFittedShare = 0.002372;
-constexpr double kLookBias = -1.0, kLookSignature = 0.5, kLookMatch = 0.5;
+constexpr double kLookBias = -5.37, kLookSignature = 0.02, kLookMatch = 2.10;
 // fitted: end
 
 double logit(double p) {
