@@ -211,6 +211,7 @@ def merge(
     threads: int = 0,
     accept: float | None = None,
     max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
+    max_missed: float = _core.DEFAULT_MAX_MISSED,
     output_resolution: float | None = None,
     search: str = "exhaustive",
     progress: Progress | None = None,
@@ -231,6 +232,8 @@ def merge(
             0.98 if None.
         max_false_joins: so many joins of the whole merge may be expected to be false; those that are least sure are not
             made. It holds beside `accept`. "tree" does not use it.
+        max_missed: of more than 24 maps only likely pairs are matched: the others may hide this share of all joins.
+            0 = all pairs are matched. "tree" does not use it.
         output_resolution: of the merged maps [m]; None = the finest of the maps'.
         search: as of match(). With "exhaustive" the thorough look is for pairs whose maps the quick one leaves apart.
             "random-walk" needs the strategy "tree".
@@ -257,6 +260,7 @@ def merge(
         _arguments.threads(threads),
         None if accept is None else _arguments.share("accept", accept),
         _arguments.not_negative("max_false_joins", max_false_joins),
+        _arguments.share("max_missed", max_missed),
         to_output_resolution(output_resolution),
         up_the_tree,
         _arguments.choice("search", search, tuple(_core.search_methods())),
