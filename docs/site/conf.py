@@ -62,7 +62,7 @@ nitpick_ignore_regex = [
     ("cpp:.*", r"std(::.*)?|gridmerge|internal(::.*)?"),
     (
         "py:.*",
-        r"(np|os|collections\.abc|gridmerge\._grid)\..*|NDArray|ArrayLike|Axes|Figure|Callable|Iterable|Iterator|Mapping|Sequence|M",
+        r"(np|os|collections\.abc|gridmerge\._grid)\..*|NDArray|ArrayLike|Axes|Figure|Executor|Callable|Iterable|Iterator|Mapping|Sequence|M",
     ),
 ]
 

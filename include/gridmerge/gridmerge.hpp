@@ -18,6 +18,9 @@
 #include "gridmerge/io/initial_poses.hpp"
 #include "gridmerge/io/map_file.hpp"
 #endif
+#if __has_include("gridmerge/cache/match_work.hpp")
+#include "gridmerge/cache/match_work.hpp"
+#endif
 #if __has_include("gridmerge/bag/any_map.hpp")
 #include "gridmerge/bag/any_map.hpp"
 #endif

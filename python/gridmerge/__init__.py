@@ -26,6 +26,7 @@ from ._evaluate import (
     TimeSummary,
     evaluate,
 )
+from ._executor import ExecutorError
 from ._grid import MapLike, OccupancyGrid, load, save
 from ._inputs import MapWarning
 from ._known_poses import InitialPose
@@ -63,6 +64,7 @@ __all__ = [
     "Component",
     "DistancePass",
     "Evaluation",
+    "ExecutorError",
     "FileError",
     "Hypothesis",
     "InitialPose",

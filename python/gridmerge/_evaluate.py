@@ -2,10 +2,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from typing import cast
+from typing import TypeAlias, cast
 
-from . import _arguments, _core, _inputs
+from . import _arguments, _core, _executor, _inputs
 from ._arguments import Progress
 from ._grid import to_resolution
 from ._match import Reason, Verdict
@@ -172,6 +174,7 @@ def evaluate(
     accept: float = _core.DEFAULT_ACCEPT,
     resolution: float | None = None,
     literal_thresholds: bool = False,
+    executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> Evaluation:
     """Matches and merges maps whose truth is known, and holds the answers against it.
@@ -182,27 +185,128 @@ def evaluate(
         sets: table of sets of maps to merge, with true poses. At least one of the three is needed.
         strategy, threads, accept: as for merge().
         resolution, literal_thresholds: how map files are read, as for load(); the resolution is that of bare images.
+        executor: makes the matches, as for merge(): workers read the maps under the same paths. Needs "joint".
         progress: called now and then, in the calling thread, with the share of the work that is done.
 
     `gridmerge evaluate --help` says what the tables hold; Simulation.save() writes them. Other Python threads run
-    meanwhile, and Ctrl-C ends the work. Raises FileError for a table or map that cannot be read, and TypeError or
-    ValueError for other mistakes.
+    meanwhile, and Ctrl-C ends the work. Raises FileError for a table or map that cannot be read, ExecutorError for an
+    executor that fails, and TypeError or ValueError for other mistakes.
     """
     if pairs is None and negatives is None and sets is None:
         raise ValueError("pairs, negatives, sets: at least one of them is needed")
-    core = _core.evaluate(
-        None if pairs is None else _arguments.path("pairs", pairs),
-        None if negatives is None else _arguments.path("negatives", negatives),
-        None if sets is None else _arguments.path("sets", sets),
-        _arguments.threads(threads),
-        _arguments.share("accept", accept),
-        _arguments.choice("strategy", strategy, ("joint", "tree")) == "tree",
-        0.0 if resolution is None else to_resolution("resolution", resolution),
-        bool(literal_thresholds),
-        _arguments.progress(progress),
-    )
+    up_the_tree = _arguments.choice("strategy", strategy, ("joint", "tree")) == "tree"
+    if _executor.check(executor) is not None and up_the_tree:
+        raise ValueError("executor: needs the strategy 'joint': a tree's matches wait for each other")
+    paths = [
+        None if table is None else _arguments.path(name, table)
+        for name, table in (("pairs", pairs), ("negatives", negatives), ("sets", sets))
+    ]
+    threads = _arguments.threads(threads)
+    accept = _arguments.share("accept", accept)
+    cell = 0.0 if resolution is None else to_resolution("resolution", resolution)
+    told = _arguments.progress(progress)
+    truth = _core.read_truth(*paths)
+    if executor is None:
+        core = _core.evaluate(truth, threads, accept, up_the_tree, cell, bool(literal_thresholds), told)
+    else:
+        answers = _Answers(executor, threads, accept, cell, bool(literal_thresholds))
+        matches, merges = answers.of(truth, told)
+        core = _core.evaluate_answers(truth, matches, merges, accept, cell, bool(literal_thresholds))
     _inputs.warn(core.warnings)
     return _to_evaluation(core)
+
+
+_TruthMap: TypeAlias = tuple[bytes, str]
+"""A map's path, and the line of the table that names it."""
+
+_MOST_CELLS = 2**27  # of the sets that are merged at a time
+
+
+class _Answers:
+    """What the engine says of maps whose truth is known, by way of an executor."""
+
+    def __init__(
+        self, executor: Executor, threads: int, accept: float, resolution: float, literal_thresholds: bool
+    ) -> None:
+        self._executor = executor
+        self._threads = threads
+        self._accept = accept
+        self._reading = (resolution, literal_thresholds)
+        self._shared: dict[bytes, _executor.SharedMap] = {}
+
+    def of(
+        self, truth: _core.Truth, progress: Callable[[float], object] | None
+    ) -> tuple[list[bytes], list[_core.Merged]]:
+        """Of the pairs and negatives, and of the sets, each in the tables' order."""
+        pairs, sets = truth.matches, truth.sets
+        total = len(pairs) + len(sets)
+
+        def told(done: float) -> None:
+            if progress is not None:
+                progress(done / total)
+
+        matches = self._match(pairs, told)
+        merges: list[_core.Merged] = []
+        some: list[list[_TruthMap]] = []
+        cells = 0
+        for members in sets:
+            size = sum(self._share(member).cells for member in members)
+            if some and cells + size > _MOST_CELLS:
+                merges += self._merge(some)
+                told(len(pairs) + len(merges))
+                some, cells = [], 0
+            some.append(members)
+            cells += size
+        merges += self._merge(some)
+        told(total)
+        return matches, merges
+
+    def _match(
+        self, pairs: list[tuple[_TruthMap, _TruthMap]], told: Callable[[float], object]
+    ) -> list[bytes]:
+        matches = [b""] * len(pairs)
+
+        def keep(place: int) -> Callable[[bytes], object]:
+            return lambda match: matches.__setitem__(place, match)
+
+        wanted = [
+            _executor.Wanted(self._share(fixed), self._share(moving), "exhaustive", keep(i))
+            for i, (fixed, moving) in enumerate(pairs)
+        ]
+        matching = _executor.MatchingExecutor(self._executor, self._accept, _core.DEFAULT_MAX_HYPOTHESES)
+        matching.make(wanted, told)
+        return matches
+
+    def _merge(self, sets: list[list[_TruthMap]]) -> list[_core.Merged]:
+        mergers: list[tuple[_core.Merger, dict[int, _executor.SharedMap]]] = []
+        for members in sets:
+            merger = _core.Merger(
+                self._threads,
+                self._accept,
+                _core.DEFAULT_MAX_FALSE_JOINS,
+                _core.DEFAULT_MAX_MISSED,
+                0.0,
+                "exhaustive",
+            )
+            shared = {merger.add(self._load(member), None): self._share(member) for member in members}
+            mergers.append((merger, shared))
+        if mergers:
+            matching = _executor.MatchingExecutor(self._executor, *mergers[0][0].match_options())
+            _executor.match_due(matching, mergers)
+        return [merger.solve(None) for merger, _ in mergers]
+
+    def _share(self, map: _TruthMap) -> _executor.SharedMap:
+        path, _ = map
+        if path not in self._shared:
+            self._shared[path] = _executor.of_file(os.path.abspath(path), self._load(map), *self._reading)
+        return self._shared[path]
+
+    def _load(self, map: _TruthMap) -> _core.Grid:
+        path, named_at = map
+        try:
+            return _core.load_regular(path, *self._reading)
+        except _core.FileError as error:
+            raise _core.FileError(f"{error} ({named_at} names it)" if named_at else str(error)) from None
 
 
 def _to_evaluation(core: _core.Evaluation) -> Evaluation:

@@ -41,11 +41,19 @@ def to_map(name: str, value: object) -> OccupancyGrid:
 
 
 def to_maps(name: str, values: object) -> list[OccupancyGrid]:
+    return [grid for grid, _ in to_maps_and_files(name, values)]
+
+
+def to_maps_and_files(name: str, values: object) -> list[tuple[OccupancyGrid, bool]]:
+    """The maps, and of each whether it was given as a path."""
     if isinstance(values, (str, bytes, os.PathLike, OccupancyGrid, Mapping)) or not isinstance(
         values, Iterable
     ):
         raise TypeError(f"{name}: must be a sequence of maps, is {_arguments.kind_of(values)}")
-    return [to_map(f"{name}[{i}]", value) for i, value in enumerate(values)]
+    return [
+        (to_map(f"{name}[{i}]", value), isinstance(value, (str, os.PathLike)))
+        for i, value in enumerate(values)
+    ]
 
 
 def warn(messages: Iterable[str]) -> None:

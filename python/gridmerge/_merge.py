@@ -3,13 +3,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
-from . import _arguments, _core, _html
+from . import _arguments, _core, _executor, _html
 from ._arguments import Progress
 from ._grid import MapLike, OccupancyGrid
-from ._inputs import to_maps
+from ._inputs import to_maps_and_files
 from ._known_poses import InitialPoses, MapKey, NamedMaps, to_known_poses
 from ._match import MatchResult, PairPose, Reason, pair_pose, to_match_result
 from ._repr import count, listed, probability, short_pose, shortened
@@ -180,6 +181,9 @@ class MergeResult:
     def _repr_html_(self) -> str:
         return _html.merge_html(self)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _unpickle, (self.maps, self.names, self._core.state(), self._more_inputs)
+
     def save(self, directory: str | os.PathLike[str]) -> None:
         """Writes the files that `gridmerge merge` writes: merged.yaml and merged.pgm (and merged_2.yaml and so on for
         further components), transforms.json, preview.png and report.html.
@@ -214,6 +218,7 @@ def merge(
     max_missed: float = _core.DEFAULT_MAX_MISSED,
     output_resolution: float | None = None,
     search: str = "exhaustive",
+    executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> MergeResult:
     """Merges maps by what all pairs of them say together; a map that does not belong is left out.
@@ -237,13 +242,18 @@ def merge(
         output_resolution: of the merged maps [m]; None = the finest of the maps'.
         search: as of match(). With "exhaustive" the thorough look is for pairs whose maps the quick one leaves apart.
             "random-walk" needs the strategy "tree".
+        executor: makes the matches: any concurrent.futures.Executor, of processes, threads, Dask or MPI. The result is
+            the same, bit by bit. Maps that are given as paths are read by the workers, under the same paths; others are
+            sent to them. Each task takes one thread, and is tried again when its worker dies. "tree" takes none.
         progress: called now and then, in the calling thread, with the share of the pairs that are matched.
 
     The frame of a component is that of its first member, unless a member is fixed. Other Python threads run meanwhile,
-    and Ctrl-C ends the work. Raises FileError for a file that is no map, and TypeError or ValueError, naming the
+    and Ctrl-C ends the work, also what an executor has not begun. Raises FileError for a file that is no map, or that
+    changes before a worker reads it; ExecutorError for an executor that fails; and TypeError or ValueError, naming the
     argument, for other mistakes and for merged maps of more than 2^28 cells.
     """
-    grids = to_maps("maps", maps)
+    given = to_maps_and_files("maps", maps)
+    grids = [grid for grid, _ in given]
     called = to_names(names, grids)
     up_the_tree = _arguments.choice("strategy", strategy, ("joint", "tree")) == "tree"
     if up_the_tree and (init is not None or fix is not None):
@@ -252,21 +262,52 @@ def merge(
         raise ValueError(
             "search: 'random-walk' needs the strategy 'tree': it has one pose per pair, no probability"
         )
+    if _executor.check(executor) is not None and up_the_tree:
+        raise ValueError("executor: needs the strategy 'joint': a tree's matches wait for each other")
     # The program may go to another directory before it saves.
     more_inputs = (os.fsencode(os.path.abspath(init)),) if isinstance(init, (str, os.PathLike)) else ()
-    merged = _core.merge(
-        [grid._core for grid in grids],
-        to_known_poses(NamedMaps(called, grids), init, fix),
-        _arguments.threads(threads),
-        None if accept is None else _arguments.share("accept", accept),
-        _arguments.not_negative("max_false_joins", max_false_joins),
-        _arguments.share("max_missed", max_missed),
-        to_output_resolution(output_resolution),
-        up_the_tree,
-        _arguments.choice("search", search, tuple(_core.search_methods())),
-        _arguments.progress(progress),
-    )
+    known = to_known_poses(NamedMaps(called, grids), init, fix)
+    checked_accept = None if accept is None else _arguments.share("accept", accept)
+    max_false_joins = _arguments.not_negative("max_false_joins", max_false_joins)
+    max_missed = _arguments.share("max_missed", max_missed)
+    resolution = to_output_resolution(output_resolution)
+    search = _arguments.choice("search", search, tuple(_core.search_methods()))
+    told = _arguments.progress(progress)
+    if executor is None:
+        merged = _core.merge(
+            [grid._core for grid in grids],
+            known,
+            _arguments.threads(threads),
+            checked_accept,
+            max_false_joins,
+            max_missed,
+            resolution,
+            up_the_tree,
+            search,
+            told,
+        )
+    else:
+        merger = _core.Merger(
+            _arguments.threads(threads),
+            _core.DEFAULT_ACCEPT if checked_accept is None else checked_accept,
+            max_false_joins,
+            max_missed,
+            resolution,
+            search,
+        )
+        ids = [merger.add(grid._core, pose) for grid, pose in zip(grids, known, strict=True)]
+        shared = {i: _executor.of_map(grid, is_file) for i, (grid, is_file) in zip(ids, given, strict=True)}
+        matching = _executor.MatchingExecutor(executor, *merger.match_options())
+        _executor.match_due(matching, [(merger, shared)], told)
+        merged = merger.solve(None)
     return to_merge_result(merged, grids, called, more_inputs)
+
+
+def _unpickle(
+    grids: Sequence[OccupancyGrid], names: Sequence[str], state: bytes, more_inputs: tuple[bytes, ...]
+) -> MergeResult:
+    merged = _core.Merged.from_state([grid._core for grid in grids], state)
+    return to_merge_result(merged, grids, names, more_inputs)
 
 
 def to_names(names: Sequence[str] | None, grids: Sequence[OccupancyGrid]) -> list[str]:

@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import os
 import threading
 from collections.abc import Iterator
+from concurrent.futures import Executor
 from contextlib import contextmanager
+from typing import Any
 
-from . import _arguments, _core
+import numpy as np
+
+from . import _arguments, _core, _executor
 from ._arguments import Progress
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map
-from ._known_poses import InitialPose, to_core
+from ._known_poses import CoreKnown, InitialPose, to_core
 from ._merge import MergeResult, to_merge_result, to_output_resolution
 from ._repr import count
 from ._transform import PoseLike, Transform
@@ -21,7 +26,8 @@ class Merger:
     """merge() for maps that come one after the other, or grow: pairs that have not changed are not matched again.
 
     The result is that of merge() with all the maps that are in it, in the order in which they were added. Arguments
-    are those of merge(). RuntimeError for who uses it while another call of its methods is at work.
+    are those of merge(). RuntimeError for who uses it while another call of its methods is at work. It can be pickled,
+    with its maps and matches: whoever loads it goes on where it was.
     """
 
     def __init__(
@@ -33,15 +39,24 @@ class Merger:
         max_missed: float = _core.DEFAULT_MAX_MISSED,
         output_resolution: float | None = None,
     ) -> None:
-        self._core = _core.Merger(
-            _arguments.threads(threads),
-            _arguments.share("accept", accept),
-            _arguments.not_negative("max_false_joins", max_false_joins),
-            _arguments.share("max_missed", max_missed),
-            to_output_resolution(output_resolution),
+        self._set_up(
+            (
+                _arguments.threads(threads),
+                _arguments.share("accept", accept),
+                _arguments.not_negative("max_false_joins", max_false_joins),
+                _arguments.share("max_missed", max_missed),
+                to_output_resolution(output_resolution),
+            )
         )
+
+    def _set_up(self, options: tuple[int, float, float, float, float]) -> None:
+        self._options = options
+        self._core = _core.Merger(*options, "exhaustive")
         self._maps: dict[int, tuple[OccupancyGrid, str]] = {}
-        self._posed: set[int] = set()  # of which a pose is known
+        self._poses: dict[int, CoreKnown] = {}  # that are known, of the engine's maps
+        self._posed: set[int] = set()  # of which the user has given one
+        self._files: set[int] = set()  # that were given as paths
+        self._next = 0  # no map has had this id or a higher one
         self._holder: int | None = None  # fixed without a pose: holds its own frame
         self._use = threading.Lock()
         self._settled = True  # the engine has the same maps
@@ -73,7 +88,11 @@ class Merger:
                 raise ValueError(
                     f"pose: has no meaning beside map {self._holder}, which is fixed without one"
                 )
-            map_id = self._core.add(grid._core, to_core(_IDENTITY, "pose", True) if holds else known)
+            told = to_core(_IDENTITY, "pose", True) if holds else known
+            map_id = self._core.add(grid._core, told)
+            self._next = map_id + 1
+            if told is not None:
+                self._poses[map_id] = told
             if holds:
                 self._holder = map_id
             if known is not None:
@@ -81,6 +100,7 @@ class Merger:
             taken = {called for _, called in self._maps.values()}
             frame = grid.frame_id if grid.frame_id not in taken else None
             self._maps[map_id] = (grid, name or grid.source or frame or f"map {map_id}")
+            self._note_file(map_id, map)
         return map_id
 
     def update(self, map_id: int, map: MapLike) -> None:
@@ -91,6 +111,7 @@ class Merger:
             map_id, name = self._known(map_id)
             self._core.update(map_id, grid._core)
             self._maps[map_id] = (grid, name)
+            self._note_file(map_id, map)
 
     def grow(self, map_id: int, map: MapLike) -> None:
         """As update(), for a map that is little different: what its pairs said stays until search_again().
@@ -103,6 +124,7 @@ class Merger:
             map_id, name = self._known(map_id)
             self._core.grow(map_id, grid._core)
             self._maps[map_id] = (grid, name)
+            self._note_file(map_id, map)
 
     def search_again(self, map_id: int) -> None:
         """The map's pairs are matched again by the next solve(). KeyError for an unknown id."""
@@ -126,13 +148,63 @@ class Merger:
         in this order."""
         return tuple(self._maps)
 
-    def solve(self, *, progress: Progress | None = None) -> MergeResult:
-        """Matches the pairs that are new or have changed, and merges: seconds to minutes for many maps."""
+    def solve(self, *, executor: Executor | None = None, progress: Progress | None = None) -> MergeResult:
+        """Matches the pairs that are new or have changed, and merges: seconds to minutes for many maps.
+
+        An executor makes the matches, as for merge(). Those that it has made when it fails are kept, and the next
+        call goes on with them.
+        """
+        _executor.check(executor)
         with self._alone():
-            merged = self._core.solve(_arguments.progress(progress))
+            told = _arguments.progress(progress)
+            if executor is not None:
+                shared = {
+                    map_id: _executor.of_map(grid, map_id in self._files)
+                    for map_id, (grid, _) in self._maps.items()
+                }
+                matching = _executor.MatchingExecutor(executor, *self._core.match_options())
+                _executor.match_due(matching, [(self._core, shared)], told)
+                told = None
+            merged = self._core.solve(told)
             grids = [grid for grid, _ in self._maps.values()]
             names = [name for _, name in self._maps.values()]
         return to_merge_result(merged, grids, names, ())
+
+    def __getstate__(self) -> dict[str, Any]:
+        with self._alone():
+            return {
+                "options": self._options,
+                "next": self._next,
+                "maps": dict(self._maps),
+                "poses": {map_id: self._poses[map_id] for map_id in self._maps if map_id in self._poses},
+                "posed": set(self._posed),
+                "holder": self._holder,
+                "files": self._files & self._maps.keys(),
+                "matches": self._core.matches(),
+            }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._set_up(state["options"])
+        maps: dict[int, tuple[OccupancyGrid, str]] = state["maps"]
+        gone = OccupancyGrid(np.full((1, 1), -1, np.int8), 1.0)  # holds the ids of maps that were removed
+        for map_id in range(state["next"]):
+            grid = maps[map_id][0] if map_id in maps else gone
+            self._core.add(grid._core, state["poses"].get(map_id))
+            if map_id not in maps:
+                self._core.remove(map_id)
+        for match in state["matches"]:
+            self._core.hand_in(*match)
+        self._next = state["next"]
+        self._maps = maps
+        self._poses = state["poses"]
+        self._posed = state["posed"]
+        self._holder = state["holder"]
+        self._files = state["files"]
+
+    def _note_file(self, map_id: int, map: MapLike) -> None:
+        self._files.discard(map_id)
+        if isinstance(map, (str, os.PathLike)):
+            self._files.add(map_id)
 
     @contextmanager
     def _alone(self) -> Iterator[None]:

@@ -27,9 +27,9 @@ def probability(value: float | None) -> str:
     return f"probability={value:.3f}"
 
 
-def count(number: int, what: str) -> str:
-    """1 map, 2 maps."""
-    return f"{number} {what}" if number == 1 else f"{number} {what}s"
+def count(number: int, what: str, several: str | None = None) -> str:
+    """1 map, 2 maps; 1 match, 2 matches."""
+    return f"{number} {what}" if number == 1 else f"{number} {several or what + 's'}"
 
 
 def listed(names: Sequence[str], most: int = 3) -> str:

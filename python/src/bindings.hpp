@@ -54,6 +54,10 @@ inline std::string to_string(const nb::bytes& bytes) {
   return {bytes.c_str(), bytes.size()};
 }
 
+inline nb::bytes to_nb_bytes(const std::string& bytes) {
+  return nb::bytes(bytes.data(), bytes.size());
+}
+
 /// How pairs are matched, as Python says it: `accept` is a probability, or the acceptance index of the random
 /// walk, and the usual one if there is none. `search` is one of search_methods().
 void set_search(MatchOptions& options, const std::string& search, std::optional<double> accept);
@@ -70,6 +74,7 @@ void bind_merger(nb::module_& module);
 void bind_random_walk(nb::module_& module);
 void bind_simulate(nb::module_& module);
 void bind_evaluate(nb::module_& module);
+void bind_tasks(nb::module_& module);
 void bind_team(nb::module_& module);
 
 }  // namespace gridmerge::python

@@ -6,6 +6,8 @@
 #include "bindings.hpp"
 #include "evaluate/count.hpp"
 #include "evaluate/tables.hpp"
+#include "gridmerge/match/match_bytes.hpp"
+#include "merge.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
@@ -43,19 +45,40 @@ EvaluateOptions make_options(int threads, double accept, bool up_the_tree) {
   return options;
 }
 
-Evaluated evaluate_files(const std::optional<nb::bytes>& pairs, const std::optional<nb::bytes>& negatives,
-                         const std::optional<nb::bytes>& sets, int threads, double accept, bool up_the_tree,
-                         double resolution, bool literal_thresholds, const nb::object& progress) {
+Truth read_truth(const std::optional<nb::bytes>& pairs, const std::optional<nb::bytes>& negatives,
+                 const std::optional<nb::bytes>& sets) {
   const std::string pairs_path = path_or_empty(pairs), negatives_path = path_or_empty(negatives),
                     sets_path = path_or_empty(sets);
-  return compute_in_worker(progress, [&](const Report& report) {
+  return compute_in_worker(nb::none(), [&](const Report& /*report*/) {
     Truth truth;
     if (pairs) truth.pairs = read_pairs(pairs_path);
     if (negatives) truth.negatives = read_negatives(negatives_path);
     if (sets) truth.sets = read_sets(sets_path);
+    return truth;
+  });
+}
+
+/// What was matched and merged before.
+struct Answers {
+  std::vector<MatchResult> matches;
+  std::vector<std::shared_ptr<const MergeResult>> merges;
+};
+
+/// evaluate() asks for each once, in the order of the tables.
+void take_answers(const Answers& answers, EvaluateOptions& options) {
+  options.matcher = [&answers, next = std::size_t{0}](const OccupancyGrid&, const OccupancyGrid&) mutable {
+    return answers.matches.at(next++);
+  };
+  options.merger = [&answers, next = std::size_t{0}](const std::vector<OccupancyGrid>&) mutable {
+    return *answers.merges.at(next++);
+  };
+}
+
+Evaluated evaluate_truth(const Truth& truth, EvaluateOptions options, double accept, double resolution,
+                         bool literal_thresholds, const nb::object& progress) {
+  return compute_in_worker(progress, [&](const Report& report) {
     Evaluated evaluated;
     evaluated.accept = accept;
-    EvaluateOptions options = make_options(threads, accept, up_the_tree);
     options.progress = [&](std::size_t done, std::size_t total) {
       report(static_cast<double>(done) / static_cast<double>(total));
     };
@@ -65,6 +88,51 @@ Evaluated evaluate_files(const std::optional<nb::bytes>& pairs, const std::optio
     evaluated.evaluation = evaluate(truth, options);
     return evaluated;
   });
+}
+
+Evaluated evaluate_here(const Truth& truth, int threads, double accept, bool up_the_tree, double resolution,
+                        bool literal_thresholds, const nb::object& progress) {
+  return evaluate_truth(truth, make_options(threads, accept, up_the_tree), accept, resolution,
+                        literal_thresholds, progress);
+}
+
+Evaluated evaluate_answers(const Truth& truth, const std::vector<nb::bytes>& matches,
+                           const std::vector<Merged>& merges, double accept, double resolution,
+                           bool literal_thresholds) {
+  Answers answers;
+  for (const nb::bytes& match : matches) answers.matches.push_back(match_from_bytes(to_string(match)));
+  for (const Merged& merged : merges) answers.merges.push_back(merged.result);
+  EvaluateOptions options;
+  take_answers(answers, options);
+  return evaluate_truth(truth, std::move(options), accept, resolution, literal_thresholds, nb::none());
+}
+
+/// The path of a map, and which line names it.
+std::pair<nb::bytes, nb::str> told(const TruthMap& map) {
+  return {to_nb_bytes(map.path.string()), to_str(map.named_at)};
+}
+
+void bind_truth(nb::module_& module) {
+  nb::class_<Truth>(module, "Truth")
+      .def_prop_ro("matches",
+                   [](const Truth& truth) {
+                     std::vector<std::pair<std::pair<nb::bytes, nb::str>, std::pair<nb::bytes, nb::str>>> all;
+                     for (const TruePair& pair : truth.pairs)
+                       all.emplace_back(told(pair.fixed), told(pair.moving));
+                     for (const NegativePair& pair : truth.negatives)
+                       all.emplace_back(told(pair.fixed), told(pair.moving));
+                     return all;
+                   })
+      .def_prop_ro("sets", [](const Truth& truth) {
+        std::vector<std::vector<std::pair<nb::bytes, nb::str>>> sets;
+        for (const TrueSet& set : truth.sets) {
+          sets.emplace_back();
+          for (const TrueMember& member : set.members) sets.back().push_back(told(member.map));
+        }
+        return sets;
+      });
+  module.def("read_truth", &read_truth, nb::arg("pairs").none(), nb::arg("negatives").none(),
+             nb::arg("sets").none());
 }
 
 void bind_counts(nb::module_& module) {
@@ -131,9 +199,12 @@ void bind_evaluate(nb::module_& module) {
                    })
       .def("to_json", [](const Evaluated& it) { return to_str(evaluation_json(it.evaluation)); })
       .def("summary", [](const Evaluated& it) { return to_str(summary_table(it.evaluation, it.accept)); });
-  module.def("evaluate", &evaluate_files, nb::arg("pairs").none(), nb::arg("negatives").none(),
-             nb::arg("sets").none(), nb::arg("threads"), nb::arg("accept"), nb::arg("up_the_tree"),
-             nb::arg("resolution"), nb::arg("literal_thresholds"), nb::arg("progress").none());
+  bind_truth(module);
+  module.def("evaluate", &evaluate_here, nb::arg("truth"), nb::arg("threads"), nb::arg("accept"),
+             nb::arg("up_the_tree"), nb::arg("resolution"), nb::arg("literal_thresholds"),
+             nb::arg("progress").none());
+  module.def("evaluate_answers", &evaluate_answers, nb::arg("truth"), nb::arg("matches"), nb::arg("merges"),
+             nb::arg("accept"), nb::arg("resolution"), nb::arg("literal_thresholds"));
 }
 
 }  // namespace gridmerge::python

@@ -28,6 +28,7 @@ void set_search(MatchOptions& options, const std::string& search, std::optional<
 
 void bind_match(nb::module_& module) {
   module.attr("DEFAULT_ACCEPT") = MatchOptions{}.accept_probability;
+  module.attr("DEFAULT_MAX_HYPOTHESES") = MatchOptions{}.max_hypotheses;
   module.attr("DEFAULT_MAX_FALSE_JOINS") = MergeOptions{}.max_false_joins;
   module.attr("DEFAULT_MAX_MISSED") = MergeOptions{}.max_missed;
   nb::class_<Hypothesis>(module, "Hypothesis")

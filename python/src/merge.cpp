@@ -7,6 +7,7 @@
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/preview.hpp"
+#include "merge_bytes.hpp"
 #include "report/wording.hpp"
 #include "worker.hpp"
 
@@ -147,6 +148,22 @@ void bind_results(nb::module_& module) {
                                              explain_left_out(*merged.result, one));
                      return left_out;
                    })
+      .def("state",
+           [](const Merged& merged) {
+             const std::string bytes = [&] {
+               const OthersRun meanwhile;
+               return to_bytes(*merged.result);
+             }();
+             return to_nb_bytes(bytes);
+           })
+      .def_static(
+          "from_state",
+          [](std::vector<Map> maps, const nb::bytes& state) {
+            const std::string bytes = to_string(state);
+            const OthersRun meanwhile;
+            return Merged{std::move(maps), std::make_shared<const MergeResult>(merge_from_bytes(bytes))};
+          },
+          nb::arg("maps"), nb::arg("state"))
       .def("preview", &preview, nb::arg("names"))
       .def("save", &save, nb::arg("directory"), nb::arg("names"), nb::arg("more_inputs"));
 }

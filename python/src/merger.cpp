@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "gridmerge/match/match_bytes.hpp"
 #include "merge.hpp"
 #include "worker.hpp"
 
@@ -15,8 +16,10 @@ namespace {
 /// without the interpreter's lock.
 class MapMerger {
  public:
-  MapMerger(int threads, double accept, double max_false_joins, double max_missed, double output_resolution)
-      : merger_(make_options(threads, accept, max_false_joins, max_missed, output_resolution, share_)) {}
+  MapMerger(int threads, double accept, double max_false_joins, double max_missed, double output_resolution,
+            const std::string& search)
+      : merger_(
+            make_options(threads, accept, max_false_joins, max_missed, output_resolution, search, share_)) {}
 
   std::size_t add(const Map& map, const std::optional<Known>& known) {
     std::optional<std::size_t> id;
@@ -52,6 +55,38 @@ class MapMerger {
     }
   }
 
+  /// Fixed, moving, search.
+  using Due = std::tuple<std::size_t, std::size_t, std::string>;
+
+  /// The matches that solve() would make next.
+  std::vector<Due> due() {
+    const std::vector<DueMatch> due =
+        compute_in_worker(nb::none(), [&](const Report& /*report*/) { return merger_.due(); });
+    std::vector<Due> told;
+    told.reserve(due.size());
+    for (const DueMatch& one : due) told.emplace_back(one.fixed, one.moving, name_of(one.search));
+    return told;
+  }
+
+  void hand_in(std::size_t fixed, std::size_t moving, const std::string& search, const nb::bytes& match) {
+    merger_.hand_in({fixed, moving, search_method(search).value()}, match_from_bytes(to_string(match)));
+  }
+
+  /// What hand_in() takes.
+  std::vector<std::tuple<std::size_t, std::size_t, std::string, nb::bytes>> matches() const {
+    std::vector<std::tuple<std::size_t, std::size_t, std::string, nb::bytes>> told;
+    for (const auto& [made, match] : merger_.matches())
+      told.emplace_back(made.fixed, made.moving, name_of(made.search), to_nb_bytes(to_bytes(match)));
+    return told;
+  }
+
+  /// Of the matches that are due: the probability from which on maps are joined, and how many hypotheses are
+  /// kept.
+  std::pair<double, std::size_t> match_options() const {
+    const MatchOptions options = merger_.match_options(SearchMethod::exhaustive);
+    return {options.accept_probability, options.max_hypotheses};
+  }
+
   Merged solve(const nb::object& progress) {
     MergeResult result = compute_in_worker(progress, [&](const Report& report) {
       *share_ = report;
@@ -79,10 +114,11 @@ class MapMerger {
   }
 
   static MergeOptions make_options(int threads, double accept, double max_false_joins, double max_missed,
-                                   double output_resolution, std::shared_ptr<Report> share) {
+                                   double output_resolution, const std::string& search,
+                                   std::shared_ptr<Report> share) {
     MergeOptions options;
     options.match.threads = threads;
-    options.match.accept_probability = accept;
+    set_search(options.match, search, accept);
     options.max_false_joins = max_false_joins;
     options.max_missed = max_missed;
     options.resolution = output_resolution;
@@ -101,14 +137,20 @@ class MapMerger {
 
 void bind_merger(nb::module_& module) {
   nb::class_<MapMerger>(module, "Merger")
-      .def(nb::init<int, double, double, double, double>(), nb::arg("threads"), nb::arg("accept"),
-           nb::arg("max_false_joins"), nb::arg("max_missed"), nb::arg("output_resolution"))
+      .def(nb::init<int, double, double, double, double, const std::string&>(), nb::arg("threads"),
+           nb::arg("accept"), nb::arg("max_false_joins"), nb::arg("max_missed"), nb::arg("output_resolution"),
+           nb::arg("search"))
       .def("add", &MapMerger::add, nb::arg("map"), nb::arg("known").none())
       .def("update", &MapMerger::update, nb::arg("id"), nb::arg("map"))
       .def("grow", &MapMerger::grow, nb::arg("id"), nb::arg("map"))
       .def("search_again", &MapMerger::search_again, nb::arg("id"))
       .def("remove", &MapMerger::remove, nb::arg("id"))
       .def("keep", &MapMerger::keep, nb::arg("wanted"))
+      .def("due", &MapMerger::due)
+      .def("hand_in", &MapMerger::hand_in, nb::arg("fixed"), nb::arg("moving"), nb::arg("search"),
+           nb::arg("match"))
+      .def("matches", &MapMerger::matches)
+      .def("match_options", &MapMerger::match_options)
       .def("solve", &MapMerger::solve, nb::arg("progress").none());
 }
 

@@ -18,5 +18,6 @@ NB_MODULE(_core, module) {
   bind_random_walk(module);
   bind_simulate(module);
   bind_evaluate(module);
+  bind_tasks(module);
   bind_team(module);
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -120,6 +121,15 @@ def test_maps_of_bags_are_maps_everywhere(robots: list[str], tmp_path: Path, mak
     merged.save(tmp_path / "merged")
     with pytest.raises(ValueError, match="is none of the maps"):
         gridmerge.merge(names, init={f"{path}#/tb4/map": (0.0, 0.0, 0.0)})
+
+
+def test_workers_read_bags(robots: list[str], bags: Path, tmp_path: Path, maker: ModuleType) -> None:
+    path = tmp_path / "team.mcap"
+    write_maps(maker, path, {f"/tb{i}/map": gridmerge.load(one) for i, one in enumerate(robots, 1)})
+    maps = [f"{path}#/tb{i}/map" for i in (1, 2, 3)]
+    with ThreadPoolExecutor(2) as executor:
+        told = gridmerge.merge([*maps, f"{bags / 'ros1.bag'}#/tb1/map"], executor=executor)
+    assert told.components[0].members == gridmerge.merge(maps).components[0].members
 
 
 def write_maps(maker: ModuleType, path: Path, maps: dict[str, gridmerge.OccupancyGrid]) -> None:

@@ -5,16 +5,15 @@
 #include <string_view>
 
 #include "gridmerge/match/match_result.hpp"
-#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
 /// The content of a file that holds a match: a line that names the format, one with the key, the match, and
 /// the SHA-256 of all these bytes.
-GRIDMERGE_INTERNAL_EXPORT std::string format_match_file(const MatchResult& match, std::string_view key);
+std::string format_match_file(const MatchResult& match, std::string_view key);
 
 /// What format_match_file() was given. Throws std::invalid_argument, with a message that begins with a verb,
 /// for anything else.
-GRIDMERGE_INTERNAL_EXPORT MatchResult parse_match_file(std::string_view bytes, std::string_view key);
+MatchResult parse_match_file(std::string_view bytes, std::string_view key);
 
 }  // namespace gridmerge::internal

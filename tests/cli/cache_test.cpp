@@ -109,12 +109,12 @@ TEST_F(CacheTest, ShardsOfOtherMapsOrOptionsAreNotUsed) {
 TEST_F(CacheTest, AKilledRunGoesOn) {
   RunOptions kill;
   kill.faulty = true;
-  for (const int call : {20, 45, 70}) {
-    kill.environment = {fmt::format("GRIDMERGE_FAULT=kill {}", call)};
+  kill.environment = {"GRIDMERGE_FAULT=kill 17"};  // the 17th call that changes what is on the disk
+  for (int round = 0; round < 3; ++round) {
     EXPECT_EQ(run(with_cache({"-o", directory.file("killed")}), kill).signal, SIGKILL);
   }
-  const std::size_t kept_by_then = kept().size();
-  EXPECT_GT(kept_by_then, 0u);
+  EXPECT_GT(kept().size(), 2u);
+  EXPECT_LT(kept().size(), kMatches);
   const Outcome outcome = run(with_cache({"-o", directory.file("o")}));
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
   EXPECT_EQ(outcome.err.find("checksum"), std::string::npos) << outcome.err;
@@ -209,7 +209,7 @@ TEST_F(CacheTest, AnEvaluationThroughItIsThatWithoutIt) {
   EXPECT_EQ(kept().size(), 3u);  // of the negative, and of the set the quick look and the thorough one
   EXPECT_EQ(evaluate({"--cache", directory.file("matches")}), first) << "with the times";
   const std::regex times(R"re("(seconds|median|p90|max)": *[0-9.eE+-]+)re");
-      EXPECT_EQ(std::regex_replace(evaluate({}), times, ""), std::regex_replace(first, times, ""));
+  EXPECT_EQ(std::regex_replace(evaluate({}), times, ""), std::regex_replace(first, times, ""));
 }
 
 }  // namespace

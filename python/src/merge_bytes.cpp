@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "merge_bytes.hpp"
+
+#include <bit>
+#include <cstring>
+#include <stdexcept>
+
+#include "gridmerge/match/match_bytes.hpp"
+#include "match/pair_pose_bytes.hpp"
+
+namespace gridmerge::python {
+
+using namespace internal;
+
+namespace {
+
+// Of each thing, no more than what it takes at least: for ByteReader::count().
+constexpr std::size_t kNumber = 8;
+
+void write(const std::optional<double>& value, ByteWriter& writer) {
+  writer.byte(value ? 1 : 0);
+  writer.number(value.value_or(0.0));
+}
+
+std::optional<double> read_optional(ByteReader& reader) {
+  const bool is_there = reader.byte() != 0;
+  const double value = reader.number();
+  return is_there ? std::optional(value) : std::nullopt;
+}
+
+void write(const OccupancyGrid& grid, ByteWriter& writer) {
+  writer.whole(static_cast<std::uint64_t>(grid.width));
+  writer.whole(static_cast<std::uint64_t>(grid.height));
+  writer.number(grid.resolution);
+  writer.pose(grid.origin);
+  writer.text({reinterpret_cast<const char*>(grid.cells.data()), grid.cells.size()});
+  writer.whole(grid.probability.size());
+  for (const float value : grid.probability) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    for (int shift = 0; shift < 32; shift += 8) writer.byte(static_cast<std::uint8_t>(bits >> shift & 0xff));
+  }
+}
+
+OccupancyGrid read_grid(ByteReader& reader) {
+  OccupancyGrid grid;
+  grid.width = static_cast<int>(reader.whole());
+  grid.height = static_cast<int>(reader.whole());
+  grid.resolution = reader.number();
+  grid.origin = reader.pose();
+  for (const char cell : reader.text()) grid.cells.push_back(static_cast<Cell>(cell));
+  grid.probability.resize(reader.count(4));
+  for (float& value : grid.probability) {
+    std::uint32_t bits = 0;
+    for (int shift = 0; shift < 32; shift += 8) bits |= std::uint32_t{reader.byte()} << shift;
+    value = std::bit_cast<float>(bits);
+  }
+  validate(grid);
+  return grid;
+}
+
+void write(const Component& component, ByteWriter& writer) {
+  writer.whole(component.members.size());
+  for (const Member& member : component.members) {
+    writer.whole(member.map);
+    writer.pose(member.T_component_map);
+    write(member.probability, writer);
+    write(member.sd ? std::optional(member.sd->position) : std::nullopt, writer);
+    write(member.sd ? std::optional(member.sd->theta) : std::nullopt, writer);
+  }
+  write(component.fused.grid, writer);
+  writer.whole(component.fused.agreeing);
+  writer.whole(component.fused.conflicting);
+  writer.byte(component.fused.omega ? 1 : 0);
+  writer.whole(static_cast<std::uint64_t>(component.fused.omega ? component.fused.omega->equal : 0));
+  writer.whole(static_cast<std::uint64_t>(component.fused.omega ? component.fused.omega->cells : 0));
+  writer.byte(component.in_world_frame ? 1 : 0);
+}
+
+Component read_component(ByteReader& reader) {
+  Component component;
+  component.members.resize(reader.count(kNumber));
+  for (Member& member : component.members) {
+    member.map = reader.whole();
+    member.T_component_map = reader.pose();
+    member.probability = read_optional(reader);
+    const std::optional<double> position = read_optional(reader), theta = read_optional(reader);
+    if (position && theta) member.sd = PoseDeviation{*position, *theta};
+  }
+  component.fused.grid = read_grid(reader);
+  component.fused.agreeing = reader.whole();
+  component.fused.conflicting = reader.whole();
+  const bool has_omega = reader.byte() != 0;
+  const auto equal = static_cast<std::int64_t>(reader.whole()),
+             cells = static_cast<std::int64_t>(reader.whole());
+  if (has_omega) component.fused.omega = EqualCells{equal, cells};
+  component.in_world_frame = reader.byte() != 0;
+  return component;
+}
+
+void write(const Join& join, ByteWriter& writer) {
+  write_pair_pose(join, writer);
+  writer.whole(join.fixed);
+  writer.whole(join.moving);
+  writer.byte(static_cast<std::uint8_t>(join.outcome));
+  writer.text(gridmerge::to_bytes(join.match));
+}
+
+Join read_join(ByteReader& reader) {
+  Join join;
+  read_pair_pose(reader, join);
+  join.fixed = reader.whole();
+  join.moving = reader.whole();
+  join.outcome = static_cast<JoinOutcome>(reader.byte());
+  join.match = match_from_bytes(reader.text());
+  return join;
+}
+
+}  // namespace
+
+std::string to_bytes(const MergeResult& result) {
+  ByteWriter writer;
+  writer.whole(result.components.size());
+  for (const Component& component : result.components) write(component, writer);
+  writer.whole(result.joins.size());
+  for (const Join& join : result.joins) write(join, writer);
+  writer.whole(result.left_out.size());
+  for (const LeftOut& one : result.left_out) {
+    writer.whole(one.map);
+    writer.byte(static_cast<std::uint8_t>(one.reason));
+  }
+  writer.whole(result.open_ways.size());
+  for (const OpenWay& way : result.open_ways) {
+    writer.whole(way.fixed);
+    writer.whole(way.moving);
+    writer.pose(way.T_fixed_moving);
+    writer.number(way.probability);
+  }
+  write(result.expected_false_joins, writer);
+  return writer.take();
+}
+
+MergeResult merge_from_bytes(std::string_view bytes) {
+  ByteReader reader(bytes);
+  MergeResult result;
+  const std::size_t components = reader.count(kNumber);
+  for (std::size_t i = 0; i < components; ++i) result.components.push_back(read_component(reader));
+  const std::size_t joins = reader.count(kNumber);
+  for (std::size_t i = 0; i < joins; ++i) result.joins.push_back(read_join(reader));
+  result.left_out.resize(reader.count(kNumber));
+  for (LeftOut& one : result.left_out) {
+    one.map = reader.whole();
+    one.reason = static_cast<Reason>(reader.byte());
+  }
+  result.open_ways.resize(reader.count(kNumber));
+  for (OpenWay& way : result.open_ways) {
+    way.fixed = reader.whole();
+    way.moving = reader.whole();
+    way.T_fixed_moving = reader.pose();
+    way.probability = reader.number();
+  }
+  result.expected_false_joins = read_optional(reader);
+  if (!reader.is_at_end()) throw std::invalid_argument("holds more than a merge");
+  return result;
+}
+
+}  // namespace gridmerge::python

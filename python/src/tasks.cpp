@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Matches that are made apart from the merge that needs them, in this process or another one.
+#include "bindings.hpp"
+#include "grid/parallel.hpp"
+#include "gridmerge/bag/any_map.hpp"
+#include "gridmerge/match/match_bytes.hpp"
+#include "gridmerge/match/match_key.hpp"
+#include "worker.hpp"
+
+namespace gridmerge::python {
+
+using namespace internal;
+
+namespace {
+
+/// A map with what its matches have in common. Never changes.
+struct Prepared {
+  std::shared_ptr<const PreparedMap> map;
+};
+
+Prepared prepare(const Map& map) {
+  const OthersRun meanwhile;
+  return {std::make_shared<const PreparedMap>(*map.grid)};
+}
+
+nb::bytes match_prepared(const Prepared& fixed, const Prepared& moving, const std::string& search,
+                         double accept, std::size_t max_hypotheses) {
+  MatchOptions options;
+  options.max_hypotheses = max_hypotheses;
+  set_search(options, search, accept);
+  const std::string bytes = compute_in_worker(nb::none(), [&](const Report& /*report*/) {
+    MatchResult result;
+    with_threads(1, [&] { result = match(*fixed.map, *moving.map, options); });
+    return to_bytes(result);
+  });
+  return to_nb_bytes(bytes);
+}
+
+Map load_regular(const nb::bytes& path, double resolution, bool literal_thresholds) {
+  const std::filesystem::path file = to_string(path);
+  LoadOptions options;
+  options.resolution = resolution;
+  options.literal_thresholds = literal_thresholds;
+  options.regular_files_only = true;
+  const OthersRun meanwhile;
+  return to_map(load_any_map(file, options));
+}
+
+}  // namespace
+
+void bind_tasks(nb::module_& module) {
+  [[maybe_unused]] const nb::class_<Prepared> prepared(module, "Prepared");
+  module.def("engine_id", &engine_id);
+  module.def(
+      "content_id",
+      [](const Map& map) {
+        const OthersRun meanwhile;
+        return content_id(*map.grid);
+      },
+      nb::arg("map"));
+  module.def("prepare", &prepare, nb::arg("map"));
+  module.def("match_prepared", &match_prepared, nb::arg("fixed"), nb::arg("moving"), nb::arg("search"),
+             nb::arg("accept"), nb::arg("max_hypotheses"));
+  module.def("load_regular", &load_regular, nb::arg("path"), nb::arg("resolution"),
+             nb::arg("literal_thresholds"));
+  module.def(
+      "seconds_of", [](const nb::bytes& match) { return match_from_bytes(to_string(match)).seconds; },
+      nb::arg("match"));
+}
+
+}  // namespace gridmerge::python

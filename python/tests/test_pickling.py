@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Results and mergers go to other processes and come back as they were."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+
+import gridmerge
+import pytest
+
+
+@pytest.fixture(scope="module")
+def result(robots: list[str], elsewhere: str) -> gridmerge.MergeResult:
+    return gridmerge.merge([*robots, elsewhere], fix=0)
+
+
+def files_of(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def test_a_result_is_the_same_with_all_that_it_writes(result: gridmerge.MergeResult, tmp_path: Path) -> None:
+    again = pickle.loads(pickle.dumps(result))
+    assert again == result
+    assert again.maps == result.maps and again.names == result.names
+    assert again.components[0].grid == result.components[0].grid
+    assert copy.deepcopy(result) == result
+    result.save(tmp_path / "one")
+    again.save(tmp_path / "two")
+    assert files_of(tmp_path / "one") == files_of(tmp_path / "two")
+
+
+def test_results_of_a_tree_and_of_nothing(robots: list[str]) -> None:
+    for one in (gridmerge.merge(robots[:2], strategy="tree"), gridmerge.merge([])):
+        assert pickle.loads(pickle.dumps(one)) == one
+
+
+def test_parts_of_a_result_by_themselves(result: gridmerge.MergeResult) -> None:
+    for part in (
+        *result.components,
+        *result.components[0].members,
+        *result.joins,
+        *result.left_out,
+        *result.open_ways,
+        gridmerge.InitialPose((1, 2, 3)),
+        gridmerge.Transform(1, 2, 3),
+    ):
+        assert pickle.loads(pickle.dumps(part)) == part
+
+
+def test_a_merger_goes_on_where_it_was(robots: list[str], elsewhere: str) -> None:
+    merger = gridmerge.Merger(accept=0.9)
+    ids = [merger.add(path) for path in (robots[0], elsewhere, robots[1])]
+    merger.remove(ids[0])
+    last = merger.add(robots[0], pose=(0, 0, 0.1), fixed=True)
+    merger.solve()
+    again = pickle.loads(pickle.dumps(merger))
+    assert again.ids == merger.ids == (ids[1], ids[2], last)
+    assert again._core.matches() == merger._core.matches() != []
+    assert again._core.due() == []  # nothing is matched anew
+    assert again.solve() == merger.solve()
+    added = again.add(robots[2])
+    assert added == last + 1
+    merger.add(robots[2])
+    assert [one.members for one in again.solve().components] == [
+        one.members for one in merger.solve().components
+    ]
+    with pytest.raises(KeyError):
+        again.remove(ids[0])
+
+
+def test_a_merger_that_holds_a_frame_holds_it_still(robots: list[str]) -> None:
+    merger = gridmerge.Merger()
+    merger.add(robots[0], fixed=True)
+    again = pickle.loads(pickle.dumps(merger))
+    with pytest.raises(ValueError, match="pose"):
+        again.add(robots[1], pose=(0, 0, 0))
+    assert gridmerge.Merger.__name__ in repr(again)
+    empty = pickle.loads(pickle.dumps(gridmerge.Merger()))
+    assert empty.ids == () and empty.solve().components == ()
+
+
+def test_another_process_reads_them(result: gridmerge.MergeResult, tmp_path: Path) -> None:
+    file = tmp_path / "result.pickle"
+    file.write_bytes(pickle.dumps(result))
+    program = (
+        "import pickle, sys; r = pickle.load(open(sys.argv[1], 'rb')); "
+        "print(len(r.components[0].members), len(r.joins))"
+    )
+    ran = subprocess.run(
+        [sys.executable, "-c", program, str(file)], capture_output=True, text=True, check=True
+    )
+    assert ran.stdout == f"{len(result.components[0].members)} {len(result.joins)}\n"
+
+
+def test_a_damaged_state_is_refused(result: gridmerge.MergeResult) -> None:
+    from gridmerge import _core
+
+    state = result._core.state()
+    for wrong in (b"", state[:-1], state + b"x", b"\xff" * 64):
+        with pytest.raises(ValueError):
+            _core.Merged.from_state([], wrong)
