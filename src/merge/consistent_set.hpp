@@ -40,14 +40,15 @@ struct OpenJoin {
 /// could not be joined as surely as asked for. Fixed maps are neither moved nor cut apart.
 ///
 /// Deterministic; the order of maps and pairs plays no part beyond rounding, and which map a group's frame is
-/// that of. Runs in the calling TBB arena. O(k^2) joins are weighed a round, k rounds; a join of groups of a
-/// and b maps with c candidates a pair is weighed in O((a b c)^2), but only 50 poses of it in full. Throws
-/// std::invalid_argument for indices, numbers of maps or a probability that make no sense.
+/// that of. Runs in the calling TBB arena. Only groups between which a pair has a candidate are weighed,
+/// and again when one of them changes: see Arrangement. A join of groups across which p pairs have c
+/// candidates each is weighed in O((p c)^2), but only 50 poses of it in full. Throws std::invalid_argument
+/// for indices, numbers of maps or a probability that make no sense.
 ConsistentSet find_consistent_set(const JoinProblem& problem, double accept_probability);
 
 /// The ways to join two groups of a consistent set of the problem that have at least this probability, most
 /// probable first: rivals among which nothing decides, and ways that are not sure enough. Runs in the calling
-/// TBB arena. O(groups^2) joins are weighed, as in a round of find_consistent_set(). Throws
+/// TBB arena. One join is weighed for each two groups between which a pair has a candidate. Throws
 /// std::invalid_argument as find_consistent_set().
 std::vector<OpenJoin> find_open_joins(const JoinProblem& problem, const ConsistentSet& consistent_set,
                                       double least_probability);

@@ -30,6 +30,9 @@ constexpr double kMostOthers = 8.0;
 constexpr double kLaidShare = 0.12;
 constexpr std::size_t kMostLaid = 16;
 
+/// Bounds of the joins that were found by the joins that signatures expected.
+constexpr double kLeastFound = 0.1;
+constexpr double kMostFound = 3.0;
 /// Of the share of joins that may be missed, the part for pairs that get no look, and no second look.
 constexpr double kForTheFirstLook = 0.8;
 constexpr double kForTheSecondLook = 0.1;
@@ -165,10 +168,15 @@ std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore
   const std::vector<std::size_t> sizes = group_sizes(consistent_set, group_of);
   std::vector<Pair> pairs;
   std::vector<Weighed> open;
+  double expected = 0.0;  // of the pairs that were looked at
   std::size_t i = 0;
   for (std::size_t a = 0; a < maps_.size(); ++a) {
     for (std::size_t b = a + 1; b < maps_.size(); ++b, ++i) {
-      if (group_of[a] == group_of[b] || chosen.contains({maps_[a], maps_[b]})) continue;
+      if (chosen.contains({maps_[a], maps_[b]})) {
+        expected += logistic(log_odds_[i] + shift_);
+        continue;
+      }
+      if (group_of[a] == group_of[b]) continue;
       if (round == 0 && known_to_meet(store, a, b)) {
         pairs.emplace_back(maps_[a], maps_[b]);
         continue;
@@ -182,6 +190,11 @@ std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore
   });
   double rest = 0.0;
   for (auto one = open.rbegin(); one != open.rend(); ++one) rest += one->weight;
+  // Signatures expect too much where all maps look alike, and too little where none do: what was found of the
+  // pairs that were looked at tells.
+  const double found = std::clamp((static_cast<double>(consistent_set.used.size()) + 1.0) / (expected + 1.0),
+                                  kLeastFound, kMostFound);
+  rest *= found;
   // A join of which signatures say nothing matters where no other one holds its maps together: as many of
   // those that are hidden as of those that were found.
   rest += kHiddenShare * static_cast<double>(count_bridges(problem, consistent_set));
@@ -194,7 +207,7 @@ std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore
     if (taken[one.a] >= kMostOfAMap && taken[one.b] >= kMostOfAMap) continue;
     ++taken[one.a];
     ++taken[one.b];
-    rest -= one.weight;
+    rest -= one.weight * found;
     pairs.emplace_back(maps_[one.a], maps_[one.b]);
   }
   if (pairs.empty() && share > kForTheFirstLook * max_missed_)

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <benchmark/benchmark.h>
+
+#include <cstddef>
+#include <random>
+
+#include "grid/parallel.hpp"
+#include "merge/consistent_set.hpp"
+
+namespace gridmerge::internal {
+namespace {
+
+/// A campus: buildings of five maps, of which most pairs are found, and for each map three pairs with maps of
+/// other buildings, which propose poses that are not believed.
+JoinProblem campus(std::size_t maps) {
+  std::mt19937 random(1);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  JoinProblem problem;
+  std::vector<SE2> T_world_map;
+  for (std::size_t i = 0; i < maps; ++i) {
+    problem.maps.push_back({{0.0, 0.0}, 10.0, 30.0});
+    T_world_map.push_back({uniform(-20.0, 20.0), uniform(-20.0, 20.0), uniform(-3.0, 3.0)});
+  }
+  for (std::size_t a = 0; a < maps; ++a) {
+    const std::size_t end = std::min(maps, (a / 5 + 1) * 5);
+    for (std::size_t b = a + 1; b < end; ++b) {
+      if (random() % 4 != 0)
+        problem.pairs.push_back({a, b, {{inverse(T_world_map[a]) * T_world_map[b], uniform(3.0, 9.0), 0.2}}});
+    }
+    if (end == maps) continue;
+    std::size_t b = end;
+    for (int i = 0; i < 3; ++i) {
+      b += 1 + random() % (1 + (maps - end) / 4);
+      if (b >= maps) break;
+      problem.pairs.push_back(
+          {a,
+           b,
+           {{{uniform(-20.0, 20.0), uniform(-20.0, 20.0), uniform(-3.0, 3.0)}, uniform(-7.0, 1.0), 0.2}}});
+    }
+  }
+  return problem;
+}
+
+void BM_ConsistentSetOfACampus(benchmark::State& state) {
+  const JoinProblem problem = campus(static_cast<std::size_t>(state.range(0)));
+  with_threads(1, [&] {
+    for (auto _ : state) benchmark::DoNotOptimize(find_consistent_set_within(problem, 0.95, 0.05));
+  });
+  state.SetComplexityN(state.range(0));
+}
+BENCHMARK(BM_ConsistentSetOfACampus)
+    ->Arg(100)
+    ->Arg(300)
+    ->Arg(1000)
+    ->Arg(3000)
+    ->Arg(10000)
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity();
+
+}  // namespace
+}  // namespace gridmerge::internal
