@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <set>
 #include <stdexcept>
 #include <vector>
 
+#include "gridmerge/grid/resample.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merger.hpp"
 #include "merge/team.hpp"
@@ -29,7 +31,8 @@ struct Fleet {
       const OccupancyGrid building = draw_building(seed);
       for (const test::Window& window : {test::Window{0, 0, 12, 13}, test::Window{4, 0, 18, 13}}) {
         const double i = static_cast<double>(maps.size());
-        if (maps.size() < count) maps.push_back(map_part(building, window, {2.0 * i, -i, 0.37 * i}));
+        if (maps.size() < count)
+          maps.push_back(downsample(map_part(building, window, {2.0 * i, -i, 0.37 * i}), 2));
       }
     }
   }
@@ -40,6 +43,7 @@ MergeOptions options(double max_missed, int threads = 2) {
   MergeOptions options;
   options.max_missed = max_missed;
   options.match.threads = threads;
+  options.match.search = SearchMethod::quick;  // one look is enough to choose by
   return options;
 }
 
