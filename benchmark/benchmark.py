@@ -5,12 +5,13 @@ there are any. Writes OUTPUT/report.md with plots beside it.
 
 usage: benchmark/benchmark.py --gridmerge BINARY --output DIR [--data DIR] [--full]
 
-By default about a quarter of an hour on two cores; --full takes eight times as many cases.
+By default a quarter of an hour on two cores; --full takes eight times as many cases, and about two hours.
 """
 
 import argparse
 import concurrent.futures
 import csv
+import itertools
 import json
 import math
 import os
@@ -25,6 +26,7 @@ BASE = {"--kind": "office", "--size": "40x25", "--robots": "2", "--overlap": "0.
 FAMILIES = {
     "overlap": ("overlap asked for", [({"--overlap": v}, float(v)) for v in
                                       ("0.9", "0.6", "0.4", "0.3", "0.2", "0.1", "0.05", "0.02")]),
+    "straight": ("overlap asked for, no drift", [({"--overlap": v, "--drift": "0"}, float(v)) for v in ("0.3", "0.2", "0.1")]),
     "drift": ("drift", [({"--drift": v}, float(v)) for v in ("0", "0.25", "0.5", "1", "1.5", "2", "3")]),
     "noise": ("range noise [m]", [({"--noise": v}, float(v)) for v in ("0", "0.02", "0.05", "0.1", "0.2", "0.4")]),
     "clutter": ("clutter", [({"--clutter": v}, float(v)) for v in ("0", "1", "2", "4", "8")]),
@@ -38,6 +40,10 @@ RATIOS = (1, 2, 3, 4, 6)          # of the two maps' cells
 TEAM_KINDS = ("office", "hall", "loop", "apartment")
 TEAM_SIZES = (2, 5, 10, 20, 30)   # robots of one floor of 100 m x 60 m
 WALK_OVERLAPS = ("0.9", "0.6", "0.3")
+WALLS = (0, 2.5, 5, 10, 20, 40, 80, math.inf)  # limits of shared wall [m] between which pairs are counted together
+FIRST_SEED = 20001                # nothing of the engine was fitted to maps of this seed and the next ones
+LARGE = 160                       # floors of so many metres take a minute each, so there are fewer
+MOST_LARGE = 16
 
 
 def run(command: list) -> tuple[int, float]:
@@ -68,17 +74,26 @@ class Bench:
         folder = self.output / "cases" / f"{name}_{seed}"
         if not self.simulate(folder, options, seed):
             return None
-        return self.evaluate(folder, folder / "pairs.tsv", "--negatives", folder / "negatives.tsv")
+        result, memory = self.evaluate(folder, folder / "pairs.tsv", "--negatives", folder / "negatives.tsv")
+        with (folder / "pairs.tsv").open(newline="") as file:
+            walls = {(row["fixed"], row["moving"]): float(row["shared_wall"]) for row in csv.DictReader(file, delimiter="\t")}
+        for case in result["cases"]:
+            case["shared_wall"] = walls.get((case["fixed"], case["moving"]))
+        return result, memory
+
+    def seeds(self, most: int | None = None) -> range:
+        return range(FIRST_SEED, FIRST_SEED + min(self.repeats, most or self.repeats))
 
     def sweep(self, family: str, values: list) -> list[dict]:
-        jobs = [(i, options, seed) for i, (options, _) in enumerate(values) for seed in range(1, self.repeats + 1)]
+        most = {i: MOST_LARGE for i, (_, value) in enumerate(values) if family == "size" and value >= LARGE}
+        jobs = [(i, options, seed) for i, (options, _) in enumerate(values) for seed in self.seeds(most.get(i))]
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             results = list(pool.map(lambda job: self.pair_case(f"{family}_{job[0]}", job[1], job[2]), jobs))
         rows = []
         for i, (_, value) in enumerate(values):
             found = [result for (index, _, _), result in zip(jobs, results) if index == i and result]
             cases = [case for result, _ in found for case in result["cases"]]
-            self.cases += cases
+            self.cases += [case | {"family": family} for case in cases]
             rows.append(summarize(value, cases, max((memory for _, memory in found), default=0.0)))
         return rows
 
@@ -87,7 +102,7 @@ class Bench:
         rows = []
         for ratio in RATIOS:
             cases, memory = [], 0.0
-            for seed in range(1, self.repeats + 1):
+            for seed in self.seeds():
                 fine, coarse = (self.output / "cases" / f"ratio_{ratio}_{seed}_{which}" for which in ("fine", "coarse"))
                 # Without a wanted overlap robots do not depend on the resolution.
                 way = {"--overlap": "", "--longest-way": "120", "--size": "26x18", "--others": "0"}
@@ -116,7 +131,7 @@ class Bench:
         """Teams of six with a map of another building among theirs, merged jointly and up the tree."""
         rows = [{"strategy": strategy, "maps": 0, "right": 0, "wrong": 0, "left out": 0} for strategy in ("joint", "tree")]
         for kind in TEAM_KINDS:
-            for seed in range(1, max(2, self.repeats // 2) + 1):
+            for seed in self.seeds(max(2, self.repeats // 2)):
                 folder = self.output / "cases" / f"team_{kind}_{seed}"
                 size = "18x13" if kind == "apartment" else "45x30"
                 if not self.simulate(folder, {"--kind": kind, "--robots": "6", "--size": size}, seed):
@@ -152,7 +167,7 @@ class Bench:
         rows = []
         for overlap in WALK_OVERLAPS:
             engine, walk = [], []
-            for seed in range(1, max(2, self.repeats // 4) + 1):
+            for seed in self.seeds(max(2, self.repeats // 4)):
                 folder = self.output / "cases" / f"walk_{overlap}_{seed}"
                 if not self.simulate(folder, {"--overlap": overlap, "--resolution": "0.1", "--others": "0"}, seed):
                     continue
@@ -171,6 +186,29 @@ def counts_of(cases: list[dict]) -> dict:
             "accepted right": sum(case["correct"] for case in accepted),
             "accepted wrong": sum(not case["correct"] for case in accepted),
             "median s": f"{seconds[len(seconds) // 2]:.3f}" if seconds else "–"}
+
+
+def interval(right: int, of: int) -> str:
+    """The rates that could well have given so many of so many: Wilson's interval of 95 %."""
+    if of == 0:
+        return "–"
+    z, rate = 1.96, right / of
+    middle, half = rate + z * z / (2 * of), z * math.sqrt(rate * (1 - rate) / of + z * z / (4 * of * of))
+    return f"{max(0.0, (middle - half) / (1 + z * z / of)):.2f} to {min(1.0, (middle + half) / (1 + z * z / of)):.2f}"
+
+
+def by_shared_wall(cases: list[dict]) -> list[dict]:
+    rows = []
+    for least, below in itertools.pairwise(WALLS):
+        inside = [case for case in cases if case["shared_wall"] is not None and least <= case["shared_wall"] < below]
+        rows.append(with_intervals({"shared wall [m]": f"{least:g} to {below:g}" if below < math.inf else f"from {least:g}"}
+                                   | counts_of(inside)))
+    return rows
+
+
+def with_intervals(row: dict) -> dict:
+    """With the intervals of the rates of right and accepted ones after their numbers."""
+    return row | {key: f"{row[key]} ({interval(row[key], row['pairs'])})" for key in ("best right", "accepted right")}
 
 
 def summarize(value, cases: list[dict], memory: float) -> dict:
@@ -306,11 +344,13 @@ def main() -> None:
     for family, rows in families.items():
         label = FAMILIES[family][0]
         plot_family(rows, label, arguments.output / f"{family}.png")
-        report += f"\n## {family}\n![{label}]({family}.png)\n\n{table(rows, label)}"
+        report += f"\n## {family}\n![{label}]({family}.png)\n\n{table([with_intervals(row) for row in rows], label)}"
         if family == "size":
             plot_cost(rows, label, arguments.output / "cost.png")
             report += "\n![Time and memory](cost.png)\n"
-    report += "\n## Ratio of the two maps' cells\n" + table(ratios, "ratio")
+    report += "\n## Shared wall\nThe pairs of the overlap family.\n\n"
+    report += table(by_shared_wall([case for case in bench.cases if case["family"] == "overlap"]))
+    report += "\n## Ratio of the two maps' cells\n" + table([with_intervals(row) for row in ratios], "ratio")
     report += "\n## Teams of six\n" + table(teams)
     report += "\n## Size of the team\n" + (table(sizes) if sizes else "The team could not be simulated.\n")
     error = plot_probability(bench.cases, arguments.output / "probability.png")

@@ -5,9 +5,11 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gridmerge)
 set(GRIDMERGE_PACKAGES_OF "")  # set() lines for the package's configuration file
 
-# What consumers have to find as well: for static libraries all that a library links, for shared ones nothing.
+# What consumers have to find as well: for static libraries all that a library links, for shared ones nothing. What
+# stands in $<BUILD_INTERFACE:> is for the build alone.
 function(gridmerge_packages_named_by target out)
   get_target_property(links ${target} INTERFACE_LINK_LIBRARIES)
+  string(REGEX REPLACE "\\$<BUILD_INTERFACE:[^<>]*>" "" links "${links}")
   set(named "")
   foreach(package IN LISTS ARGN)
     if("${links}" MATCHES "(^|[;:<])${package}(::|;|>|$)")

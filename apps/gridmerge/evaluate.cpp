@@ -110,7 +110,7 @@ void add_evaluate(CLI::App& app, Action& action) {
   command->footer(
       "At least one of the three tables is needed; maps are named relative to the table. Tables are\n"
       "tab-separated, and their first line names the columns:\n"
-      "  PAIRS        fixed moving x y theta tolerance, and optionally tier and overlap\n"
+      "  PAIRS        fixed moving x y theta tolerance, and optionally tier, overlap, shared_wall\n"
       "  --negatives  fixed moving\n"
       "  --sets       set map x y theta tolerance\n"
       "x, y and theta take points of the moving map to the fixed one, of a set's map to the set's frame\n"

@@ -17,6 +17,7 @@
 #include "cached_merge.hpp"
 #include "commands.hpp"
 #include "console.hpp"
+#include "exports.hpp"
 #include "gridmerge/bag/any_map.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/json.hpp"
@@ -44,6 +45,7 @@ struct MergeCommandOptions {
   SearchOptions search;
   KnownPoseOptions known;
   CacheOptions cache;
+  ExportOptions exports;
 };
 
 struct Inputs {
@@ -253,18 +255,6 @@ std::string scale_hints(const MergeCommandOptions& options, const std::vector<Oc
   return text;
 }
 
-/// The trace may lie beside the other outputs, whose directory need not be there yet.
-void try_trace(const MergeCommandOptions& options, const std::vector<std::filesystem::path>& inputs) {
-  const std::filesystem::path trace = options.search.trace;
-  const auto normal = [](const std::filesystem::path& path) {
-    return std::filesystem::absolute(path / "").lexically_normal();
-  };
-  const bool beside = normal(trace.parent_path()) == normal(options.output);
-  if (beside && is_merge_output(trace.filename()))
-    throw FileError(trace, "is a file that the merge itself writes: choose another name for the trace");
-  if (!beside || std::filesystem::exists(options.output)) try_output_file(options.search.trace, inputs);
-}
-
 int run_shard(const MergeCommandOptions& options) {
   Console console(options.common);
   const KnownPoses known_poses(options.known, options.maps, console);
@@ -292,7 +282,9 @@ int run_merge(const MergeCommandOptions& options) {
                     "--output-resolution {:.2g} makes it smaller",
                     *coarser));
   PairMatcher matcher(options.common, options.search);
-  if (!options.search.trace.empty()) try_trace(options, inputs.files);
+  if (!options.search.trace.empty()) try_result_file(options.search.trace, options.output, inputs.files);
+  const std::vector<Export> exports = exports_of(options.exports, options.output);
+  try_exports(exports, options.output, inputs.files);
   const MergeResult result =
       merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
   console.progress("writing the result");
@@ -304,6 +296,7 @@ int run_merge(const MergeCommandOptions& options) {
   print(describe(options, result, known_poses.describe_unused(inputs.maps, result)) + hints);
   const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
   print("look at it: " + escape_controls(page.string()) + "\n");
+  print(write_exports(exports, inputs.files, {options.maps, inputs.maps, result}));
   return result.components.size() == 1 && result.left_out.empty() ? kDone : kRefused;
 }
 
@@ -348,6 +341,7 @@ void add_merge(CLI::App& app, Action& action) {
   add_trace_option(*command, options->search);
   add_cache_option(*command, options->cache);
   add_shard_option(*command, options->cache);
+  add_export_option(*command, options->exports);
   add_map_file_options(*command, options->load);
   add_common_options(*command, options->common);
   command->footer(
@@ -366,6 +360,7 @@ void add_merge(CLI::App& app, Action& action) {
       "elsewhere)\n"
       "  gridmerge merge --cache matches robot*.yaml -o merged\n\n"
       "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged\n"
+      "  gridmerge merge robot1.yaml robot2.yaml -o merged --export g2o --export open-rmf=fleet.yaml\n"
       "  gridmerge merge robot1.mcap team.mcap#/tb2/map team.mcap#/tb3/map -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml --fix robot2.yaml -o "

@@ -45,6 +45,7 @@ int run_node(const NodeCommandOptions& options) {
   } catch (const std::invalid_argument& error) {  // the rest was looked at before
     throw FileError(options.init, error.what());
   }
+  node_options.played = played_topics(options, node_options, console);
   node_options.tell = [&](const std::string& line) {
     if (!options.common.quiet) print(escape_controls(line) + "\n");
   };
@@ -75,7 +76,8 @@ void add_node(CLI::App& app, Action& action) {
       "and CYCLONEDDS_URI count as for any node.\n\n"
       "Example:\n  gridmerge node\n"
       "  gridmerge node --pattern '/fleet/*/map' --fix tb1 --world site\n"
-      "  gridmerge node --robot left=/tb1/map --robot right=/tb2/map --once --wait 30");
+      "  gridmerge node --robot left=/tb1/map --robot right=/tb2/map --once --wait 30\n"
+      "  gridmerge node --bag tb1.mcap --bag tb2.mcap --rate 10");
   command->callback([options, &action] {
     to_node_options(*options);  // what cannot be is wrong usage
     action = [options] { return run_node(*options); };

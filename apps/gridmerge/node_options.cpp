@@ -4,10 +4,17 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <map>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
+#include "gridmerge/bag/bag.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "gridmerge/io/initial_poses.hpp"
 
@@ -24,6 +31,55 @@ const CLI::Validator kNamedTopic(
       return is_named ? std::string() : "'" + text + "' is not NAME=TOPIC, as tb1=/tb1/map";
     },
     "");
+
+const CLI::Validator kPositiveRate(
+    [](std::string& text) {
+      double rate = 0.0;
+      const bool is_one = CLI::detail::lexical_cast(text, rate) && rate > 0.0 && std::isfinite(rate);
+      return is_one ? std::string() : "'" + text + "' is not a number above 0";
+    },
+    "");
+
+/// "/NAME/map" of "folder/NAME.mcap"; what topics of ROS cannot have becomes '_'.
+std::string topic_of_file(const std::filesystem::path& bag) {
+  const bool has_slash = !bag.has_filename();  // a folder, written with a slash behind it
+  std::string name = (has_slash ? bag.parent_path() : bag).stem().string();
+  for (char& c : name) {
+    const bool is_fine = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!is_fine) c = '_';
+  }
+  if (name.empty() || (name.front() >= '0' && name.front() <= '9')) name.insert(0, "_");
+  return "/" + name + "/map";
+}
+
+/// The topic on which the maps of a bag's topic are played; none if they are no robot's.
+std::optional<std::string> played_on(const RosNodeOptions& node, const std::string& bag,
+                                     const std::string& topic) {
+  if (is_heard(node, topic)) return topic;
+  if (topic != "/map") return std::nullopt;
+  const std::string own = topic_of_file(bag);
+  return is_heard(node, own) ? std::optional(own) : std::nullopt;
+}
+
+/// The maps of a bag's topic, one after the other. Those that cannot be read are told of and passed over.
+std::function<std::optional<PlayedMap>()> maps_of(const Bag& bag, const std::string& topic,
+                                                  Console& console) {
+  const auto maps = std::make_shared<BagMaps>(bag, topic);
+  return [maps, &console, first = std::optional<std::int64_t>()]() mutable -> std::optional<PlayedMap> {
+    for (;;) {
+      try {
+        std::optional<BagMap> map = maps->next();
+        if (!map) return std::nullopt;
+        if (!first) first = map->time;
+        constexpr double kNanosecond = 1e-9;
+        return PlayedMap{static_cast<double>(map->time - *first) * kNanosecond, std::move(map->frame_id),
+                         std::move(map->grid)};
+      } catch (const FileError& error) {
+        console.warn(error.what());
+      }
+    }
+  };
+}
 
 const std::map<std::string, TransformTopic>& transform_topics() {
   static const std::map<std::string, TransformTopic> topics{
@@ -103,6 +159,19 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
                   "Metres per cell of the merged map; if not given, those of the finest map")
       ->type_name("METRES")
       ->check(kMetresPerCell);
+  CLI::Option* bag =
+      command
+          .add_option(
+              "--bag", options.bags,
+              "A recording of ROS 2 (.mcap, .db3 or a rosbag2 folder) whose maps are published as the robot "
+              "did, and merged; repeat it for others. /map of FILE.mcap becomes /FILE/map. All begin at once")
+          ->type_name("BAG")
+          ->allow_extra_args(false);
+  command.add_option("--rate", node.play_rate, "Seconds of the recordings per second, with --bag")
+      ->type_name("NUMBER")
+      ->check(kPositiveRate)
+      ->needs(bag)
+      ->capture_default_str();
   command.add_flag(
       "--once", node.once,
       "End when the maps of all robots that are there are merged; the exit code is that of 'merge'");
@@ -134,6 +203,32 @@ RosNodeOptions to_node_options(const NodeCommandOptions& options) {
     throw CLI::ValidationError(error.what());
   }
   return node;
+}
+
+std::vector<PlayedTopic> played_topics(const NodeCommandOptions& options, const RosNodeOptions& node,
+                                       Console& console) {
+  std::vector<PlayedTopic> played;
+  for (const std::string& file : options.bags) {
+    const Bag bag(file);
+    std::vector<std::string> others;
+    const std::size_t before = played.size();
+    for (const BagTopic& topic : bag.map_topics()) {
+      const std::optional<std::string> on = played_on(node, file, topic.name);
+      if (on) {
+        played.push_back({*on, file + "#" + topic.name, maps_of(bag, topic.name, console)});
+      } else {
+        others.push_back(topic.name);
+      }
+    }
+    const std::string list = fmt::format("{}", fmt::join(others, ", "));
+    if (played.size() == before)
+      throw FileError(file, others.empty() ? "has no topic of maps (nav_msgs/msg/OccupancyGrid)"
+                                           : fmt::format("has maps on {} only; --pattern says which topics "
+                                                         "are maps of robots",
+                                                         list));
+    if (!others.empty()) console.remark(fmt::format("{}: not played: {}", file, list));
+  }
+  return played;
 }
 
 std::map<std::string, KnownPose> known_robot_poses(const NodeCommandOptions& options, Console& console) {

@@ -20,6 +20,7 @@ struct NodeCommandOptions {
   std::vector<std::string> robots;  // NAME=TOPIC
   std::string init;                 // file of initial poses
   std::vector<std::string> fix;     // robots
+  std::vector<std::string> bags;    // files and folders that are played
   std::string transforms = "static";
   RosNodeOptions node;  // except for what is above and below
   SearchOptions search;
@@ -30,6 +31,11 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options);
 
 /// What a node takes, without the poses of --init. Throws CLI::ValidationError for what cannot be.
 RosNodeOptions to_node_options(const NodeCommandOptions& options);
+
+/// The topics of maps that --bag says: of those of a bag, the ones that are robots' maps. Tells of the
+/// others. Throws FileError for a bag that cannot be read, or that has none.
+std::vector<PlayedTopic> played_topics(const NodeCommandOptions& options, const RosNodeOptions& node,
+                                       Console& console);
 
 /// What --init and --fix say. Throws FileError or std::runtime_error for poses that cannot be used. Warns of
 /// angles that look like degrees.

@@ -117,6 +117,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Makes the documentation site in build/site.")
     parser.add_argument("--program", type=Path, required=True, help="gridmerge, for what its --help says")
     parser.add_argument("--wheel", type=Path, required=True, help="of the Python package, for its docstrings")
+    parser.add_argument(
+        "--backend", type=Path, required=True, help="nanobind_backend, which the wheel imports"
+    )
     arguments = parser.parse_args()
     for folder in (WORK, SITE):
         shutil.rmtree(folder, ignore_errors=True)
@@ -124,6 +127,7 @@ def main() -> None:
     write_command_line_page(arguments.program)
     write_cpp_pages()
     zipfile.ZipFile(arguments.wheel).extractall(WORK / "python")
+    shutil.copytree(arguments.backend, WORK / "python" / arguments.backend.name)
     # Each warning is an error, a link to a place of the site that is not there among them.
     options = [
         "-q",

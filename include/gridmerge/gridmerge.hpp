@@ -25,6 +25,7 @@
 #include "gridmerge/bag/any_map.hpp"
 #endif
 #if __has_include("gridmerge/report/merge_output.hpp")
+#include "gridmerge/report/interchange.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/merge_record.hpp"
 #endif

@@ -46,7 +46,17 @@ from ._measure import (
     measure_poses,
     poses_between,
 )
-from ._merge import Component, Join, JoinOutcome, LeftOut, Member, MergeResult, OpenWay, merge
+from ._merge import (
+    Component,
+    ExportFormat,
+    Join,
+    JoinOutcome,
+    LeftOut,
+    Member,
+    MergeResult,
+    OpenWay,
+    merge,
+)
 from ._merger import Merger
 from ._message import OccupancyGridMessage
 from ._random_walk import RandomWalkMatch, Trace, Walk, match_by_random_walk, plot_walk
@@ -65,6 +75,7 @@ __all__ = [
     "DistancePass",
     "Evaluation",
     "ExecutorError",
+    "ExportFormat",
     "FileError",
     "Hypothesis",
     "InitialPose",

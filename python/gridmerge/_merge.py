@@ -23,6 +23,8 @@ JoinOutcome: TypeAlias = Literal["refused", "accepted", "rescued", "rejected", "
 """What became of a comparison of two maps: "rescued" is too weak by itself and agrees with the others, "rejected" would
 be believed by itself and contradicts them, "known" lies so because it is known beforehand."""
 Strategy: TypeAlias = Literal["joint", "tree"]
+ExportFormat: TypeAlias = Literal["g2o", "open-rmf", "geojson"]
+"""What other programs read of a merge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,6 +195,21 @@ class MergeResult:
         """
         path = _arguments.path("directory", directory)
         self._core.save(path, [_arguments.to_bytes(name) for name in self.names], list(self._more_inputs))
+
+    def export(self, format: ExportFormat, file: str | os.PathLike[str]) -> None:
+        """Writes where the maps lie for other programs, as `gridmerge merge --export` does.
+
+        Args:
+            format: "g2o" is a pose graph, "open-rmf" has the points by which fleet adapters find where maps lie, and
+                "geojson" has the outlines of all placed maps.
+            file: is replaced as a whole.
+
+        Metres and radians, in the frame of each merged map. Raises ValueError for another format, and FileError if no
+        map was placed, or if the file cannot be written or is an input.
+        """
+        name = _arguments.choice("format", format, tuple(_core.export_formats()))
+        path = _arguments.path("file", file)
+        self._core.export(name, path, [_arguments.to_bytes(one) for one in self.names])
 
     def plot(self, ax: Axes | None = None, *, component: int = 0) -> Axes:
         """Draws a component: each input map in its own colour, where it lies in the component's frame [m].

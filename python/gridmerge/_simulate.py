@@ -57,6 +57,8 @@ class SimulatedPair:
     """Share of the smaller map's area that both have drawn."""
     tier: str
     """How hard the pair is: "A", "B" or "C", by the walls that both have."""
+    shared_wall: float
+    """Walls of the moving map where the fixed one knows something: occupied cells times their side [m]."""
 
     def __repr__(self) -> str:
         return (
@@ -210,7 +212,13 @@ def _to_simulation(dataset: _core.Dataset) -> Simulation:
         maps=tuple(_to_map(one) for one in dataset.maps),
         pairs=tuple(
             SimulatedPair(
-                pair.fixed, pair.moving, Transform(*pair.transform), pair.tolerance, pair.overlap, pair.tier
+                pair.fixed,
+                pair.moving,
+                Transform(*pair.transform),
+                pair.tolerance,
+                pair.overlap,
+                pair.tier,
+                pair.shared_wall,
             )
             for pair in dataset.pairs
         ),

@@ -5,6 +5,7 @@
 
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/merge/tree.hpp"
+#include "gridmerge/report/interchange.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/preview.hpp"
 #include "merge_bytes.hpp"
@@ -81,6 +82,16 @@ void save(const Merged& merged, const nb::bytes& directory, const std::vector<nb
   const std::filesystem::path path = to_string(directory);
   const OthersRun meanwhile;
   write_merge_output(path, inputs, {texts, grids_of(merged.maps), *merged.result});
+}
+
+void write_exported(const Merged& merged, const std::string& format, const nb::bytes& file,
+                    const std::vector<nb::bytes>& names) {
+  std::vector<std::filesystem::path> inputs;
+  for (const Map& map : merged.maps) inputs.insert(inputs.end(), map.files.begin(), map.files.end());
+  const std::vector<std::string> texts = to_strings(names);
+  const std::filesystem::path path = to_string(file);
+  const OthersRun meanwhile;
+  write_export(export_format(format).value(), path, inputs, {texts, grids_of(merged.maps), *merged.result});
 }
 
 // The picture that save() writes.
@@ -165,6 +176,7 @@ void bind_results(nb::module_& module) {
           },
           nb::arg("maps"), nb::arg("state"))
       .def("preview", &preview, nb::arg("names"))
+      .def("export", &write_exported, nb::arg("format"), nb::arg("file"), nb::arg("names"))
       .def("save", &save, nb::arg("directory"), nb::arg("names"), nb::arg("more_inputs"));
 }
 
@@ -178,6 +190,11 @@ void bind_merge(nb::module_& module) {
              nb::arg("accept").none(), nb::arg("max_false_joins"), nb::arg("max_missed"),
              nb::arg("output_resolution"), nb::arg("up_the_tree"), nb::arg("search"),
              nb::arg("progress").none());
+  module.def("export_formats", [] {
+    std::vector<std::string> names;
+    for (const ExportFormat format : export_formats()) names.emplace_back(name_of(format));
+    return names;
+  });
   module.def(
       "map_colour",
       [](std::size_t map) {

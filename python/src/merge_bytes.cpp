@@ -136,6 +136,11 @@ std::string to_bytes(const MergeResult& result) {
     writer.number(way.probability);
   }
   write(result.expected_false_joins, writer);
+  writer.whole(result.refused_more.size());
+  for (const RefusedCount& refused : result.refused_more) {
+    writer.byte(static_cast<std::uint8_t>(refused.reason));
+    writer.whole(refused.count);
+  }
   return writer.take();
 }
 
@@ -159,6 +164,11 @@ MergeResult merge_from_bytes(std::string_view bytes) {
     way.probability = reader.number();
   }
   result.expected_false_joins = read_optional(reader);
+  result.refused_more.resize(reader.count(kNumber));
+  for (RefusedCount& refused : result.refused_more) {
+    refused.reason = static_cast<Reason>(reader.byte());
+    refused.count = reader.whole();
+  }
   if (!reader.is_at_end()) throw std::invalid_argument("holds more than a merge");
   return result;
 }

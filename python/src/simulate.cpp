@@ -135,7 +135,8 @@ void bind_results(nb::module_& module) {
       .def_prop_ro("transform", [](const SimulatedPair& pair) { return to_pose(pair.T_fixed_moving); })
       .def_ro("tolerance", &SimulatedPair::tolerance)
       .def_ro("overlap", &SimulatedPair::overlap)
-      .def_prop_ro("tier", [](const SimulatedPair& pair) { return std::string(1, pair.tier); });
+      .def_prop_ro("tier", [](const SimulatedPair& pair) { return std::string(1, pair.tier); })
+      .def_ro("shared_wall", &SimulatedPair::shared_wall);
   nb::class_<Dataset>(module, "Dataset")
       .def("building",
            [](const Dataset& dataset) {

@@ -97,6 +97,9 @@ def assert_equals_the_command_lines(
     for name in names:
         assert (folder / "cli" / name).read_bytes() == (folder / "python" / name).read_bytes(), name
     transforms = json.loads((folder / "cli" / "transforms.json").read_text())
+    for join in transforms["joins"]:
+        assert join["verdict"] == "accepted" or "sd" not in join
+        assert join.pop("sd", 1.0) > 0.0
     assert to_bits(as_json(result)) == to_bits(transforms)
 
 
@@ -230,6 +233,30 @@ def test_names_of_maps(robots: list[str]) -> None:
     assert [one.name for one in named.components[0].members] == ["a", "b", "c"]
     bare = gridmerge.OccupancyGrid(np.zeros((3, 3), dtype=np.int8), 0.05)
     assert gridmerge.merge([bare, bare]).names == ("map 0", "map 1")
+
+
+@pytest.mark.parametrize("format", ["g2o", "open-rmf", "geojson"])
+def test_exports_equal_the_command_lines(
+    cli: Cli, robots: list[str], elsewhere: str, tmp_path: Path, format: gridmerge.ExportFormat
+) -> None:
+    maps = [*robots, elsewhere]
+    answer = cli("merge", *maps, "-o", tmp_path, "--export", f"{format}={tmp_path / 'cli'}")
+    assert answer.returncode == 3, answer.stderr
+    gridmerge.merge(maps).export(format, tmp_path / "python")
+    assert (tmp_path / "cli").read_bytes() == (tmp_path / "python").read_bytes()
+
+
+def test_exports_that_cannot_be(robots: list[str], elsewhere: str, tmp_path: Path) -> None:
+    result = gridmerge.merge(robots[:2])
+    with pytest.raises(ValueError, match="format: must be one of g2o, open-rmf, geojson, is 'kml'"):
+        result.export("kml", tmp_path / "x")  # type: ignore[arg-type]
+    with pytest.raises(gridmerge.FileError, match="No such file or directory"):
+        result.export("g2o", tmp_path / "no" / "x")
+    with pytest.raises(gridmerge.FileError, match="is an input and would be replaced"):
+        result.export("g2o", robots[0])
+    with pytest.raises(gridmerge.FileError, match="is not written: no two maps were joined"):
+        gridmerge.merge([robots[0], elsewhere]).export("g2o", tmp_path / "x")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_inputs_are_not_replaced(robots: list[str], tmp_path: Path) -> None:

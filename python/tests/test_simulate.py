@@ -94,6 +94,7 @@ def test_results_are_typed(team: gridmerge.Simulation) -> None:
     for pair in team.pairs:
         assert 0 <= pair.fixed < pair.moving < 3
         assert pair.tier in "ABC"
+        assert pair.shared_wall >= (20.0 if pair.tier == "A" else 0.0)
         relative = team.maps[pair.fixed].transform.inverse() @ team.maps[pair.moving].transform
         assert np.hypot(pair.transform.x - relative.x, pair.transform.y - relative.y) < 1.0
     assert team.building.resolution == 0.05

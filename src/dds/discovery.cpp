@@ -79,13 +79,15 @@ std::vector<WriterEvent> Discovery::take() {
       const auto& endpoint = *static_cast<const dds_builtintopic_endpoint_t*>(samples[at]);
       const std::optional<std::string> topic = ros_topic(endpoint.topic_name);
       event.writer.participant = digits_of(endpoint.participant_key);
-      if (!topic || event.writer.participant == own_) continue;
+      const std::string user_data = user_data_of(endpoint.qos);
+      const bool is_played = user_data.find(kPlayedMark) != std::string::npos;
+      if (!topic || (event.writer.participant == own_ && !is_played)) continue;
       event.writer.guid = digits_of(endpoint.key);
       event.writer.topic = *topic;
       event.writer.type = endpoint.type_name;
       event.writer.qos = qos_of(endpoint.qos);
       event.writer.in_partition = in_partition(endpoint.qos);
-      event.writer.is_merged = user_data_of(endpoint.qos).find(kMergedMark) != std::string::npos;
+      event.writer.is_merged = user_data.find(kMergedMark) != std::string::npos;
       events.push_back(std::move(event));
     }
     dds_return_loan(reader_.get(), samples.data(), count);

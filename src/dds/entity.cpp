@@ -32,7 +32,6 @@ Qos make_qos(const TopicType& type, const TopicQos& wanted, std::string_view mar
   if (wanted.transient_local)  // as much for readers that come late
     dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, wanted.depth, DDS_LENGTH_UNLIMITED,
                                 DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
-  dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
   std::string user_data;
   if (*type.hash != '\0') user_data = fmt::format("typehash={};", type.hash);
   user_data += mark;
@@ -71,6 +70,12 @@ DdsEntity& DdsEntity::operator=(DdsEntity&& other) noexcept {
   return *this;
 }
 
+dds_guid_t guid_of(dds_entity_t entity) {
+  dds_guid_t guid{};
+  require_dds(dds_get_guid(entity, &guid), "an entity's number");
+  return guid;
+}
+
 void DdsEntity::reset() {
   if (handle_ > 0) dds_delete(std::exchange(handle_, 0));
 }
@@ -86,7 +91,9 @@ DdsEntity make_reader(dds_entity_t participant, const TopicType& type, const std
 DdsEntity make_writer(dds_entity_t participant, const TopicType& type, const std::string& topic,
                       const TopicQos& qos, std::string_view mark) {
   const DdsEntity made = make_topic(participant, type, topic);
-  return {dds_create_writer(participant, made.get(), make_qos(type, qos, mark).get(), nullptr),
+  const Qos whole = make_qos(type, qos, mark);
+  if (mark != kPlayedMark) dds_qset_ignorelocal(whole.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  return {dds_create_writer(participant, made.get(), whole.get(), nullptr),
           fmt::format("a writer of {}", topic)};
 }
 

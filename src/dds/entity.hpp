@@ -34,6 +34,9 @@ class DdsEntity {
   dds_entity_t handle_ = 0;
 };
 
+/// The entity's number in DDS. Throws as require_dds().
+dds_guid_t guid_of(dds_entity_t entity);
+
 /// A type of ROS's: how Cyclone DDS reads and writes it, and the hash by which ROS's tools know its
 /// definition.
 struct TopicType {
@@ -59,12 +62,15 @@ struct TopicQos {
 
 /// In the USER_DATA of this program's writers: maps that have it are merged ones.
 inline constexpr std::string_view kMergedMark = "gridmerge=merged;";
+/// Likewise, of recorded maps that this program publishes: it hears them as any robot's.
+inline constexpr std::string_view kPlayedMark = "gridmerge=played;";
 
 /// A reader of a topic, by its name in DDS. Throws as require_dds().
 DdsEntity make_reader(dds_entity_t participant, const TopicType& type, const std::string& topic,
                       const TopicQos& qos);
 
-/// A writer likewise, with `mark` in its USER_DATA.
+/// A writer likewise, with `mark` in its USER_DATA. Readers of the same participant do not hear it, except
+/// where the mark is kPlayedMark.
 DdsEntity make_writer(dds_entity_t participant, const TopicType& type, const std::string& topic,
                       const TopicQos& qos, std::string_view mark = {});
 

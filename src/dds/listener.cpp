@@ -101,8 +101,7 @@ std::vector<HeardRobot> MapListener::robots() const {
 std::vector<dds_guid_t> MapListener::readers() const {
   std::vector<dds_guid_t> guids;
   const auto add = [&](const Readers& readers) {
-    for (const auto& [qos, reader] : readers)
-      require_dds(dds_get_guid(reader.get(), &guids.emplace_back()), "a reader's number");
+    for (const auto& [qos, reader] : readers) guids.push_back(guid_of(reader.get()));
   };
   for (const auto& [topic, robot] : robots_) {
     add(robot.maps);

@@ -46,17 +46,13 @@ double read_resolution(float resolution) {
   return read;
 }
 
+/// A quaternion of four zeros is none, as in bags.
 double read_yaw(const std::array<double, 4>& orientation) {
-  constexpr double kNormTolerance = 0.01;
-  constexpr double kLevelTolerance = 0.01;  // of x and y: half the tilt [rad]
-  double norm = 0.0;
-  for (const double part : orientation) norm += part * part;
-  norm = std::sqrt(norm);
-  if (!(std::abs(norm - 1.0) <= kNormTolerance))  // a NaN too
-    throw RefusedMessage("an orientation that is no unit quaternion");
   const auto& [x, y, z, w] = orientation;
-  if (std::hypot(x, y) > kLevelTolerance) throw RefusedMessage("an origin that is not level");
-  return normalize_angle(2.0 * std::atan2(z, w));
+  const Yaw yaw = yaw_of({x, y, z, w});
+  if (yaw.kind == Rotation::not_unit) throw RefusedMessage("an orientation that is no unit quaternion");
+  if (yaw.kind == Rotation::tilted) throw RefusedMessage("an origin that is not level");
+  return yaw.theta;
 }
 
 }  // namespace

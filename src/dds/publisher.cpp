@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dds/publisher.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,61 +8,11 @@
 #include <utility>
 
 #include "dds/names.hpp"
-#include "ros_messages.h"
+#include "dds/samples.hpp"
 
 namespace gridmerge::internal {
 
 namespace {
-
-// Samples only refer to texts and vectors: they are written before these go, and Cyclone DDS changes nothing.
-char* text(const std::string& value) {
-  return const_cast<char*>(value.c_str());
-}
-
-/// Makes a generated sequence refer to a vector.
-template <typename Sequence, typename Element>
-void refer(Sequence& sequence, std::vector<Element>& elements) {
-  sequence._length = static_cast<std::uint32_t>(elements.size());
-  sequence._maximum = sequence._length;
-  sequence._buffer = elements.data();
-  sequence._release = false;
-}
-
-builtin_interfaces_msg_dds__Time_ time_of(const Stamp& stamp) {
-  return {stamp.seconds, stamp.nanoseconds};
-}
-
-Stamp now() {
-  const auto since = std::chrono::system_clock::now().time_since_epoch();
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(since);
-  return {static_cast<std::int32_t>(seconds.count()),
-          static_cast<std::uint32_t>(std::chrono::nanoseconds(since - seconds).count())};
-}
-
-/// Whether it was sent; false when a subscriber does not keep up.
-bool write(const DdsEntity& writer, const void* sample, std::string_view what) {
-  const dds_return_t code = dds_write(writer.get(), sample);
-  if (code == DDS_RETCODE_TIMEOUT) return false;
-  require_dds(code, what);
-  return true;
-}
-
-bool write_map(const DdsEntity& writer, const OccupancyGrid& grid, const std::string& frame,
-               const Stamp& stamp) {
-  std::vector<std::int8_t> values = message_values(grid);
-  nav_msgs_msg_dds__OccupancyGrid_ sample{};
-  sample.header.stamp = time_of(stamp);
-  sample.header.frame_id = text(frame);
-  sample.info.map_load_time = time_of(stamp);
-  sample.info.resolution = static_cast<float>(grid.resolution);
-  sample.info.width = static_cast<std::uint32_t>(grid.width);
-  sample.info.height = static_cast<std::uint32_t>(grid.height);
-  sample.info.origin.position = {grid.origin.x, grid.origin.y, 0.0};
-  sample.info.origin.orientation = {0.0, 0.0, std::sin(grid.origin.theta / 2),
-                                    std::cos(grid.origin.theta / 2)};
-  refer(sample.data, values);
-  return write(writer, &sample, "a merged map");
-}
 
 bool is_same(const OccupancyGrid& a, const OccupancyGrid& b) {
   return a.width == b.width && a.height == b.height && a.resolution == b.resolution && a.origin == b.origin &&
@@ -168,16 +116,14 @@ void Publisher::publish_diagnoses(const std::vector<Diagnosis>& diagnoses) {
   write(diagnoses_, &sample, "diagnostics");
 }
 
-void Publisher::publish_node(const std::vector<dds_guid_t>& readers) {
-  const auto gid_of_entity = [](const DdsEntity& entity) {
-    dds_guid_t guid{};
-    require_dds(dds_get_guid(entity.get(), &guid), "a writer's number");
-    return gid_of(guid);
-  };
+void Publisher::publish_node(const std::vector<dds_guid_t>& readers, const std::vector<dds_guid_t>& writers) {
+  const auto gid_of_entity = [](const DdsEntity& entity) { return gid_of(guid_of(entity.get())); };
   std::vector<rmw_dds_common_msg_dds__Gid_> reader_gids;
   reader_gids.reserve(readers.size());
   for (const dds_guid_t& guid : readers) reader_gids.push_back(gid_of(guid));
   std::vector<rmw_dds_common_msg_dds__Gid_> writer_gids;
+  writer_gids.reserve(writers.size() + maps_.size() + 2);
+  for (const dds_guid_t& guid : writers) writer_gids.push_back(gid_of(guid));
   if (transforms_) writer_gids.push_back(gid_of_entity(transforms_));
   writer_gids.push_back(gid_of_entity(diagnoses_));
   for (const MapTopic& map : maps_) writer_gids.push_back(gid_of_entity(map.writer));

@@ -32,8 +32,9 @@ class Publisher {
 
   void publish_diagnoses(const std::vector<Diagnosis>& diagnoses);
 
-  /// Tells ROS's tools which node this participant is, and that it has these readers besides its own writers.
-  void publish_node(const std::vector<dds_guid_t>& readers);
+  /// Tells ROS's tools which node this participant is, and that it has these readers, and these writers
+  /// besides those of this.
+  void publish_node(const std::vector<dds_guid_t>& readers, const std::vector<dds_guid_t>& writers);
 
   /// Until all subscribers that are there have what was sent, at most so long.
   void flush(std::chrono::milliseconds most) const;

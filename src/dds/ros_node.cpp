@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include "dds/message.hpp"
 #include "dds/names.hpp"
 #include "dds/participant.hpp"
+#include "dds/player.hpp"
 #include "dds/publisher.hpp"
 #include "dds/selection.hpp"
 #include "dds/status.hpp"
@@ -57,6 +59,24 @@ RobotSelection select(const RosNodeOptions& options) {
   return selection;
 }
 
+void validate_played(const RosNodeOptions& options, const RobotSelection& selection) {
+  if (!(options.play_rate > 0.0) || !std::isfinite(options.play_rate))
+    throw std::invalid_argument("maps are played at a rate above 0");
+  std::map<std::string, std::string> sources;
+  for (const PlayedTopic& played : options.played) {
+    if (!is_topic_name(played.topic))
+      throw std::invalid_argument(
+          fmt::format("{}: '{}' is no whole name of a topic, as /tb1/map is", played.source, played.topic));
+    if (!selection.robot_of(played.topic))
+      throw std::invalid_argument(
+          fmt::format("{}: its topic {} is not {}", played.source, played.topic, selection.describe()));
+    const auto [other, is_new] = sources.emplace(played.topic, played.source);
+    if (!is_new)
+      throw std::invalid_argument(
+          fmt::format("{} and {} would both be played on {}", other->second, played.source, played.topic));
+  }
+}
+
 }  // namespace
 
 void validate(const RosNodeOptions& options) {
@@ -74,7 +94,11 @@ void validate(const RosNodeOptions& options) {
   if (options.wait && !(*options.wait >= 0.0)) throw std::invalid_argument("a time to wait is 0 s or more");
   validate(options.team);
   for (const auto& [robot, pose] : options.known_poses) validate(pose);
-  select(options);
+  validate_played(options, select(options));
+}
+
+bool is_heard(const RosNodeOptions& options, const std::string& topic) {
+  return RobotSelection(options.patterns, options.robots).robot_of(topic).has_value();
 }
 
 class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as public as RosNode
@@ -87,6 +111,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
         waitset_(dds_create_waitset(participant_.get()), "a wait set"),
         wake_(dds_create_guardcondition(participant_.get()), "a guard condition"),
         publisher_(participant_, options_),
+        player_(participant_, options_.played, options_.play_rate),
         listener_(participant_, waitset_.get(), selection_, callbacks()),
         ages_(participant_),
         team_(options_.team, [this](const std::shared_ptr<const TeamAnswer>&) { wake(); }) {
@@ -131,6 +156,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   DdsEntity waitset_;
   DdsEntity wake_;
   Publisher publisher_;
+  Player player_;
   MapListener listener_;
   AgeListener ages_;
   std::map<std::string, TeamTime> told_ages_;  // to the team, of each robot
@@ -188,6 +214,7 @@ RosNode::End RosNode::State::run() {
   options_.tell(fmt::format("hears {} in domain {}, and publishes {}", selection_.describe(),
                             environment_.domain, options_.output));
   while (!stopped_) {
+    player_.play(seconds());
     wait();
     if (!enough_) listener_.hear();
     hear_ages();
@@ -269,8 +296,8 @@ void RosNode::State::publish() {
 
 void RosNode::State::publish_node() {
   std::vector<dds_guid_t> readers = listener_.readers();
-  require_dds(dds_get_guid(ages_.reader(), &readers.emplace_back()), "a reader's number");
-  publisher_.publish_node(readers);
+  readers.push_back(guid_of(ages_.reader()));
+  publisher_.publish_node(readers, player_.writers());
 }
 
 void RosNode::State::check_wait() {
@@ -309,12 +336,12 @@ bool RosNode::State::is_complete() const {
         [&, topic = topic](const HeardRobot& robot) { return robot.topic == topic && has_sent(robot); });
     if (!is_heard) return false;
   }
-  return robots.size() > 1 && std::all_of(robots.begin(), robots.end(), has_sent);
+  return robots.size() > 1 && player_.is_over() && std::all_of(robots.begin(), robots.end(), has_sent);
 }
 
 std::optional<RosNode::End> RosNode::State::check_once() {
   if (!options_.once || !has_maps() || !all_sent_) return std::nullopt;
-  const bool is_over = seconds() >= options_.wait.value_or(kWaitOnce);
+  const bool is_over = player_.is_over() && seconds() >= options_.wait.value_or(kWaitOnce);
   // From now on nothing newer is heard: robots that map on would keep the team from ever being settled.
   enough_ = enough_ || is_over || (is_complete() && Clock::now() - news_at_ >= kQuiet);
   if (!enough_ || !team_.wait_until_settled(milliseconds(0))) return std::nullopt;

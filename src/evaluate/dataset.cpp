@@ -27,7 +27,7 @@ std::vector<TruePair> true_pairs(const Simulation& simulation) {
   std::vector<TruePair> pairs;
   for (const SimulatedPair& pair : simulation.pairs) {
     pairs.push_back({robot_map(pair.fixed), robot_map(pair.moving), pair.T_fixed_moving, pair.tolerance,
-                     std::string(1, pair.tier), pair.overlap});
+                     std::string(1, pair.tier), pair.overlap, pair.shared_wall});
   }
   return pairs;
 }

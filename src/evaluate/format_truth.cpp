@@ -20,11 +20,12 @@ const std::string& cell(const std::string& text) {
 }  // namespace
 
 std::string format_pairs(const std::vector<TruePair>& pairs) {
-  std::string text = "fixed\tmoving\tx\ty\ttheta\ttolerance\ttier\toverlap\n";
+  std::string text = "fixed\tmoving\tx\ty\ttheta\ttolerance\ttier\toverlap\tshared_wall\n";
   for (const TruePair& pair : pairs) {
     const SE2& T = pair.T_fixed_moving;
-    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", cell(pair.fixed.name),
-                   cell(pair.moving.name), T.x, T.y, T.theta, pair.tolerance, cell(pair.tier), pair.overlap);
+    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", cell(pair.fixed.name),
+                   cell(pair.moving.name), T.x, T.y, T.theta, pair.tolerance, cell(pair.tier), pair.overlap,
+                   pair.shared_wall);
   }
   return text;
 }

@@ -42,6 +42,12 @@ class TruthRows {
     return overlap;
   }
 
+  double shared_wall(std::size_t row) const {
+    const double metres = table_.number(row, "shared_wall");
+    if (metres < 0.0) table_.fail(row, "shared_wall must not be negative");
+    return metres;
+  }
+
  private:
   TextTable table_;
   std::filesystem::path directory_;
@@ -50,13 +56,15 @@ class TruthRows {
 }  // namespace
 
 std::vector<TruePair> parse_pairs(const std::filesystem::path& path, std::string_view text) {
-  const TruthRows rows(path, text, {"fixed", "moving", "x", "y", "theta", "tolerance"}, {"tier", "overlap"});
+  const TruthRows rows(path, text, {"fixed", "moving", "x", "y", "theta", "tolerance"},
+                       {"tier", "overlap", "shared_wall"});
   const TextTable& table = rows.table();
   std::vector<TruePair> pairs;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     pairs.push_back({rows.map(row, "fixed"), rows.map(row, "moving"), rows.transform(row),
                      rows.tolerance(row), table.has("tier") ? table.text(row, "tier") : std::string(),
-                     table.has("overlap") ? rows.overlap(row) : 0.0});
+                     table.has("overlap") ? rows.overlap(row) : 0.0,
+                     table.has("shared_wall") ? rows.shared_wall(row) : 0.0});
   }
   return pairs;
 }

@@ -86,6 +86,7 @@ std::span<const VerdictTerm> verdict_terms() {
                   kQuality, 0.0, 1.39, agrees_better},
       VerdictTerm{"things met", "-ln(1.05 - share), the share of things met drawn towards 1/3 by 4 m",
                   kQuality, 0.05, 2.5, [](const F& f) { return missing(things_share(f), 0.05); }}};
+  static_assert(kTerms.size() == kVerdictWeights.size(), "each term has its weight in verdict_model.hpp");
   return kTerms;
 }
 
@@ -99,6 +100,7 @@ std::span<const RankTerm> rank_terms() {
       RankTerm{"lines", "ln(wall_lines + 0.5)", [](const F& f) { return std::log(f.wall_lines + 0.5); }},
       RankTerm{"things", "as \"things met\"", [](const F& f) { return missing(things_share(f), 0.05); }},
       RankTerm{"tolerance", "ln(sigma)", [](const F& f) { return logarithm(f.sigma, 0.03); }}};
+  static_assert(kTerms.size() == kRankWeights.size(), "each term has its weight in verdict_model.hpp");
   return kTerms;
 }
 

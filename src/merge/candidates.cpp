@@ -11,10 +11,6 @@ namespace {
 constexpr double kMinProbability = 1e-3;
 constexpr double kMinDoubt = 1e-5;  // the model is not surer of anything
 
-/// A pose is off by about so many standard deviations of the walls that agree on it: bent maps have no exact
-/// one.
-constexpr double kDeviationsOfWalls = 2.0;
-
 }  // namespace
 
 std::vector<CandidateJoin> candidate_joins(const MatchResult& match) {

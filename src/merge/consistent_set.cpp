@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "grid/parallel.hpp"
-#include "merge/arrangement.hpp"
+#include "merge/group_search.hpp"
 #include "merge/join_weights.hpp"
 
 namespace gridmerge::internal {
@@ -38,10 +38,10 @@ NodeGroup in_order(NodeGroup group) {
 }
 
 /// What holds together from a probability on.
-ConsistentSet kept_from(const Arrangement& arrangement, double keep_probability) {
-  const JoinWeights& weights = arrangement.weights();
+ConsistentSet kept_from(const GroupSearch& search, double keep_probability) {
+  const JoinWeights& weights = search.weights();
   ConsistentSet consistent_set;
-  consistent_set.groups = arrangement.cut(keep_probability);
+  consistent_set.groups = search.cut(keep_probability);
   for (NodeGroup& group : consistent_set.groups) group = in_order(std::move(group));
   std::sort(consistent_set.groups.begin(), consistent_set.groups.end(),
             [](const NodeGroup& a, const NodeGroup& b) { return a.front().map < b.front().map; });
@@ -71,7 +71,7 @@ ConsistentSet kept_from(const Arrangement& arrangement, double keep_probability)
 ConsistentSet find_consistent_set(const JoinProblem& problem, double accept_probability) {
   validate(problem, accept_probability);
   const JoinWeights weights(problem);
-  return kept_from(Arrangement(weights, problem, accept_probability), accept_probability);
+  return kept_from(GroupSearch(weights, problem, accept_probability), accept_probability);
 }
 
 std::vector<OpenJoin> find_open_joins(const JoinProblem& problem, const ConsistentSet& consistent_set,
@@ -121,8 +121,8 @@ ConsistentSet find_consistent_set_within(const JoinProblem& problem, double acce
     throw std::invalid_argument("max_false_joins must be a number from 0 on");
   validate(problem, accept_probability);
   const JoinWeights weights(problem);
-  const Arrangement arrangement(weights, problem, accept_probability);
-  ConsistentSet consistent_set = kept_from(arrangement, accept_probability);
+  const GroupSearch search(weights, problem, accept_probability);
+  ConsistentSet consistent_set = kept_from(search, accept_probability);
   constexpr double kMinStep = 0.2;    // of the doubt that is still allowed, so that this ends
   constexpr double kMinDoubt = 1e-9;  // from there on nothing is surer
   double keep = accept_probability;
@@ -132,7 +132,7 @@ ConsistentSet find_consistent_set_within(const JoinProblem& problem, double acce
       for (const PlacedNode& node : group) least = std::min(least, node.probability);
     }
     keep = std::min(1.0, std::max(std::nextafter(least, 2.0), keep + kMinStep * (1.0 - keep)));
-    consistent_set = kept_from(arrangement, keep);
+    consistent_set = kept_from(search, keep);
   }
   return consistent_set;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gridmerge/grid/se2.hpp"
+#include "internal_export.hpp"
 #include "merge/map_extent.hpp"
 
 namespace gridmerge::internal {
@@ -21,8 +22,10 @@ struct RelativePose {
 
 /// A pose that was measured between two maps of these extents, to a displacement of `sd` metres: in the
 /// middle between them, so that it does not matter which of the two is the moving one.
-RelativePose measured_between(std::size_t fixed, std::size_t moving, const SE2& T_fixed_moving,
-                              const MapExtent& fixed_extent, const MapExtent& moving_extent, double sd);
+GRIDMERGE_INTERNAL_EXPORT RelativePose measured_between(std::size_t fixed, std::size_t moving,
+                                                        const SE2& T_fixed_moving,
+                                                        const MapExtent& fixed_extent,
+                                                        const MapExtent& moving_extent, double sd);
 
 /// A pose to be adjusted.
 struct AdjustablePose {

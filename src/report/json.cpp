@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "report/json_values.hpp"
+#include "report/told_joins.hpp"
 
 namespace gridmerge {
 
@@ -18,7 +19,7 @@ Json member_json(const std::string& name, const Member& member) {
           {"sd", deviation_json(member.sd)}};
 }
 
-Json join_json(const std::string& fixed, const std::string& moving, const Join& join) {
+Json join_json(const std::string& fixed, const std::string& moving, const Join& join, bool in_full) {
   Json json{{"fixed", fixed},
             {"moving", moving},
             {"transform", transform_json(join.T_fixed_moving)},
@@ -28,7 +29,9 @@ Json join_json(const std::string& fixed, const std::string& moving, const Join& 
             {"reason", reason_json(join.reason())},
             {"by_themselves", own_verdict_json(join.match)}};
   json.update(common_json(join));
-  json["hypotheses"] = hypotheses_json(join);
+  const std::optional<double> sd = deviation_of(join);
+  if (join.used() && sd) json["sd"] = number_json(*sd);
+  json["hypotheses"] = hypotheses_json(told_hypotheses(join, in_full));
   return json;
 }
 
@@ -42,16 +45,50 @@ std::string indented(const std::string& text, std::size_t spaces) {
   return result;
 }
 
-/// The joins, each over many lines but for refused ones, of which large teams have thousands.
-std::string joins_text(const std::vector<std::string>& names, const MergeResult& result) {
-  if (result.joins.empty()) return "[]";
+/// "[" and "]" about a line for each of what follows.
+std::string lines_text(const std::vector<std::string>& lines, std::size_t spaces) {
+  if (lines.empty()) return "[]";
   std::string text = "[";
-  for (const Join& join : result.joins) {
-    const bool in_a_line = join.outcome == JoinOutcome::refused;
-    const Json json = join_json(names.at(join.fixed), names.at(join.moving), join);
-    text += (text.size() > 1 ? ",\n    " : "\n    ") + indented(text_of(json, in_a_line ? -1 : 2), 4);
+  for (const std::string& line : lines) {
+    if (text.size() > 1) text += ',';
+    text.append("\n").append(spaces + 2, ' ').append(line);
   }
-  return text + "\n  ]";
+  return text.append("\n").append(spaces, ' ').append("]");
+}
+
+/// The joins that are told as objects. Over many lines if they are few, but for refused ones.
+std::string joins_text(const std::vector<std::string>& names, const MergeResult& result,
+                       const ToldJoins& told) {
+  std::vector<std::string> lines;
+  for (const std::size_t i : told.objects) {
+    const Join& join = result.joins[i];
+    const bool in_a_line = join.outcome == JoinOutcome::refused || !told.in_full;
+    const Json json = join_json(names.at(join.fixed), names.at(join.moving), join, told.in_full);
+    lines.push_back(indented(text_of(json, in_a_line ? -1 : 2), 4));
+  }
+  return lines_text(lines, 2);
+}
+
+/// The refused joins of many maps: how many there are, and the likely ones in rows of a table.
+std::string refused_text(const MergeResult& result, const ToldJoins& told) {
+  std::size_t count = 0;
+  Json reasons = Json::object();
+  for (const RefusedCount& refused : told.counts) {
+    count += refused.count;
+    reasons[name_of(refused.reason)] = refused.count;
+  }
+  const Json columns{"fixed", "moving", "reason", "probability", "x", "y", "theta"};
+  std::vector<std::string> lines;
+  for (const std::size_t i : told.rows) {
+    const Join& join = result.joins[i];
+    const SE2& T = join.T_fixed_moving;
+    lines.push_back(
+        text_of(Json{join.fixed, join.moving, reason_json(join.reason()), number_json(join.probability),
+                     number_json(T.x), number_json(T.y), number_json(T.theta)},
+                -1));
+  }
+  return "{\n    \"count\": " + std::to_string(count) + ",\n    \"reasons\": " + text_of(reasons, -1) +
+         ",\n    \"columns\": " + text_of(columns, -1) + ",\n    \"rows\": " + lines_text(lines, 4) + "\n  }";
 }
 
 Json distance_json(const DirectedDistance& distance) {
@@ -138,7 +175,9 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
   const auto add_json = [&](const char* key, const Json& value) { add(key, indented(text_of(value, 2), 2)); };
   add_json("maps", maps);
   add_json("components", components);
-  add("joins", joins_text(names, result));
+  const ToldJoins told = tell_joins(result);
+  add("joins", joins_text(names, result, told));
+  if (!told.counts.empty()) add("refused", refused_text(result, told));
   add_json("left_out", left_out);
   add_json("left_out_maps", left_out_maps);
   Json open_ways = Json::array();

@@ -34,18 +34,6 @@ Json common_json(const PairPose& pose) {
           {"overlap", number_json(pose.overlap)}};
 }
 
-Json hypotheses_json(const Join& join) {
-  constexpr std::size_t kMax = 3;
-  constexpr double kMinProbability = 0.01;
-  if (join.outcome != JoinOutcome::refused) return hypotheses_json(join.match.hypotheses);
-  std::vector<Hypothesis> kept;
-  for (const Hypothesis& hypothesis : join.match.hypotheses) {
-    if (kept.empty() || (kept.size() < kMax && hypothesis.probability >= kMinProbability))
-      kept.push_back(hypothesis);
-  }
-  return hypotheses_json(kept);
-}
-
 Json reason_json(Reason reason) {
   return reason == Reason::none ? Json() : Json(name_of(reason));
 }

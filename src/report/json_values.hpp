@@ -31,10 +31,6 @@ Reason own_reason(const MatchResult& match);
 /// What two maps say by themselves, whatever a merge makes of it.
 Json own_verdict_json(const MatchResult& match);
 
-/// What outputs keep of the hypotheses of a join: all where it was used or contradicts the others, and of a
-/// refused one the best and those that may well be true. Teams of many maps have mostly refused joins.
-Json hypotheses_json(const Join& join);
-
 /// The map whose frame the component's is, null if none's is: the world's.
 std::optional<std::size_t> frame_of(const Component& component);
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -15,6 +17,7 @@
 #include "io/file_reader.hpp"
 #include "report/json_reader.hpp"
 #include "report/json_values.hpp"
+#include "report/told_joins.hpp"
 
 namespace gridmerge {
 
@@ -55,6 +58,7 @@ class RecordReader {
     read_names(json.at("maps"));
     read_components(json.at("components"));
     read_joins(json.at("joins"));
+    if (json.has("refused")) read_refused(json.at("refused"));  // of many maps
     read_left_out(json);
     if (json.has("open_ways")) read_open_ways(json.at("open_ways"));
     // Not in what earlier versions wrote, nor where the tree was asked for.
@@ -151,6 +155,68 @@ class RecordReader {
     for (std::size_t i = 0; i < json.size(); ++i) record_.result.joins.push_back(read_join(json.at(i)));
   }
 
+  /// Those that have no row are counted alone.
+  void read_refused(const JsonReader& json) {
+    const JsonReader columns = json.at("columns");
+    std::array<std::size_t, 7> place{};  // of the columns that a row needs; others are passed over
+    constexpr std::array kColumns{"fixed", "moving", "reason", "probability", "x", "y", "theta"};
+    for (std::size_t c = 0; c < kColumns.size(); ++c) {
+      while (columns.at(place[c]).text() != kColumns[c]) {
+        if (++place[c] == columns.size()) columns.fail(std::string("has no '") + kColumns[c] + "'");
+      }
+    }
+    std::map<Reason, std::size_t> rows;
+    const JsonReader table = json.at("rows");
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      const JsonReader row = table.at(i);
+      Join join;
+      join.fixed = map_number(row.at(place[0]));
+      join.moving = map_number(row.at(place[1]));
+      if (join.fixed == join.moving) row.fail("is of a map and itself");
+      join.match.reason = read_reason(row.at(place[2]));
+      if (join.match.reason == Reason::none) row.at(place[2]).fail("is none");
+      join.probability = share(row.at(place[3]));
+      join.T_fixed_moving = {row.at(place[4]).number_in(-kFarthest, kFarthest),
+                             row.at(place[5]).number_in(-kFarthest, kFarthest),
+                             row.at(place[6]).number_in(-std::numbers::pi, std::numbers::pi)};
+      static_cast<PairPose&>(join.match) = join;
+      join.match.hypotheses = {{join.T_fixed_moving, 0.0, join.probability}};
+      ++rows[join.match.reason];
+      record_.result.joins.push_back(std::move(join));
+    }
+    // In the order in which the merge compared them.
+    std::stable_sort(record_.result.joins.begin(), record_.result.joins.end(),
+                     [](const Join& a, const Join& b) {
+                       return std::pair(a.fixed, a.moving) < std::pair(b.fixed, b.moving);
+                     });
+    read_more_refused(json, rows);
+  }
+
+  void read_more_refused(const JsonReader& json, const std::map<Reason, std::size_t>& rows) {
+    std::size_t counted = 0, in_rows = 0;
+    const JsonReader reasons = json.at("reasons");
+    for (int i = 0; i <= static_cast<int>(Reason::contradicts_others); ++i) {
+      const auto reason = static_cast<Reason>(i);
+      if (reason == Reason::none || !reasons.has(name_of(reason))) continue;
+      const JsonReader count = reasons.at(name_of(reason));
+      const std::size_t all = static_cast<std::size_t>(count.count());
+      const std::size_t told = rows.count(reason) > 0 ? rows.at(reason) : 0;
+      if (all < told) count.fail("is less than its rows");
+      counted += all;
+      in_rows += told;
+      if (all > told) record_.result.refused_more.push_back({reason, all - told});
+    }
+    if (static_cast<std::size_t>(json.at("count").count()) != counted)
+      json.at("count").fail("is not the sum of the reasons");
+    if (in_rows != json.at("rows").size()) json.at("rows").fail("has a reason that is not counted");
+  }
+
+  std::size_t map_number(const JsonReader& json) const {
+    const std::int64_t number = json.count();
+    if (number >= static_cast<std::int64_t>(record_.names.size())) json.fail("is no number of a map");
+    return static_cast<std::size_t>(number);
+  }
+
   /// The maps of a join. Of equal ones those that are next in the order of joins: ascending, fixed < moving.
   std::pair<std::size_t, std::size_t> pair_of(const JsonReader& json) const {
     using Maps = std::pair<std::size_t, std::size_t>;
@@ -179,6 +245,8 @@ class RecordReader {
       json.at("verdict").fail("does not go with the outcome");
     static_cast<PairPose&>(join) = read_pair_pose(json);
     join.match = read_match(json, join);
+    // Where it is known, and not in what earlier versions wrote.
+    if (join.used() && json.has("sd")) set_deviation(join, json.at("sd").number_in(0.0, kInfinity));
     const JsonReader reason = json.at("reason");
     const Reason told = reason.is_null() ? Reason::none : read_reason(reason);
     if (told != join.reason() && json.has("by_themselves")) reason.fail("does not go with the outcome");

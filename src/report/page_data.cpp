@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "grid/parallel.hpp"
@@ -10,11 +12,18 @@
 #include "gridmerge/report/preview.hpp"
 #include "gridmerge/version.hpp"
 #include "report/shown_map.hpp"
+#include "report/told_joins.hpp"
 #include "report/wording.hpp"
 
 namespace gridmerge::internal {
 
 namespace {
+
+/// Of more maps than this the page takes so many bytes at most for the maps, and so many for the merged ones.
+constexpr std::size_t kMaxMapsInFull = 50;
+constexpr std::size_t kMostBytesOfMaps = 10'000'000;
+constexpr std::size_t kMostBytesOfMerged = 4'000'000;
+constexpr std::size_t kAnyBytes = std::numeric_limits<std::size_t>::max();
 
 Json grid_json(const ShownMap& map) {
   return {{"width", map.width},
@@ -52,7 +61,7 @@ Json component_json(std::size_t index, const Component& component, const ShownMa
   return json;
 }
 
-Json join_json(const Join& join) {
+Json join_json(const Join& join, bool in_full) {
   Json json{{"fixed", join.fixed},
             {"moving", join.moving},
             {"outcome", name_of(join.outcome)},
@@ -61,40 +70,84 @@ Json join_json(const Join& join) {
             {"transform", transform_json(join.T_fixed_moving)},
             {"probability", number_json(join.probability)}};
   json.update(common_json(join));
-  json["hypotheses"] = hypotheses_json(join);
+  json["hypotheses"] = hypotheses_json(told_hypotheses(join, in_full));
   return json;
 }
 
-/// All maps, then all fused ones: what takes time is done for several at once.
-std::vector<ShownMap> show_all(const std::vector<OccupancyGrid>& maps, const MergeResult& result) {
-  std::vector<const OccupancyGrid*> grids;
-  grids.reserve(maps.size() + result.components.size());
-  for (const OccupancyGrid& map : maps) grids.push_back(&map);
-  for (const Component& component : result.components) grids.push_back(&component.fused.grid);
+/// The refused joins of many maps, as transforms.json has them.
+Json refused_json(const MergeResult& result, const ToldJoins& told) {
+  std::size_t count = 0;
+  for (const RefusedCount& refused : told.counts) count += refused.count;
+  Json rows = Json::array();
+  for (const std::size_t i : told.rows) {
+    const Join& join = result.joins[i];
+    const SE2& T = join.T_fixed_moving;
+    rows.push_back(
+        Json::array({join.fixed, join.moving, name_of(join.reason()), number_json(join.probability),
+                     number_json(T.x), number_json(T.y), number_json(T.theta)}));
+  }
+  return {{"count", count}, {"rows", std::move(rows)}};
+}
+
+/// What takes time is done for several at once. If they take more than `bytes`, the largest are shown
+/// coarser.
+std::vector<ShownMap> show_all(const std::vector<const OccupancyGrid*>& grids, std::size_t bytes) {
   std::vector<ShownMap> shown(grids.size());
-  parallel_for(grids.size(), [&](std::size_t i) { shown[i] = show_map(*grids[i]); });
-  return shown;
+  std::vector<std::size_t> made_with(grids.size(), 0);
+  std::size_t max_cells = kMaxShownCells;
+  while (true) {
+    parallel_for(grids.size(), [&](std::size_t i) {
+      const bool is_as_before = made_with[i] != 0 && grids[i]->cells.size() <= max_cells;
+      if (!is_as_before) shown[i] = show_map(*grids[i], max_cells);
+      made_with[i] = max_cells;
+    });
+    std::size_t sum = 0, most = 0;
+    for (const ShownMap& map : shown) {
+      sum += map.cells.size();
+      most = std::max(most, static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height));
+    }
+    if (sum <= bytes || most <= 1) return shown;
+    max_cells = most / 2;
+  }
 }
 
 }  // namespace
 
 Json page_data(const NamedMerge& merge) {
   const auto& [names, maps, result] = merge;
-  const std::vector<ShownMap> shown = show_all(maps, result);
+  const bool is_small = maps.size() <= kMaxMapsInFull;
+  std::vector<const OccupancyGrid*> grids;
+  for (const OccupancyGrid& map : maps) grids.push_back(&map);
+  const std::vector<ShownMap> shown = show_all(grids, is_small ? kAnyBytes : kMostBytesOfMaps);
+  grids.clear();
+  for (const Component& component : result.components) grids.push_back(&component.fused.grid);
+  const std::vector<ShownMap> shown_fused = show_all(grids, is_small ? kAnyBytes : kMostBytesOfMerged);
   Json shown_maps = Json::array();
   for (std::size_t i = 0; i < maps.size(); ++i) shown_maps.push_back(map_json(names.at(i), i, shown[i]));
   Json components = Json::array();
   for (std::size_t i = 0; i < result.components.size(); ++i)
-    components.push_back(component_json(i, result.components[i], shown[maps.size() + i]));
+    components.push_back(component_json(i, result.components[i], shown_fused[i]));
   Json joins = Json::array();
-  for (const Join& join : result.joins) joins.push_back(join_json(join));
+  const ToldJoins told = tell_joins(result);
+  for (const std::size_t i : told.objects) joins.push_back(join_json(result.joins[i], told.in_full));
+  Json open_ways = Json::array();
+  for (const OpenWay& way : result.open_ways)
+    open_ways.push_back({{"fixed", way.fixed},
+                         {"moving", way.moving},
+                         {"transform", transform_json(way.T_fixed_moving)},
+                         {"probability", number_json(way.probability)}});
   Json left_out = Json::array();
   for (const LeftOut& one : result.left_out)
     left_out.push_back(
         {{"map", one.map}, {"reason", name_of(one.reason)}, {"explanation", explain_left_out(result, one)}});
-  return {{"version", kVersion},           {"live", false},
-          {"maps", std::move(shown_maps)}, {"components", std::move(components)},
-          {"joins", std::move(joins)},     {"left_out", std::move(left_out)}};
+  return {{"version", kVersion},
+          {"live", false},
+          {"maps", std::move(shown_maps)},
+          {"components", std::move(components)},
+          {"joins", std::move(joins)},
+          {"refused", refused_json(result, told)},
+          {"left_out", std::move(left_out)},
+          {"open_ways", std::move(open_ways)}};
 }
 
 }  // namespace gridmerge::internal

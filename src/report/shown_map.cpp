@@ -36,9 +36,9 @@ OccupancyGrid at_most(OccupancyGrid grid, std::size_t max_cells) {
   return grid;
 }
 
-ShownMap show_map(const OccupancyGrid& grid) {
+ShownMap show_map(const OccupancyGrid& grid, std::size_t max_cells) {
   if (count_cells(grid).known() == 0) return {0, 0, grid.resolution, grid.origin, ""};
-  const OccupancyGrid known = at_most(crop_to_known(grid), kMaxShownCells);
+  const OccupancyGrid known = at_most(crop_to_known(grid), max_cells);
   return {known.width, known.height, known.resolution, known.origin, to_base64(deflated(known.cells))};
 }
 

@@ -28,6 +28,6 @@ struct ShownMap {
 };
 
 /// Of a grid of any size, 0 x 0 too; large ones are shown coarser (at_most(), kMaxShownCells). O(cells).
-ShownMap show_map(const OccupancyGrid& grid);
+ShownMap show_map(const OccupancyGrid& grid, std::size_t max_cells = kMaxShownCells);
 
 }  // namespace gridmerge::internal

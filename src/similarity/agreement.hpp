@@ -57,7 +57,7 @@ GRIDMERGE_INTERNAL_EXPORT AgreementCounts count_agreement(const OccupancyGrid& f
 
 /// Share of the smaller map's known area that is known in both, in [0, 1], from what count_agreement found.
 /// O(cells of both).
-GRIDMERGE_INTERNAL_EXPORT double measure_overlap(const OccupancyGrid& fixed, const OccupancyGrid& moving,
-                                                 const AgreementCounts& counts);
+double measure_overlap(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                       const AgreementCounts& counts);
 
 }  // namespace gridmerge::internal

@@ -54,9 +54,10 @@ void validate(const SimulateOptions& options) {
   require(options.threads >= 0, "threads must not be negative");
 }
 
-/// How much wall of the moving map lies where the fixed one knows, and how much of it meets wall there.
-char tier_of(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SimulatedPair& pair,
-             double bend) {
+/// Fills in how much wall of the moving map lies where the fixed one knows, and the tier, which also asks
+/// how much of it meets wall there.
+void measure_shared_wall(const OccupancyGrid& fixed, const OccupancyGrid& moving, double bend,
+                         SimulatedPair& pair) {
   constexpr double kNear = 0.1;  // [m]
   const int reach = static_cast<int>(std::ceil((kNear + bend) / fixed.resolution));
   const ManyPointsTransform T_map_grid(moving.origin);
@@ -79,10 +80,10 @@ char tier_of(const OccupancyGrid& fixed, const OccupancyGrid& moving, const Simu
       matching += meets ? 1 : 0;
     }
   }
-  const double walls = shared * moving.resolution / 0.05;
+  pair.shared_wall = shared * moving.resolution;
+  const double walls = pair.shared_wall / 0.05;
   const double match = shared > 0 ? static_cast<double>(matching) / shared : 0.0;
-  if (walls >= 400.0 && match >= 0.8) return 'A';
-  return walls >= 150.0 && match >= 0.6 ? 'B' : 'C';
+  pair.tier = walls >= 400.0 && match >= 0.8 ? 'A' : walls >= 150.0 && match >= 0.6 ? 'B' : 'C';
 }
 
 /// Root mean square distance between where two transforms put a map's places [m].
@@ -108,7 +109,7 @@ SimulatedPair make_pair(const std::vector<Survey>& surveys, std::size_t fixed, s
   pair.tolerance = std::max(kMinTolerance, 0.3 + 2.0 * fit.rms + doubt);
   pair.overlap =
       static_cast<double>(common.size()) / std::max(1, std::min(f.places.count(), m.places.count()));
-  pair.tier = tier_of(f.map.grid, m.map.grid, pair, fit.rms);
+  measure_shared_wall(f.map.grid, m.map.grid, fit.rms, pair);
   return pair;
 }
 

@@ -164,7 +164,8 @@ TEST_F(CacheTest, AFullDiskCostsTheCacheAndNotTheMerge) {
   EXPECT_EQ(merged.exit_code, 3) << merged.err;
   EXPECT_EQ(count_lines(merged.err), 1u) << merged.err;
   EXPECT_NE(merged.err.find("No space left on device"), std::string::npos) << merged.err;
-  EXPECT_EQ(kept().size(), kMatches - 1);
+  // The call that fails may be the one that makes a rename last: the match is kept then.
+  EXPECT_GE(kept().size(), kMatches - 1);
   expect_answer_of_one_machine("o");
 }
 

@@ -54,7 +54,7 @@ TEST_F(Merge, WritesTheFilesOfTheContract) {
   ASSERT_EQ(json.at("joins").size(), 1u);
   expect_keys(json.at("joins").at(0),
               {"fixed", "moving", "transform", "verdict", "probability", "outcome", "reason", "by_themselves",
-               "acceptance_index", "agreement", "disagreement", "overlap", "hypotheses"});
+               "acceptance_index", "agreement", "disagreement", "overlap", "sd", "hypotheses"});
   EXPECT_EQ(json.at("joins").at(0).at("fixed"), left);
   EXPECT_EQ(json.at("joins").at(0).at("moving"), right);
   EXPECT_EQ(json.at("joins").at(0).at("verdict"), "accepted");

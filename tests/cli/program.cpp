@@ -13,7 +13,9 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <fstream>
 #include <stdexcept>
+#include <string>
 
 extern char** environ;
 
@@ -193,6 +195,15 @@ std::string RunningProgram::read_line() {
   char c = 0;
   while (::read(out_, &c, 1) == 1 && c != '\n') line += c;
   return line;
+}
+
+double RunningProgram::peak_memory() const {
+  std::ifstream status("/proc/" + std::to_string(child_) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    constexpr double kKilobyte = 1024.0 / 1e6;
+    if (line.rfind("VmHWM:", 0) == 0) return std::stod(line.substr(6)) * kKilobyte;
+  }
+  throw std::runtime_error("the program is gone");
 }
 
 void RunningProgram::send(int signal) const {

@@ -44,6 +44,9 @@ class RunningProgram {
 
   void send(int signal) const;
 
+  /// The most memory that it has had in RAM [MB], as the system counts it (VmHWM).
+  double peak_memory() const;
+
   /// Sends the signal and waits for the end. The outcome's stdout is what was not read before.
   Outcome end_with(int signal);
 

@@ -134,7 +134,7 @@ TEST(Usage, HelpHasOptionsOfTheWalkBehindAllOthers) {
 
 TEST(Usage, HelpOfEvaluateNamesTheColumnsOfItsTables) {
   const std::string help = run({"evaluate", "--help"}).out;
-  for (const char* columns : {"fixed moving x y theta tolerance, and optionally tier and overlap",
+  for (const char* columns : {"fixed moving x y theta tolerance, and optionally tier, overlap, shared_wall",
                               "fixed moving\n", "set map x y theta tolerance\n"}) {
     EXPECT_NE(help.find(columns), std::string::npos) << columns;
   }

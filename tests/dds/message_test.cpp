@@ -74,6 +74,8 @@ TEST_F(MessageTest, TakesTheYawOfAnOrigin) {
   EXPECT_NEAR(read_map(message).grid.origin.theta, 0.7, 1e-12);
   for (double& part : message.orientation) part = -part;  // the same turn
   EXPECT_NEAR(read_map(message).grid.origin.theta, 0.7, 1e-12);
+  message.orientation = {};  // as in bags, none
+  EXPECT_EQ(read_map(message).grid.origin.theta, 0.0);
 }
 
 TEST_F(MessageTest, IsRefusedForWrongLengths) {
@@ -118,14 +120,16 @@ TEST_F(MessageTest, IsRefusedForOrigins) {
 }
 
 TEST_F(MessageTest, IsRefusedForOrientations) {
-  message.orientation = {0.0, 0.0, 0.0, 0.0};
+  message.orientation = {0.0, 0.0, 0.0, 1.01};
   EXPECT_EQ(refusal(), "an orientation that is no unit quaternion");
   message.orientation = {0.0, 0.0, kNaN, 1.0};
   EXPECT_EQ(refusal(), "an orientation that is no unit quaternion");
   message.orientation = {0.0, 0.0, 0.0, 1e200};
   EXPECT_EQ(refusal(), "an orientation that is no unit quaternion");
-  message.orientation = {std::sin(0.5), 0.0, 0.0, std::cos(0.5)};
-  EXPECT_EQ(refusal(), "an origin that is not level");
+  for (const double tilt : {1.0, 0.002}) {  // [rad]
+    message.orientation = {std::sin(tilt / 2), 0.0, 0.0, std::cos(tilt / 2)};
+    EXPECT_EQ(refusal(), "an origin that is not level") << tilt;
+  }
 }
 
 TEST_F(MessageTest, IsRefusedForCells) {

@@ -248,8 +248,8 @@ TEST_F(NodeTest, BelievesNoAgeOfAnotherFrame) {
   EXPECT_TRUE(comes_true([&] {
     peer->publish_diagnosis(right);
     const auto& all = peer->diagnoses();
-    const auto b = all.find("gridmerge: b");
-    return b != all.end() && b->second.values.at("heard first") == "1.000000000";
+    const auto found = all.find("gridmerge: b");
+    return found != all.end() && found->second.values.at("heard first") == "1.000000000";
   }));
   // Its frame is the world's now.
   EXPECT_TRUE(comes_true([&] {

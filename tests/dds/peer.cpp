@@ -5,24 +5,13 @@
 #include <functional>
 
 #include "dds/message.hpp"
-#include "ros_messages.h"
+#include "dds/samples.hpp"
 
 namespace gridmerge::test {
 
 using namespace internal;
 
 namespace {
-
-char* text(const std::string& value) {
-  return const_cast<char*>(value.c_str());
-}
-
-template <typename Sequence, typename Element>
-void refer(Sequence& sequence, const std::vector<Element>& elements) {
-  sequence._length = sequence._maximum = static_cast<std::uint32_t>(elements.size());
-  sequence._buffer = const_cast<Element*>(elements.data());
-  sequence._release = false;
-}
 
 template <typename Sample>
 void take_all(dds_entity_t reader, const std::function<void(const Sample&)>& take) {
@@ -139,10 +128,16 @@ const std::map<std::string, RawDiagnosis>& Peer::diagnoses() {
   take_all<diagnostic_msgs_msg_dds__DiagnosticArray_>(
       reader_of("/diagnostics", kDiagnosticType, {true, false, 10}),
       [&](const diagnostic_msgs_msg_dds__DiagnosticArray_& sample) {
-        diagnoses_.clear();
+        // The first is of the node itself; those of robots begin with its name.
+        const std::string node = sample.status._length > 0 ? sample.status._buffer[0].name : "";
+        std::erase_if(diagnoses_, [&](const auto& one) {
+          return one.first == node || one.first.starts_with(node + ": ");
+        });
+        ++received_;
         for (std::uint32_t i = 0; i < sample.status._length; ++i) {
           const auto& one = sample.status._buffer[i];
           RawDiagnosis& diagnosis = diagnoses_[one.name];
+          diagnosis.received = received_;
           diagnosis.level = one.level;
           diagnosis.message = one.message;
           for (std::uint32_t j = 0; j < one.values._length; ++j)

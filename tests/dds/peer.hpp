@@ -49,6 +49,7 @@ struct RawTransform {
 };
 
 struct RawDiagnosis {
+  std::uint64_t received = 0;  // messages of all nodes up to the one that has it
   int level = -1;
   std::string message;
   std::map<std::string, std::string> values;
@@ -86,7 +87,7 @@ class Peer {
   std::optional<RawMap> take_map(const std::string& topic);
   /// All transforms that were received, by child.
   const std::map<std::string, RawTransform>& transforms(const std::string& topic = "/tf_static");
-  /// The newest diagnoses, by name.
+  /// The newest diagnoses of each node, by name.
   const std::map<std::string, RawDiagnosis>& diagnoses();
 
  private:
@@ -99,6 +100,7 @@ class Peer {
   std::map<std::string, RawMap> maps_;
   std::map<std::string, RawTransform> transforms_;
   std::map<std::string, RawDiagnosis> diagnoses_;
+  std::uint64_t received_ = 0;
 };
 
 }  // namespace gridmerge::test

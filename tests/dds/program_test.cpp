@@ -4,8 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <random>
 #include <string>
+#include <vector>
 
 #include "dds/environment.hpp"
 #include "dds/participant.hpp"
@@ -131,6 +138,77 @@ TEST_F(NodeProgram, AgreesWithOthersOnWhoseFrameIsTheWorlds) {
   EXPECT_TRUE(comes_true([&] { return takes_frame_of_b("third_world"); }));
   EXPECT_EQ(second.end_with(SIGTERM).exit_code, 0);
   EXPECT_EQ(third.end_with(SIGTERM).exit_code, 0);
+}
+
+/// A map with everything in it that a peer may get wrong, by chance.
+RawMap hostile_map(std::mt19937_64& dice) {
+  const auto pick = [&](auto... choices) {
+    const std::array all{static_cast<double>(choices)...};
+    return all[dice() % all.size()];
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
+                   kHuge = std::numeric_limits<double>::max();
+  RawMap map;
+  const char* frames[] = {"", "/", "a map", "x\n\x1b[2J", "tb1/map", "\xff\xfe"};
+  map.frame = dice() % 8 == 0 ? std::string(3000, 'f') : frames[dice() % std::size(frames)];
+  map.resolution = static_cast<float>(pick(0.05, 0.0, -1.0, kNan, kHuge, 1e-30));
+  map.width = static_cast<std::uint32_t>(pick(0, 1, 3, 65536, 4294967295.0, 1 << 30));
+  map.height = static_cast<std::uint32_t>(pick(0, 1, 3, 65536, 4294967295.0, 1 << 30));
+  map.x = pick(0.0, kNan, kHuge, -kHuge, 1e8);
+  map.y = pick(0.0, kNan, kHuge, -kHuge, 1e8);
+  map.yaw = pick(0.0, kNan, kHuge, 1.0);
+  map.data.assign(dice() % 4 == 0 ? 9 : dice() % 70000, static_cast<std::int8_t>(dice()));
+  return map;
+}
+
+TEST_F(NodeProgram, SurvivesTenThousandHostileMessages) {
+  const MapTopic a = peer.maps("/a/map"), b = peer.maps("/b/map");
+  a.publish(map_of(0, "a/map"));
+  b.publish(map_of(1, "b/map"));
+  RunningProgram program({"node", "--quiet"});
+  const auto value = [&](const std::string& status, const std::string& key) -> std::string {
+    const auto& all = peer.diagnoses();
+    const auto found = all.find(status);
+    if (found == all.end() || !found->second.values.contains(key)) return {};
+    return found->second.values.at(key);
+  };
+  ASSERT_TRUE(comes_true([&] { return value("gridmerge", "placed") == "2"; }));
+
+  // More topics than are heard, and more messages than anybody could read.
+  constexpr int kTopics = 1000, kMessages = 10000;
+  std::vector<MapTopic> topics;
+  topics.reserve(kTopics);
+  for (int i = 0; i < kTopics; ++i)
+    topics.push_back(peer.maps("/rogue" + std::to_string(i) + "/map", i % 2 == 0, i % 3 == 0));
+  ASSERT_TRUE(comes_true([&] { return value("gridmerge", "robots") == "256"; }));
+  EXPECT_EQ(value("gridmerge", "publishers beyond the limit"), "746");  // of 1000, with 254 beside a and b
+
+  std::mt19937_64 dice(1);
+  for (int i = 0; i < kMessages; ++i) {
+    topics[dice() % topics.size()].publish(hostile_map(dice));
+    RawUpdate update;
+    update.x = static_cast<std::int32_t>(dice());
+    update.width = static_cast<std::uint32_t>(dice());
+    update.data.assign(dice() % 100, static_cast<std::int8_t>(dice()));
+    peer.publish_update(i % 2 == 0 ? "/a/map_updates" : "/rogue1/map_updates", update);
+  }
+  const auto refused = [&] {
+    int count = 0;
+    for (const auto& [name, diagnosis] : peer.diagnoses())
+      if (diagnosis.values.contains("refused")) count += std::stoi(diagnosis.values.at("refused"));
+    return count;
+  };
+  EXPECT_TRUE(comes_true([&] { return refused() > kMessages / 10; })) << refused();
+  EXPECT_EQ(value("gridmerge", "placed"), "2");
+  EXPECT_LT(program.peak_memory(), 500.0);  // Cyclone DDS keeps a record of each of 1000 writers
+  // When they are gone, it hears what is right.
+  topics.clear();
+  const MapTopic c = peer.maps("/c/map");
+  c.publish(map_of(2, "c/map"));
+  EXPECT_TRUE(comes_true([&] { return value("gridmerge", "placed") == "3"; }));
+  const Outcome outcome = program.end_with(SIGTERM);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.signal;
+  EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos);
 }
 
 TEST_F(NodeProgram, RefusesPosesThatCannotBeUsed) {

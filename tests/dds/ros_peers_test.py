@@ -255,7 +255,7 @@ class RosPeers(unittest.TestCase):
         message.info.resolution = float("nan")
         refused(message, "a resolution of nan", 3)
         message = read_map(1)
-        message.info.origin.orientation.w = 0.0
+        message.info.origin.orientation.w = 2.0
         refused(message, "quaternion", 4)
         # Bytes that are no message: cut off, and a length of four thousand million cells.
         whole = serialize_message(read_map(1))

@@ -32,7 +32,7 @@ SimulateOptions quick(int robots) {
 TEST(TruthText, ReadsBackToTheSameValues) {
   const test::TemporaryDirectory directory;
   const std::vector<TruePair> pairs{
-      {{"a.yaml", {}}, {"b c.yaml", {}}, {0.1, -2.0 / 3.0, 3.0}, 0.7, "B", 0.123}};
+      {{"a.yaml", {}}, {"b c.yaml", {}}, {0.1, -2.0 / 3.0, 3.0}, 0.7, "B", 0.123, 7.65}};
   const std::vector<TruePair> read = read_pairs(directory.write("pairs.tsv", format_pairs(pairs)));
   ASSERT_EQ(read.size(), 1U);
   EXPECT_EQ(read[0].moving.name, "b c.yaml");
@@ -40,6 +40,7 @@ TEST(TruthText, ReadsBackToTheSameValues) {
   EXPECT_EQ(read[0].tolerance, 0.7);
   EXPECT_EQ(read[0].tier, "B");
   EXPECT_EQ(read[0].overlap, 0.123);
+  EXPECT_EQ(read[0].shared_wall, 7.65);
 
   const auto negatives =
       read_negatives(directory.write("negatives.tsv", format_negatives({{{"a.yaml", {}}, {"x.yaml", {}}}})));

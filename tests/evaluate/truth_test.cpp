@@ -70,6 +70,12 @@ TEST_F(TruthFiles, ColumnsMayComeInAnyOrderAndTierMayBeAbsent) {
   EXPECT_EQ(pairs[0].tier, "");
 }
 
+TEST_F(TruthFiles, SharedWallMayBeSaid) {
+  const std::string head = "fixed\tmoving\tx\ty\ttheta\ttolerance\tshared_wall\n", row = "a\tb\t0\t0\t0\t1\t";
+  EXPECT_EQ(read_pairs(directory_.write("pairs.tsv", head + row + "12.5")).at(0).shared_wall, 12.5);
+  EXPECT_EQ(complaint(pairs_, head + row + "-1"), "truth.tsv:2: shared_wall must not be negative");
+}
+
 TEST_F(TruthFiles, ReadsNegatives) {
   const auto negatives =
       read_negatives(directory_.write("n.tsv", "fixed\tmoving\na.yaml\tb.yaml\nc.yaml\td.yaml\n"));

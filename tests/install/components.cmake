@@ -36,6 +36,9 @@ foreach(header IN LISTS headers)
 endforeach()
 
 set(core ${WORK_DIR}/core/prefix)
+# Its sources take Eigen's headers, its users do not.
+run(${configure} -S ${consumer} -B ${WORK_DIR}/no_eigen -D CMAKE_PREFIX_PATH=${core} -D COMPONENT=core
+    -D CMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON)
 refuse("There is no component 'cores'; there are core, merge"
        ${configure} -S ${consumer} -B ${WORK_DIR}/wrong -D CMAKE_PREFIX_PATH=${core} -D COMPONENT=cores)
 refuse("The component merge is not installed"

@@ -349,7 +349,7 @@ JoinProblem three_pairs() {
   return problem;
 }
 
-TEST(ArrangeWithin, MakesAsManyJoinsAsTheBudgetOfFalseOnesAllows) {
+TEST(ConsistentSetWithin, MakesAsManyJoinsAsTheBudgetOfFalseOnesAllows) {
   const JoinProblem problem = three_pairs();  // doubts of 0.18, 0.056 and 0.022
   const auto joins = [&](double budget) {
     return 6 - find_consistent_set_within(problem, 0.8, budget).groups.size();
@@ -363,7 +363,7 @@ TEST(ArrangeWithin, MakesAsManyJoinsAsTheBudgetOfFalseOnesAllows) {
 }
 
 /// No pair is as sure as a small budget asks for, but all of them together are.
-TEST(ArrangeWithin, KeepsWhatManyPairsAreSureOfTogether) {
+TEST(ConsistentSetWithin, KeepsWhatManyPairsAreSureOfTogether) {
   World world(6);
   world.say_all(4.5);
   const ConsistentSet consistent_set = find_consistent_set_within(world.problem, kAccept, 0.01);
@@ -371,7 +371,7 @@ TEST(ArrangeWithin, KeepsWhatManyPairsAreSureOfTogether) {
   world.expect_true(consistent_set.groups[0]);
 }
 
-TEST(ArrangeWithin, RefusesABudgetThatIsNone) {
+TEST(ConsistentSetWithin, RefusesABudgetThatIsNone) {
   EXPECT_THROW(find_consistent_set_within({}, 0.8, -0.1), std::invalid_argument);
   EXPECT_THROW(find_consistent_set_within({}, 0.8, std::nan("")), std::invalid_argument);
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <random>
 #include <stdexcept>
 
 #include "gridmerge/grid/resample.hpp"
@@ -12,7 +13,9 @@
 #include "io/support.hpp"
 #include "merge/drawing.hpp"
 #include "report/cells.hpp"
+#include "report/fleet.hpp"
 #include "report/results.hpp"
+#include "report/told_joins.hpp"
 
 namespace gridmerge {
 
@@ -63,6 +66,48 @@ Json data_of(const std::string& page) {
 
 Json transform(double x, double y, double theta) {
   return {{"x", x}, {"y", y}, {"theta", theta}};
+}
+
+TEST(ReportPage, TellsWhatStaysOpen) {
+  MergeResult result = two_of_four();
+  result.open_ways = {{0, 3, {1.0, 2.0, 0.5}, 0.375}};
+  const Json data = data_of(report_page({kNames, kMaps, result}));
+  ASSERT_EQ(data.at("open_ways").size(), 1u);
+  EXPECT_EQ(
+      data.at("open_ways")[0],
+      (Json{{"fixed", 0}, {"moving", 3}, {"transform", transform(1.0, 2.0, 0.5)}, {"probability", 0.375}}));
+  EXPECT_EQ(data.at("refused"), (Json{{"count", 0}, {"rows", Json::array()}}));
+}
+
+TEST(ReportPage, OfManyMapsHasTheJoinsThatMatter) {
+  const MergeResult result = test::fleet(120, 1);
+  const std::vector<OccupancyGrid> maps(120, map_from({"#.", ".#"}, 0.1));
+  const Json data = data_of(report_page({test::fleet_names(120), maps, result}));
+  const ToldJoins told = tell_joins(result);
+  EXPECT_EQ(data.at("joins").size(), told.objects.size());
+  ASSERT_EQ(data.at("refused").at("rows").size(), told.rows.size());
+  const Join& join = result.joins[told.rows[0]];
+  EXPECT_EQ(data.at("refused").at("rows")[0],
+            Json::array({join.fixed, join.moving, name_of(join.reason()), join.probability,
+                         join.T_fixed_moving.x, join.T_fixed_moving.y, join.T_fixed_moving.theta}));
+  EXPECT_EQ(data.at("refused").at("count"), result.joins.size() - told.objects.size());
+}
+
+TEST(ReportPage, OfManyLargeMapsShowsThemCoarser) {
+  // Cells that cannot be packed: 51 such maps would take 14 MB.
+  OccupancyGrid noise = make_grid(1000, 1000, 0.1);
+  std::mt19937 random(1);
+  for (Cell& cell : noise.cells) cell = static_cast<Cell>(random() % 3);
+  for (const std::size_t count : {50u, 51u}) {
+    std::vector<OccupancyGrid> maps(count, map_from({"#.", ".#"}, 0.1));
+    for (std::size_t i = 1; i < count; ++i) maps[i] = noise;
+    const std::string page = report_page({test::fleet_names(count), maps, MergeResult{}});
+    const Json shown = data_of(page).at("maps");
+    EXPECT_EQ(shown[1].at("width"), count == 50 ? 1000 : 500);
+    EXPECT_EQ(shown[1].at("resolution"), count == 50 ? 0.1 : 0.2);
+    EXPECT_EQ(shown[0].at("width"), 2) << "small ones stay as they are";
+    EXPECT_EQ(page.size() < 11'000'000, count == 51);
+  }
 }
 
 TEST(ReportPage, HoldsTheMaps) {

@@ -118,16 +118,41 @@ TEST(Simulate, EachMapHasAFrameOfItsOwn) {
   EXPECT_GT(*most - *least, 1.5);
 }
 
+TEST(Simulate, RobotsStartFarFromEachOther) {
+  SimulateOptions options = small();
+  options.width = 60.0;
+  options.longest_way = 0.5;
+  const auto mean_distance = [&] {
+    constexpr int kSeeds = 12;
+    double sum = 0.0;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      options.seed = static_cast<std::uint64_t>(seed);
+      const Simulation simulation = simulate(options);
+      const auto start = [&](std::size_t i) { return simulation.maps.at(i).path.front(); };
+      sum += std::hypot(start(0).x - start(1).x, start(0).y - start(1).y);
+    }
+    return sum / kSeeds;
+  };
+  options.robots = 2;
+  // Of two random places along a line the distance is a third of its length; the farther of six is farther.
+  EXPECT_GT(mean_distance(), 0.5 * options.width);
+}
+
 TEST(Simulate, TiersTellHowMuchWallTwoMapsShare) {
   SimulateOptions options = small();
   options.drift = 0.0;
   options.clutter = 0.0;
   options.width = 40.0;
   options.overlap = 0.8;
-  EXPECT_EQ(simulate(options).pairs.at(0).tier, 'A');
+  const SimulatedPair much = simulate(options).pairs.at(0);
+  EXPECT_EQ(much.tier, 'A');
+  EXPECT_GE(much.shared_wall, 20.0);
   options.overlap = 0.05;
   const Simulation apart = simulate(options);
-  for (const SimulatedPair& pair : apart.pairs) EXPECT_NE(pair.tier, 'A');
+  for (const SimulatedPair& pair : apart.pairs) {
+    EXPECT_NE(pair.tier, 'A');
+    EXPECT_LT(pair.shared_wall, much.shared_wall);
+  }
 }
 
 TEST(Simulate, NoOverlapMakesStrangers) {

@@ -8,6 +8,7 @@ import "./joins";
 import "./transforms";
 import "./by_hand";
 import "./hostile";
+import "./many";
 import "./palette";
 
 before(start);

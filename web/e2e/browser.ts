@@ -132,7 +132,7 @@ export async function cursor(page: Page): Promise<{ x: number; y: number }> {
 
 /** The middle of the canvas. */
 export async function middle(page: Page): Promise<{ x: number; y: number }> {
-  const box = (await page.locator("canvas").boundingBox())!;
+  const box = (await page.locator(".stage canvas").boundingBox())!;
   return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
 }
 

@@ -3,6 +3,7 @@
 import { statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { type Tab, load, middle, start, stop } from "./browser";
+import { fleet } from "./fleet";
 import { eighteen, examples, large, mergeInto, six, source } from "./reports";
 
 interface Figures {
@@ -18,6 +19,9 @@ interface Figures {
   longestTask: number;
   redrawn: number;
   hidden: number;
+  /** Megabytes of the script's heap once all is there; of many maps, milliseconds from a search to the map that it found, drawn. */
+  heap: number;
+  found: number;
 }
 
 async function firstPaint(tab: Tab): Promise<number> {
@@ -43,6 +47,29 @@ async function untilDrawn(tab: Tab, selector: string): Promise<number> {
     while (canvas.dataset.complete !== "true");
     return performance.now() - start;
   }, selector);
+}
+
+/** Milliseconds from typing a name to the map drawn; 0 where there is no search. */
+async function untilFound(tab: Tab, name: string): Promise<number> {
+  return tab.page.evaluate(async (typed) => {
+    const field = document.querySelector<HTMLInputElement>("#panel-overview .search");
+    if (!field) return 0;
+    const canvas = document.querySelector("canvas")!;
+    const start = performance.now();
+    field.value = typed;
+    field.dispatchEvent(new Event("input"));
+    document.querySelector<HTMLElement>(".hit")!.click();
+    do await new Promise(requestAnimationFrame);
+    while (canvas.dataset.complete !== "true");
+    return performance.now() - start;
+  }, name);
+}
+
+async function heap(tab: Tab): Promise<number> {
+  const session = await tab.page.context().newCDPSession(tab.page);
+  await session.send("HeapProfiler.collectGarbage");
+  const { usedSize, backingStorageSize } = await session.send("Runtime.getHeapUsage") as { usedSize: number; backingStorageSize?: number };
+  return (usedSize + (backingStorageSize ?? 0)) / 1e6;
 }
 
 /** Milliseconds between frames while the pointer drags the view to and fro for two seconds. */
@@ -75,6 +102,10 @@ async function measure(report: string, folder: string): Promise<Figures> {
   await tab.settled();
   const drawn = await tab.page.evaluate(() => performance.now());
   const task = await longestTask(tab);
+  const found = await untilFound(tab, "robot_137.yaml");
+  // Of many maps, those that nobody asked for come last.
+  await tab.page.waitForFunction(() => !document.querySelector("#panel-overview") || document.documentElement.dataset.all, null, { timeout: 120000 });
+  const megabytes = await heap(tab);
   const redrawn = await untilDrawn(tab, "button[aria-label='Zoom in']");
   const frames = await framesWhileDragging(tab);
   const hidden = await untilDrawn(tab, "#layer-agreement");
@@ -91,6 +122,8 @@ async function measure(report: string, folder: string): Promise<Figures> {
     longestTask: Math.round(task),
     redrawn: Math.round(redrawn),
     hidden: Math.round(hidden),
+    heap: Math.round(megabytes),
+    found: Math.round(found),
   };
   await tab.close();
   return figures;
@@ -103,6 +136,7 @@ async function main(): Promise<void> {
     await measure("6 maps", mergeInto("six", six())),
     await measure("18 maps", mergeInto("eighteen", eighteen())),
     await measure("4000 x 4000", mergeInto("large", large())),
+    await measure("1000 maps", fleet(1000)),
   ];
   await stop();
   console.table(all);

@@ -73,6 +73,21 @@ function emptyVotes(count: number): Votes {
   return scratch;
 }
 
+/** Which columns and rows of the square's pixels a map may reach: from `first` to before `last`, from `above` to before `below`. */
+function pixelsOf(grid: Grid, T_scene_map: SE2, { left, bottom, side, pixels }: Square): {
+  first: number; last: number; above: number; below: number;
+} {
+  const box = boxAround(grid.corners(T_scene_map));
+  const inside = (value: number) => Math.min(pixels, Math.max(0, value));
+  const top = bottom + pixels * side;
+  // A pixel more on each side: coarser levels of a map reach a little further.
+  const margin = grid.levelFor(side).resolution / side + 1;
+  return {
+    first: inside(Math.floor((box.left - left) / side - margin)), last: inside(Math.ceil((box.right - left) / side + margin)),
+    above: inside(Math.floor((top - box.top) / side - margin)), below: inside(Math.ceil((top - box.bottom) / side + margin)),
+  };
+}
+
 /** Calls `visit(pixel, cell)` for every pixel of the square of which the map knows something. */
 function sample(grid: Grid, T_scene_map: SE2, square: Square, visit: (pixel: number, cell: number) => void): void {
   const { pixels, side } = square;
@@ -88,11 +103,12 @@ function sample(grid: Grid, T_scene_map: SE2, square: Square, visit: (pixel: num
   const left = square.left + 0.5 * side;
   const startColumn = (cos * left - sin * top + T_grid_scene.x) / resolution;
   const startRow = (sin * left + cos * top + T_grid_scene.y) / resolution;
-  for (let j = 0; j < pixels; j++) {
-    let column = startColumn + j * along;
-    let row = startRow - j * across;
-    let pixel = j * pixels;
-    for (let i = 0; i < pixels; i++, pixel++, column += across, row += along) {
+  const { first, last, above, below } = pixelsOf(grid, T_scene_map, square);
+  for (let j = above; j < below; j++) {
+    let column = startColumn + j * along + first * across;
+    let row = startRow - j * across + first * along;
+    let pixel = j * pixels + first;
+    for (let i = first; i < last; i++, pixel++, column += across, row += along) {
       if (column < 0 || row < 0 || column >= width || row >= height) continue;
       const cell = cells[(row | 0) * width + (column | 0)];
       if (cell !== Cell.unknown) visit(pixel, cell);

@@ -55,12 +55,17 @@ export class Grid {
     return level.cells[row * level.width + column];
   }
 
+  /** The corners of one that may not be unpacked yet. */
+  static cornersOf({ width, height, resolution, origin }: Omit<PackedGrid, "cells">, T_frame_map: SE2): Point[] {
+    const T = compose(T_frame_map, origin);
+    const w = width * resolution;
+    const h = height * resolution;
+    return [{ x: 0, y: 0 }, { x: w, y: 0 }, { x: w, y: h }, { x: 0, y: h }].map((p) => apply(T, p));
+  }
+
   /** Its corners in the frame that `T_frame_map` takes the map's to, counter-clockwise from the lower left. */
   corners(T_frame_map: SE2 = identity): Point[] {
-    const T = compose(T_frame_map, this.origin);
-    const w = this.finest.width * this.finest.resolution;
-    const h = this.finest.height * this.finest.resolution;
-    return [{ x: 0, y: 0 }, { x: w, y: 0 }, { x: w, y: h }, { x: 0, y: h }].map((p) => apply(T, p));
+    return Grid.cornersOf({ ...this.finest, origin: this.origin }, T_frame_map);
   }
 
   /** Its middle in the map's frame. */

@@ -3,7 +3,8 @@ import { badge } from "./badge";
 import { h, replace } from "./dom";
 import { joinTitle } from "./join_graph";
 import { fixed, percent, probability } from "./numbers";
-import { type Join, type Outcome, outcomes } from "./report";
+import { type Join, type Outcome, hasFigures, isLarge, outcomes } from "./report";
+import { moreNote, mostRows } from "./search";
 import type { State } from "./state";
 
 interface Column {
@@ -38,12 +39,15 @@ export class JoinTable {
   }
 
   update(): void {
-    const rows = this.sorted().map((index) => this.row(this.state.report.joins[index], index));
+    const large = isLarge(this.state.report);
+    const all = this.sorted();
+    const rows = (large ? all.slice(0, mostRows) : all).map((index) => this.row(this.state.report.joins[index], index));
     if (rows.length === 0) {
       replace(this.element, h("p", { class: "soft" }, "No joins of these kinds."));
       return;
     }
-    replace(this.element, h("table", {}, h("thead", {}, h("tr", {}, ...columns.map((_, i) => this.head(i)))), h("tbody", {}, ...rows)));
+    replace(this.element, h("table", {}, h("thead", {}, h("tr", {}, ...columns.map((_, i) => this.head(i)))), h("tbody", {}, ...rows)),
+      moreNote(large ? all.length : 0, "join"));
   }
 
   /** The table may have been made anew, and the focus is lost with the old one. */
@@ -57,7 +61,8 @@ export class JoinTable {
     const { column, isDescending } = this.sorting;
     const { key } = columns[column];
     const sign = isDescending ? -1 : 1;
-    return [...joins.keys()].filter((index) => this.shown.has(joins[index].outcome)).sort((a, b) =>
+    const isFound = ({ fixed: a, moving: b }: Join) => !isLarge(this.state.report) || this.state.isFound(a) || this.state.isFound(b);
+    return [...joins.keys()].filter((index) => this.shown.has(joins[index].outcome) && isFound(joins[index])).sort((a, b) =>
       sign * (key(joins[a]) - key(joins[b])) || joins[b].probability - joins[a].probability || a - b);
   }
 
@@ -82,6 +87,7 @@ export class JoinTable {
     const { id } = this.state.scene;
     const isChosen = id.kind === "join" && id.join === index;
     const title = joinTitle(this.state, join);
+    const large = isLarge(this.state.report);
     const button = h("button", {
       type: "button", class: "link", title, "aria-pressed": String(isChosen), "data-join": index, "aria-label": `Show ${title}`,
       click: () => {
@@ -93,7 +99,7 @@ export class JoinTable {
       h("td", {}, button),
       h("td", { class: `outcome ${join.outcome}` }, join.outcome),
       h("td", { class: "number" }, probability(join.probability)),
-      h("td", { class: "number" }, fixed(join.acceptance_index, 3)),
-      h("td", { class: "number" }, percent(join.overlap)));
+      h("td", { class: "number" }, !large || hasFigures(join) ? fixed(join.acceptance_index, 3) : "–"),
+      h("td", { class: "number" }, !large || hasFigures(join) ? percent(join.overlap) : "–"));
   }
 }

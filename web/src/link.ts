@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Report } from "./report";
+import { type Report, isLarge } from "./report";
 import { type SceneId, firstScene } from "./scene";
 import { type Point, type SE2, normalizeAngle } from "./se2";
 
@@ -26,7 +26,9 @@ export interface SharedView {
 /** What a report shows when it is opened. */
 export function defaultView(report: Report): SharedView {
   return {
-    scene: firstScene(report), center: null, metres: 0, tab: "layers", merged: 0, agreement: 1, maps: new Map(), colors: new Map(),
+    scene: firstScene(report), center: null, metres: 0, tab: isLarge(report) ? "overview" : "layers",
+    // A thousand maps over each other say less than what they make.
+    merged: isLarge(report) && report.components.length > 0 ? 1 : 0, agreement: 1, maps: new Map(), colors: new Map(),
     placed: new Map(), grid: true, ruler: null,
   };
 }

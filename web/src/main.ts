@@ -8,11 +8,12 @@ import { fixed } from "./numbers";
 import { HandPanel } from "./panel_hand";
 import { JoinsPanel } from "./panel_joins";
 import { LayersPanel } from "./panel_layers";
+import { OverviewPanel } from "./panel_overview";
 import { TransformsPanel } from "./panel_transforms";
-import { type PackedGrid, type Report, summary } from "./report";
+import { type PackedGrid, type Report, expandRefused, isLarge, summary } from "./report";
 import { describeRuler } from "./ruler";
 import { type SceneId, firstScene } from "./scene";
-import { compose } from "./se2";
+import { type SE2, compose } from "./se2";
 import { SharedState } from "./shared_state";
 import { Stage } from "./stage";
 import { StageInput } from "./stage_input";
@@ -121,10 +122,15 @@ function notice(): { element: HTMLElement; say(text: string): void } {
   };
 }
 
-/** The grids one after the other, those that are seen first first; what they were unpacked from is let go. */
+/**
+ * The grids, those that are seen first first; what they were unpacked from is let go. Of many maps the merged ones come first,
+ * and the page is ready with them; the others follow, those that are asked for meanwhile first.
+ */
 async function unpackAll(state: State): Promise<void> {
   const { report } = state;
+  const large = isLarge(report);
   const damaged: string[] = [];
+  let due = 0;
   const each = async (name: string, packed: PackedGrid, keep: (grid: Grid) => void) => {
     try {
       keep(await unpack(packed));
@@ -132,19 +138,45 @@ async function unpackAll(state: State): Promise<void> {
       damaged.push(`${name} (${error instanceof Error ? error.message : String(error)})`);
     }
     packed.cells = "";
+    // Of many maps not after each: what listens would take longer than unpacking.
+    if (performance.now() < due) return;
+    if (large) due = performance.now() + pause;
     state.changed("grids");
   };
+  const unpackMap = (i: number) => each(report.maps[i].name, report.maps[i], (grid) => { state.grids[i] = grid; });
+  const unpackMerged = async () => {
+    for (const [i, component] of report.components.entries()) {
+      await each(component.file, component, (grid) => { state.mergedGrids[i] = grid; });
+    }
+  };
   const first = new Set(state.scene.placed.map(({ map }) => map));
-  const order = [...report.maps.keys()].sort((a, b) => Number(first.has(b)) - Number(first.has(a)));
-  for (const i of order) {
-    await each(report.maps[i].name, report.maps[i], (grid) => { state.grids[i] = grid; });
-  }
-  for (const [i, component] of report.components.entries()) {
-    await each(component.file, component, (grid) => { state.mergedGrids[i] = grid; });
+  const waiting = new Set([...report.maps.keys()].sort((a, b) => Number(first.has(b)) - Number(first.has(a))));
+  if (!large) {
+    for (const i of waiting) await unpackMap(i);
+    await unpackMerged();
+  } else {
+    await unpackMerged();
+    state.changed("grids");
+    document.documentElement.dataset.ready = "true";
+    while (waiting.size > 0) {
+      const next = state.wanted.filter((map) => waiting.has(map)).concat([...waiting]).slice(0, atOnce);
+      for (const map of next) waiting.delete(map);
+      if (next.some((map) => state.wanted.includes(map))) due = 0;
+      await Promise.all([...new Set(next)].map(unpackMap));
+      await new Promise((done) => setTimeout(done));
+    }
+    state.changed("grids");
+    document.documentElement.dataset.all = "true";
   }
   if (damaged.length > 0) showProblem(`The data of these maps are damaged: ${damaged.join(", ")}`);
   document.documentElement.dataset.ready = "true";
 }
+
+/** So many maps are unpacked at once, if there are many. */
+const atOnce = 8;
+
+/** Between redrawings while many maps are unpacked [ms]. */
+const pause = 300;
 
 function showProblem(text: string): void {
   document.getElementById("problem")!.textContent = text;
@@ -162,24 +194,38 @@ function build(report: Report): void {
     stage.fit();
     stage.canvas.focus();
   };
+  const placeSo = (map: number, on: number, T_on_map: SE2) => {
+    state.show(sceneOf(report, on));
+    const T_scene_map = compose(state.poseOf(on)!, T_on_map);
+    take(map);
+    state.put(map, T_scene_map);
+    stage.fit();
+  };
   const layers = new LayersPanel(state, {
     show: (map) => state.show({ kind: "map", map }),
     placeByHand: (map) => {
       if (state.scene.id.kind !== "component") state.show(baseFor(report, map));
       take(map);
     },
+    placeSo,
   });
-  const joins = new JoinsPanel(state, {
-    placeByHand: (map, on, T_on_map) => {
-      state.show(sceneOf(report, on));
-      const T_scene_map = compose(state.poseOf(on)!, T_on_map);
-      take(map);
-      state.put(map, T_scene_map);
-      stage.fit();
+  const joins = new JoinsPanel(state, { placeByHand: placeSo });
+  const overview = () => new OverviewPanel(state, {
+    show: (map) => {
+      state.wanted = [map];
+      state.show(sceneOf(report, map));
+      state.point(map);
+      stage.lookAtMap(map);
     },
+    showJoin: (join) => {
+      tabs.select("joins");
+      joins.choose(join);
+    },
+    placeSo,
   });
   const transforms = new TransformsPanel(state);
   const tabs = new Tabs([
+    ...(isLarge(report) ? [{ id: "overview", label: "Overview", panel: overview().element }] : []),
     { id: "layers", label: "Layers", panel: layers.element },
     { id: "joins", label: "Joins", panel: joins.element },
     { id: "transforms", label: "Transforms", panel: transforms.element },
@@ -252,6 +298,7 @@ function baseFor(report: Report, map: number): SceneId {
 try {
   const data = document.getElementById("report-data")!;
   const report = JSON.parse(data.textContent!) as Report;
+  expandRefused(report);
   data.textContent = "";
   build(report);
 } catch (error) {

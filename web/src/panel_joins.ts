@@ -7,8 +7,9 @@ import { joinMatrix } from "./join_matrix";
 import { JoinTable } from "./join_table";
 import { ownVerdict, sayOffset, sayWitnesses } from "./join_words";
 import { fixed, percent, probability } from "./numbers";
-import { type Join, type Outcome, isUsed, outcomeMeaning, outcomes, reasons } from "./report";
+import { type Join, type Outcome, hasFigures, isLarge, isUsed, outcomeMeaning, outcomes, reasons } from "./report";
 import type { SE2 } from "./se2";
+import { searchBox } from "./search";
 import type { State } from "./state";
 import { count } from "./text";
 import { mergedPose, offsetOf, witnessesOf } from "./witnesses";
@@ -35,7 +36,8 @@ export class JoinsPanel {
     this.shown = new Set(outcomes.filter((outcome) => all || outcome !== "refused"));
     if (state.report.joins.every((join) => !this.shown.has(join.outcome))) this.shown.add("refused");
     this.table = new JoinTable(state, this.shown, (join) => this.goTo(join));
-    replace(this.element, this.chosen, this.filters(), this.graph, this.table.element);
+    replace(this.element, this.chosen, isLarge(state.report) ? searchBox(state) : null, this.filters(), this.graph, this.table.element);
+    state.on("query", () => this.table.update());
     for (const topic of ["scene", "colors"] as const) state.on(topic, () => this.update());
     // Distances are told at a map's middle, which is known with its cells.
     state.on("grids", () => this.showChosen());
@@ -43,7 +45,8 @@ export class JoinsPanel {
   }
 
   private filters(): HTMLElement {
-    const counts = outcomes.map((outcome) => this.state.report.joins.filter((join) => join.outcome === outcome).length);
+    const counts = outcomes.map((outcome) => this.state.report.joins.filter((join) => join.outcome === outcome).length
+      + (outcome === "refused" ? this.state.report.refused.count : 0));
     const boxes = outcomes.map((outcome, i) => {
       const box = h("input", {
         type: "checkbox", id: `outcome-${outcome}`, change: () => {
@@ -60,16 +63,20 @@ export class JoinsPanel {
   }
 
   private update(): void {
-    const isMatrix = this.state.report.maps.length > mostInGraph;
-    const drawing = (isMatrix ? joinMatrix : joinGraph)(this.state, this.shown, (join) => this.goTo(join));
-    replace(this.graph, drawing, isMatrix ? h("p", { class: "soft" },
-      "A square for each two maps: full if accepted, hollow if rescued, broken if not used; the larger, the more they have in common.") : null);
+    if (!isLarge(this.state.report)) this.draw();
     this.table.update();
     this.showChosen();
   }
 
+  private draw(): void {
+    const isMatrix = this.state.report.maps.length > mostInGraph;
+    const drawing = (isMatrix ? joinMatrix : joinGraph)(this.state, this.shown, (join) => this.goTo(join));
+    replace(this.graph, drawing, isMatrix ? h("p", { class: "soft" },
+      "A square for each two maps: full if accepted, hollow if rescued, broken if not used; the larger, the more they have in common.") : null);
+  }
+
   /** A hypothesis of -1: as the merge has it, if that is none of the two maps' own. */
-  private choose(join: number, hypothesis = mergedHypothesis(this.state.report.joins[join])): void {
+  choose(join: number, hypothesis = mergedHypothesis(this.state.report.joins[join])): void {
     this.state.show({ kind: "join", join, hypothesis });
   }
 
@@ -88,7 +95,7 @@ export class JoinsPanel {
     const { id } = this.state.scene;
     if (id.kind !== "join") {
       replace(this.chosen, h("p", { class: "soft" },
-        `${count(this.state.report.joins.length, "comparison")}. Choose one to see just its two maps, and the other ways in which they may lie.`));
+        `${count(this.state.report.joins.length + this.state.report.refused.count, "comparison")}. Choose one to see just its two maps, and the other ways in which they may lie.`));
       return;
     }
     const join = this.state.report.joins[id.join];
@@ -97,7 +104,7 @@ export class JoinsPanel {
       h("h3", {}, mapLabel(this.state, join.fixed), h("span", { class: "soft" }, " and "), mapLabel(this.state, join.moving)),
       h("p", {}, h("strong", { class: `outcome ${join.outcome}` }, join.outcome), `: ${outcomeMeaning[join.outcome]}${reason}.`),
       join.outcome === "rescued" || join.outcome === "rejected" ? this.explain(join) : null,
-      figures(join, id.hypothesis), this.hypotheses(join, id.join, id.hypothesis),
+      hasFigures(join) || !isLarge(this.state.report) ? figures(join, id.hypothesis) : null, this.hypotheses(join, id.join, id.hypothesis),
       h("div", { class: "buttons" },
         h("button", { type: "button", class: "back", click: () => this.goBack(id.join) }, "Back to the whole"),
         h("button", {

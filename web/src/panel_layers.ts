@@ -4,8 +4,10 @@ import { type Rgb, disagreement, ink, white } from "./color";
 import { h, name, replace, swatch } from "./dom";
 import { Cell } from "./grid";
 import { fixed } from "./numbers";
-import type { Component } from "./report";
-import { apply, inverse } from "./se2";
+import { type SE2, apply, inverse } from "./se2";
+import { openWays } from "./open_ways";
+import { type Component, isLarge } from "./report";
+import { moreNote, mostRows, searchBox } from "./search";
 import type { Look, State } from "./state";
 import { count, flat } from "./text";
 
@@ -24,7 +26,9 @@ export class LayersPanel {
   private readonly sliders = new Map<HTMLInputElement, Look>();
   private shownMaps = "";
 
-  constructor(state: State, actions: { show(map: number): void; placeByHand(map: number): void }) {
+  constructor(state: State, actions: {
+    show(map: number): void; placeByHand(map: number): void; placeSo(map: number, on: number, T_on_map: SE2): void;
+  }) {
     this.state = state;
     this.showLeftOut = actions.show;
     this.placeByHand = actions.placeByHand;
@@ -33,9 +37,10 @@ export class LayersPanel {
         h("h3", {}, "Maps"),
         h("button", { type: "button", click: () => this.setAll(true) }, "All"),
         h("button", { type: "button", click: () => this.setAll(false) }, "None")),
-      this.mapRows, this.leftOut());
+      isLarge(state.report) ? searchBox(state) : null,
+      this.mapRows, this.leftOut(), openWays(state, state.report.open_ways, actions.placeSo));
     state.on("scene", () => this.rebuild());
-    state.on("hand", () => this.rebuild());
+    for (const topic of ["hand", "query"] as const) state.on(topic, () => this.rebuild());
     state.on("looks", () => this.update());
     state.on("colors", () => this.recolor());
     for (const topic of ["cursor", "hand", "grids"] as const) state.on(topic, () => this.read());
@@ -60,7 +65,9 @@ export class LayersPanel {
   private rebuild(): void {
     const { state } = this;
     const maps = state.placed().map(({ map }) => map);
-    const key = JSON.stringify([state.scene.id, maps]);
+    const found = isLarge(state.report) ? maps.filter((map) => state.isFound(map)) : maps;
+    const listed = isLarge(state.report) ? found.slice(0, mostRows) : found;
+    const key = JSON.stringify([state.scene.id, maps.length, found.length, listed]);
     if (key === this.shownMaps) return;
     this.shownMaps = key;
     const { component } = state.scene;
@@ -72,7 +79,7 @@ export class LayersPanel {
         legendItem(disagreement, "they contradict each other"),
         component === null ? null : agreementCounts(state.report.components[component])), "a"));
     this.readings = new Map();
-    replace(this.mapRows, ...maps.map((map) => this.mapRow(map)));
+    replace(this.mapRows, ...listed.map((map) => this.mapRow(map)), moreNote(isLarge(state.report) ? found.length : 0, "map"));
     this.read();
   }
 
@@ -142,6 +149,7 @@ export class LayersPanel {
 
   private read(): void {
     const { cursor } = this.state;
+    if (this.readings.size === 0) return;
     for (const { map, T_scene_map } of this.state.placed()) {
       const reading = this.readings.get(map);
       if (!reading) continue;
@@ -158,7 +166,7 @@ export class LayersPanel {
   private leftOut(): HTMLElement | null {
     const { left_out: leftOut, maps, components } = this.state.report;
     if (leftOut.length === 0) return null;
-    const items = leftOut.map(({ map, explanation }) => h("li", { "data-map": map },
+    const items = leftOut.slice(0, isLarge(this.state.report) ? mostRows : leftOut.length).map(({ map, explanation }) => h("li", { "data-map": map },
       h("div", {}, badge(this.state, map), name(this.state.names[map], maps[map].name)),
       h("p", { class: "soft" }, `${explanation.charAt(0).toUpperCase()}${explanation.slice(1)}.`),
       h("div", { class: "buttons" },
@@ -168,7 +176,8 @@ export class LayersPanel {
     return h("section", { class: "left-out" },
       h("h3", {}, "Left out"),
       h("p", { class: "soft" }, "Could not be joined to another map with confidence."),
-      h("ul", {}, ...items));
+      h("ul", {}, ...items),
+      moreNote(isLarge(this.state.report) ? leftOut.length : 0, "map"));
   }
 }
 

@@ -4,7 +4,8 @@ import { copyButton } from "./clipboard";
 import { h, replace } from "./dom";
 import { type NamedPose, asJson, asStaticTransforms, asYaml, frameIds } from "./formats";
 import { degrees, fixed, probability } from "./numbers";
-import type { Member } from "./report";
+import { type Member, isLarge } from "./report";
+import { moreNote, mostRows, searchBox } from "./search";
 import type { State } from "./state";
 import { flat } from "./text";
 
@@ -12,13 +13,17 @@ import { flat } from "./text";
 export class TransformsPanel {
   readonly element = h("div", { class: "panel", id: "panel-transforms" });
   private readonly state: State;
+  /** Apart from the search, which keeps the focus while what it found changes. */
+  private readonly content: HTMLElement;
   private pending = 0;
 
   constructor(state: State) {
     this.state = state;
     state.on("scene", () => this.rebuild());
     state.on("hand", () => this.rebuild());
-    state.on("colors", () => this.rebuild());
+    for (const topic of ["colors", "query"] as const) state.on(topic, () => this.rebuild());
+    this.content = isLarge(state.report) ? h("div") : this.element;
+    if (this.content !== this.element) replace(this.element, searchBox(state), this.content);
     this.rebuild();
   }
 
@@ -34,8 +39,10 @@ export class TransformsPanel {
   private draw(): void {
     const { state } = this;
     const { scene } = state;
-    const rows = state.placed().flatMap(({ map }) => this.rows(map));
-    replace(this.element,
+    const large = isLarge(state.report);
+    const maps = state.placed().map(({ map }) => map).filter((map) => !large || state.isFound(map));
+    const rows = (large ? maps.slice(0, mostRows) : maps).flatMap((map) => this.rows(map));
+    replace(this.content,
       h("p", { class: "frame" }, "In the frame ",
         scene.frame === null ? h("strong", {}, "in which poses were given") : h("span", {}, "of ", h("strong", {}, mapLabel(state, scene.frame))),
         scene.component === null ? "." : h("span", {}, ", which is also that of ", h("bdi", {}, scene.title), "."),
@@ -44,6 +51,7 @@ export class TransformsPanel {
         h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Map"),
           ...["x [m]", "y [m]", "θ [rad]"].map((head) => h("th", { class: "number", scope: "col" }, head)))),
         h("tbody", {}, ...rows))),
+      moreNote(large ? maps.length : 0, "map"),
       h("div", { class: "buttons" }, h("span", {}, "Copy all:"), ...this.buttons("all transforms", () => state.placed().map(({ map }) => map))));
   }
 

@@ -85,6 +85,21 @@ export interface LeftOut {
   explanation: string;
 }
 
+/** A way in which maps that lie apart may lie together: between the first maps of two groups, or maps that were left out. */
+export interface OpenWay {
+  fixed: number;
+  moving: number;
+  transform: SE2;
+  probability: number;
+}
+
+/** Of many maps: the refused joins that are not in `joins`. */
+export interface Refused {
+  count: number;
+  /** The likely ones: fixed, moving, reason, probability, x, y, theta. */
+  rows: [number, number, string, number, number, number, number][];
+}
+
 export interface Report {
   version: string;
   /** Served by a running gridmerge, which can refine poses. */
@@ -92,7 +107,33 @@ export interface Report {
   maps: InputMap[];
   components: Component[];
   joins: Join[];
+  refused: Refused;
   left_out: LeftOut[];
+  open_ways: OpenWay[];
+}
+
+/** Of more maps than this, lists are searched rather than read. */
+const mostListed = 50;
+
+export function isLarge(report: Report): boolean {
+  return report.maps.length > mostListed;
+}
+
+/** Makes joins of the rows of refused ones, which tell no cells that the two have in common. */
+export function expandRefused(report: Report): void {
+  for (const [fixed, moving, reason, probability, x, y, theta] of report.refused.rows) {
+    const transform = { x, y, theta };
+    report.joins.push({
+      fixed, moving, outcome: "refused", reason, by_themselves: { verdict: "refused", reason }, transform, probability,
+      acceptance_index: 0, agreement: 0, disagreement: 0, overlap: 0, hypotheses: [{ transform, score: 0, probability }],
+    });
+  }
+  report.refused = { count: report.refused.count - report.refused.rows.length, rows: [] };
+}
+
+/** Whether it is told what the two maps have in common: it is not of refused joins of many maps. */
+export function hasFigures(join: Join): boolean {
+  return join.agreement + join.disagreement > 0;
 }
 
 /** Whether maps lie in the result as the join says. */

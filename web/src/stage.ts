@@ -3,7 +3,7 @@ import { parseColor } from "./color";
 import type { Picture } from "./compose";
 import { type DecorColors, drawAxes, drawCrosshair, drawGrid, drawRuler, drawScaleBar } from "./decor";
 import { h } from "./dom";
-import type { Grid } from "./grid";
+import { Grid } from "./grid";
 import { placeOf } from "./scene";
 import type { Point, SE2 } from "./se2";
 import { Stamp, handleOf, outline } from "./stamp";
@@ -79,6 +79,15 @@ export class Stage {
     this.awaited = this.sized ? null : aim;
     if (!aim) this.fit();
     else this.look({ width, height, center: aim.center, scale: Math.min(width, height) / aim.metres });
+  }
+
+  /** A map of the scene, with what lies around it. */
+  lookAtMap(map: number): void {
+    const pose = this.state.poseOf(map);
+    if (!pose) return;
+    const { left, bottom, right, top } = boxAround(Grid.cornersOf(this.state.report.maps[map], pose));
+    const margin = 0.5 * Math.max(right - left, top - bottom);
+    this.look(fit({ left: left - margin, bottom: bottom - margin, right: right + margin, top: top + margin }, this.view.width, this.view.height));
   }
 
   /** What is seen, as a PNG, when all of it is drawn. */

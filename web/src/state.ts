@@ -18,9 +18,9 @@ export interface MapLook extends Look {
 
 /**
  * What has changed: which scene, how layers look, in which colours, which map is pointed out, where the cursor is, what is
- * measured, what is placed by hand, which cells are there.
+ * measured, what is placed by hand, which cells are there, which maps are searched for.
  */
-export type Topic = "scene" | "looks" | "colors" | "spotlight" | "cursor" | "ruler" | "hand" | "grids";
+export type Topic = "scene" | "looks" | "colors" | "spotlight" | "cursor" | "ruler" | "hand" | "grids" | "query";
 
 /** The map in hand, whose cells are there. */
 export interface InHand {
@@ -46,6 +46,10 @@ export class State {
   cursor: Point | null = null;
   /** Null while nothing is to be measured. */
   ruler: Ruler | null = null;
+  /** What is searched for in the names of maps. */
+  query = "";
+  /** Maps that somebody asked for, whose cells are to be there before others'. */
+  wanted: number[] = [];
   /** The map that can be dragged now. */
   handled: number | null = null;
   /** The scene that was shown last and is no join. */
@@ -76,6 +80,7 @@ export class State {
 
   show(id: SceneId): void {
     this.scene = makeScene(this.report, id);
+    if (id.kind !== "component") this.wanted = this.scene.placed.map(({ map }) => map);
     if (id.kind !== "join") this.whole = id;
     this.handled = this.offered = null;
     this.spotlight = null;
@@ -111,6 +116,18 @@ export class State {
     const grid = map === null ? null : this.grids[map];
     const pose = map === null ? null : this.poseOf(map);
     return map !== null && grid && pose ? { map, grid, pose } : null;
+  }
+
+  search(query: string): void {
+    if (query === this.query) return;
+    this.query = query;
+    this.changed("query");
+  }
+
+  /** Whether a map's name, or its number, is what is searched for. */
+  isFound(map: number): boolean {
+    const query = this.query.trim().toLowerCase();
+    return query === "" || query === String(map + 1) || this.names[map].toLowerCase().includes(query);
   }
 
   measure(ruler: Ruler | null): void {

@@ -2,8 +2,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { probability } from "../src/numbers";
-import { type Report, summary } from "../src/report";
+import { type Report, expandRefused, hasFigures, isLarge, summary } from "../src/report";
 import { shortNames } from "../src/text";
+import { reportOf } from "./reports";
 
 test("short names drop only folders that all maps share", () => {
   assert.deepEqual(shortNames(["m/a/1.yaml", "m/a/2.yaml"]), ["1.yaml", "2.yaml"]);
@@ -28,4 +29,23 @@ test("a probability is never rounded to certainty", () => {
   assert.equal(probability(1e-9), "< 0.001");
   assert.equal(probability(0.8), "0.800");
   assert.equal(probability(0), "0.000");
+});
+
+test("rows of refused joins become joins of which nothing in common is told", () => {
+  const report = reportOf([{ x: 0, y: 0, theta: 0 }, { x: 1, y: 0, theta: 0 }, { x: 2, y: 0, theta: 0 }]);
+  const before = report.joins.length;
+  report.refused = { count: 7, rows: [[0, 2, "ambiguous", 0.25, 1, -2, 0.5]] };
+  expandRefused(report);
+  assert.equal(report.joins.length, before + 1);
+  const join = report.joins[before];
+  assert.deepEqual([join.fixed, join.moving, join.outcome, join.reason, join.probability], [0, 2, "refused", "ambiguous", 0.25]);
+  assert.deepEqual(join.hypotheses.map(({ transform }) => transform), [{ x: 1, y: -2, theta: 0.5 }]);
+  assert.equal(hasFigures(join), false);
+  assert.deepEqual(report.refused, { count: 6, rows: [] });
+});
+
+test("of more than 50 maps lists are searched", () => {
+  const poses = [...Array(51).keys()].map((x) => ({ x, y: 0, theta: 0 }));
+  assert.equal(isLarge(reportOf(poses, [])), true);
+  assert.equal(isLarge(reportOf(poses.slice(1), [])), false);
 });

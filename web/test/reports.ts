@@ -18,7 +18,7 @@ export function reportOf(poses: SE2[], joins: Join[] = trueJoins(poses)): Report
   };
   return {
     version: "", live: false, maps: poses.map((_, i) => ({ ...grid, name: `${i}.yaml`, color: "#000000" })), components: [component],
-    joins, left_out: [],
+    joins, refused: { count: 0, rows: [] }, left_out: [], open_ways: [],
   };
 }
 

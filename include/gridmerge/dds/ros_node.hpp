@@ -21,6 +21,21 @@ enum class TransformTopic {
   none,       ///< nowhere
 };
 
+/// A recorded map, at one moment.
+struct PlayedMap {
+  double seconds = 0.0;  ///< since any moment that is the same for all maps of the topic [s]
+  std::string frame;     ///< the frame of the map
+  OccupancyGrid grid;    ///< with the pose of its lower left corner in that frame
+};
+
+/// A topic of recorded maps, which a RosNode publishes again as a robot would.
+struct PlayedTopic {
+  std::string topic;   ///< where they are published: "/tb1/map"
+  std::string source;  ///< for messages: where they come from
+  /// The next map, by time; none after the last. What it throws ends RosNode::run().
+  std::function<std::optional<PlayedMap>()> next;
+};
+
 /// What a RosNode hears and publishes.
 struct RosNodeOptions {
   /// Topics of robots' maps: `*` stands for any characters between two slashes, a level `**` for any levels.
@@ -32,7 +47,11 @@ struct RosNodeOptions {
   std::string output = "/merged_map";  ///< topic of the largest merged map; further ones get `_2`, ...
   TransformTopic transforms = TransformTopic::tf_static;  ///< where the robots' transforms go
   TeamOptions team;                                       ///< how maps are merged
-  bool once = false;  ///< end when all maps that are heard are merged as far as they can be
+  /// Recorded maps that are published, and heard as any others. The first maps of all topics come at once.
+  /// Where several have the same frame, each is put into the topic's namespace: "map" becomes "tb1/map".
+  std::vector<PlayedTopic> played;
+  double play_rate = 1.0;  ///< seconds of the recording per second, above 0; the same for all topics
+  bool once = false;       ///< end when all maps that are heard are merged as far as they can be
   std::optional<double>
       wait;  ///< so long a first map is waited for [s]; without it for ever, or 10 s with `once`
   std::function<void(const std::string&)> tell;    ///< called by run() with a line on what happened
@@ -40,9 +59,13 @@ struct RosNodeOptions {
   std::function<void(const std::string&)> detail;  ///< likewise, with the figures of each answer
 };
 
-/// Throws std::invalid_argument for names, topics, patterns, frames and options that cannot be, and for known
-/// poses of robots that cannot be heard.
+/// Throws std::invalid_argument for names, topics, patterns, frames and options that cannot be, for known
+/// poses of robots that cannot be heard, and for played topics that are not heard or that two play.
 GRIDMERGE_EXPORT void validate(const RosNodeOptions& options);
+
+/// Whether a node with these options takes what is published on this topic for the map of a robot. Throws
+/// std::invalid_argument as validate(), for patterns and robots.
+GRIDMERGE_EXPORT bool is_heard(const RosNodeOptions& options, const std::string& topic);
 
 /// A node of ROS 2 that hears the maps of robots on DDS, merges them as a Team does, and publishes the merged
 /// maps, the transforms of the robots' map frames and diagnostics. Nodes of one domain agree on whose frame

@@ -25,7 +25,8 @@ struct TruePair {
   double tolerance = 0.0;  ///< largest rms_displacement() of a correct estimate [m]
   std::string
       tier;  ///< how hard the pair is, in the file's own words; empty where the file has no such column
-  double overlap = 0.0;  ///< share of the smaller map that both know; 0 where the file does not say
+  double overlap = 0.0;      ///< share of the smaller map that both know; 0 where the file does not say
+  double shared_wall = 0.0;  ///< as in SimulatedPair [m]; 0 where the file does not say
 };
 
 /// Two maps with no common place: the only right answer is to refuse.
@@ -52,7 +53,8 @@ struct TrueSet {
 /// are read the same way under every locale and must be finite; tolerances must be positive. They throw
 /// FileError with "file:line: cause".
 
-/// Columns: fixed, moving, x, y, theta, tolerance; optional: tier, overlap (in [0, 1]).
+/// Columns: fixed, moving, x, y, theta, tolerance; optional: tier, overlap (in [0, 1]), shared_wall (from 0
+/// on).
 GRIDMERGE_EXPORT std::vector<TruePair> read_pairs(const std::filesystem::path& path);
 
 /// Columns: fixed, moving.

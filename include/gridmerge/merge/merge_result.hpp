@@ -91,6 +91,15 @@ struct LeftOut {
   friend bool operator==(const LeftOut&, const LeftOut&) = default;
 };
 
+/// How many comparisons were refused for a reason.
+struct RefusedCount {
+  Reason reason = Reason::nothing_to_compare;  ///< why the two maps are not said to lie together
+  std::size_t count = 0;                       ///< of comparisons
+
+  /// Whether reason and count are the same.
+  friend bool operator==(const RefusedCount&, const RefusedCount&) = default;
+};
+
 /// What a merge made of its maps.
 struct MergeResult {
   std::vector<Component> components;  ///< of two or more maps each, most members first
@@ -99,6 +108,9 @@ struct MergeResult {
   std::vector<OpenWay> open_ways;     ///< most probable first. The tree knows none
   /// How many joins are expected to be false, of all that were made. The tree does not know.
   std::optional<double> expected_false_joins = {};
+  /// Refused comparisons beside `joins`, by reason. A merge has none. A saved merge of many maps keeps no
+  /// more than this of most of them.
+  std::vector<RefusedCount> refused_more = {};
 };
 
 }  // namespace gridmerge

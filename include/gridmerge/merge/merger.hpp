@@ -14,8 +14,8 @@ namespace gridmerge {
 
 /// A match of two maps that a merge needs.
 struct DueMatch {
-  std::size_t fixed = 0;  ///< as Merger::add() called it
-  std::size_t moving = 0;
+  std::size_t fixed = 0;                           ///< as Merger::add() called it
+  std::size_t moving = 0;                          ///< likewise
   SearchMethod search = SearchMethod::exhaustive;  ///< how it is to be made
 };
 

@@ -11,11 +11,11 @@ namespace gridmerge::internal {
 /// All maps in groups, joined and moved about until nothing gains: find_consistent_set() says how. Maps that
 /// no chain of candidates connects have nothing to do with each other, so each connected part of the maps is
 /// arranged by itself; and of two groups only those are weighed between which a pair has a candidate.
-class Arrangement {
+class GroupSearch {
  public:
   /// Groups are joined from `accept_probability` on. Both must outlive this. Runs in the calling TBB arena.
   /// O(joins * (log(joins) + pairs of a group)) joins are weighed; a group of n maps is adjusted n times.
-  Arrangement(const JoinWeights& weights, const JoinProblem& problem, double accept_probability);
+  GroupSearch(const JoinWeights& weights, const JoinProblem& problem, double accept_probability);
 
   const JoinWeights& weights() const { return weights_; }
 

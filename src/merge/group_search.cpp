@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "merge/arrangement.hpp"
+#include "merge/group_search.hpp"
 
 #include <algorithm>
 #include <map>
@@ -273,7 +273,7 @@ std::vector<std::vector<std::size_t>> connected_maps(const JoinProblem& problem,
 
 }  // namespace
 
-Arrangement::Arrangement(const JoinWeights& weights, const JoinProblem& problem, double accept_probability)
+GroupSearch::GroupSearch(const JoinWeights& weights, const JoinProblem& problem, double accept_probability)
     : weights_(weights) {
   const std::vector<std::vector<std::size_t>> parts = connected_maps(problem, weights);
   parts_.resize(parts.size());
@@ -293,7 +293,7 @@ Arrangement::Arrangement(const JoinWeights& weights, const JoinProblem& problem,
   });
 }
 
-NodeGroups Arrangement::cut(double keep_probability) const {
+NodeGroups GroupSearch::cut(double keep_probability) const {
   std::vector<const NodeGroup*> groups;
   for (const NodeGroups& part : parts_) {
     for (const NodeGroup& group : part) groups.push_back(&group);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The arrangement of maps in groups beside a literal one, which weighs every two groups in every round.
-#include "merge/arrangement.hpp"
+// The search of maps in groups beside a literal one, which weighs every two groups in every round.
+#include "merge/group_search.hpp"
 
 #include <gtest/gtest.h>
 
@@ -270,13 +270,13 @@ NodeGroups sorted(NodeGroups groups) {
   return groups;
 }
 
-TEST(Arrangement, IsThatOfTheLiteralOneToTheBit) {
+TEST(GroupSearch, IsThatOfTheLiteralOneToTheBit) {
   std::size_t joined = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {
     const JoinProblem problem = drawn(seed);
     const double keep = seed % 2 == 0 ? 0.8 : 0.97;
     const JoinWeights weights(problem);
-    const NodeGroups found = sorted(Arrangement(weights, problem, 0.8).cut(keep));
+    const NodeGroups found = sorted(GroupSearch(weights, problem, 0.8).cut(keep));
     const NodeGroups expected = sorted(LiteralArranger(problem, 0.8, keep).settle());
     ASSERT_EQ(found.size(), expected.size()) << seed;
     for (std::size_t g = 0; g < found.size(); ++g) {

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exports.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string_view>
+
+#include "console.hpp"
+#include "gridmerge/report/merge_output.hpp"
+
+namespace gridmerge::cli {
+
+namespace {
+
+std::string formats_text() {
+  std::string text;
+  for (const ExportFormat format : export_formats())
+    text += (text.empty() ? "" : ", ") + std::string(name_of(format));
+  return text;
+}
+
+struct Wanted {
+  std::string_view format;
+  std::optional<std::string_view> file;
+};
+
+Wanted split(std::string_view text) {
+  const std::size_t at = text.find('=');
+  if (at == std::string_view::npos) return {text, std::nullopt};
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+std::string what_is_wrong(const std::string& text) {
+  const Wanted wanted = split(text);
+  if (!export_format(wanted.format))
+    return fmt::format("'{}' is no format: there are {}", escape_controls(wanted.format), formats_text());
+  if (wanted.file && wanted.file->empty()) return fmt::format("'{}' names no file", escape_controls(text));
+  return {};
+}
+
+std::filesystem::path normal(const std::filesystem::path& path) {
+  return std::filesystem::absolute(path).lexically_normal();
+}
+
+/// A folder, "" for the current one.
+std::filesystem::path normal_folder(const std::filesystem::path& folder) {
+  return normal(folder.empty() ? "./" : folder / "");
+}
+
+}  // namespace
+
+void add_export_option(CLI::App& command, ExportOptions& options) {
+  command
+      .add_option(
+          "--export", options.wanted,
+          "Also write where the maps lie, for other programs: g2o is a pose graph, open-rmf has points "
+          "for fleet adapters, geojson has outlines. If not named, the file is merged.g2o, "
+          "open_rmf.yaml or merged.geojson in DIR. Repeat the option for others")
+      ->option_text("FORMAT[=FILE]")
+      ->allow_extra_args(false)  // or it would take the maps behind it
+      ->check(CLI::Validator([](std::string& text) { return what_is_wrong(text); }, ""));
+}
+
+std::vector<Export> exports_of(const ExportOptions& options, const std::string& directory) {
+  std::vector<Export> exports;
+  for (const std::string& text : options.wanted) {
+    const Wanted wanted = split(text);
+    const ExportFormat format = *export_format(wanted.format);
+    exports.push_back({format, wanted.file ? std::filesystem::path(*wanted.file)
+                                           : std::filesystem::path(directory) / export_file(format)});
+  }
+  return exports;
+}
+
+void try_result_file(const std::filesystem::path& file, const std::string& directory,
+                     const std::vector<std::filesystem::path>& inputs) {
+  const bool beside = normal_folder(file.parent_path()) == normal_folder(directory);
+  if (beside && is_merge_output(file.filename()))
+    throw FileError(file, "is a file that the merge itself writes: choose another name");
+  if (!beside || std::filesystem::exists(directory)) try_output_file(file.string(), inputs);
+}
+
+void try_exports(const std::vector<Export>& exports, const std::string& directory,
+                 const std::vector<std::filesystem::path>& inputs) {
+  for (std::size_t i = 0; i < exports.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (normal(exports[i].file) == normal(exports[j].file))
+        throw FileError(exports[i].file, "would be written by two exports: choose another name for one");
+    }
+    try_result_file(exports[i].file, directory, inputs);
+  }
+}
+
+std::string write_exports(const std::vector<Export>& exports,
+                          const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge) {
+  std::string text;
+  for (const Export& one : exports) {
+    write_export(one.format, one.file, inputs, merge);
+    text += fmt::format("{}: {}\n", name_of(one.format), escape_controls(one.file.string()));
+  }
+  return text;
+}
+
+}  // namespace gridmerge::cli

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gridmerge/report/interchange.hpp"
+
+namespace gridmerge::cli {
+
+/// What is written of a merge for other programs.
+struct ExportOptions {
+  std::vector<std::string> wanted;  // FORMAT or FORMAT=FILE
+};
+
+/// A file to write.
+struct Export {
+  ExportFormat format;
+  std::filesystem::path file;
+};
+
+/// --export. A format that there is not is a mistake in the command line.
+void add_export_option(CLI::App& command, ExportOptions& options);
+
+/// The files, those without a name in `directory`.
+std::vector<Export> exports_of(const ExportOptions& options, const std::string& directory);
+
+/// Makes sure, before long work, that a file can be written in or beside `directory`, which need not be there
+/// yet. Throws FileError, also for a name that a merge itself gives to a file there, or one of `inputs` has.
+void try_result_file(const std::filesystem::path& file, const std::string& directory,
+                     const std::vector<std::filesystem::path>& inputs);
+
+/// The same of all that is to be exported, and no two to one file.
+void try_exports(const std::vector<Export>& exports, const std::string& directory,
+                 const std::vector<std::filesystem::path>& inputs);
+
+/// Writes all of them, and returns what to tell of it: a line for each. Throws FileError.
+std::string write_exports(const std::vector<Export>& exports,
+                          const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge);
+
+}  // namespace gridmerge::cli

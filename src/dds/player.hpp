@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <dds/dds.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dds/entity.hpp"
+#include "dds/participant.hpp"
+#include "gridmerge/dds/ros_node.hpp"
+
+namespace gridmerge::internal {
+
+/// Publishes recorded maps as robots do that map at the same time: reliable and transient local, stamped with
+/// the system's time.
+class Player {
+ public:
+  /// Reads the first map of each topic. Throws what PlayedTopic::next does, std::runtime_error for a topic
+  /// without a map, and as require_dds().
+  Player(const Participant& participant, std::vector<PlayedTopic> topics, double rate);
+
+  /// Publishes what is due `seconds` after the beginning. Of several maps of a topic that are due, only the
+  /// newest is published. What a subscriber holds back is tried again by the next call. Throws what
+  /// PlayedTopic::next does.
+  void play(double seconds);
+
+  /// Whether all maps of all topics were published.
+  bool is_over() const;
+
+  std::vector<dds_guid_t> writers() const;
+
+ private:
+  struct Topic {
+    PlayedTopic played;
+    DdsEntity writer;
+    std::string frame;
+    double begin = 0.0;             // PlayedMap::seconds of the first map
+    std::optional<PlayedMap> due;   // is to be published now
+    std::optional<PlayedMap> next;  // comes later
+  };
+
+  void advance(Topic& topic, double seconds) const;
+
+  std::vector<Topic> topics_;
+  double rate_ = 1.0;
+};
+
+}  // namespace gridmerge::internal

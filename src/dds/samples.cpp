@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dds/samples.hpp"
+
+#include <dds/dds.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace gridmerge::internal {
+
+Stamp now() {
+  const auto since = std::chrono::system_clock::now().time_since_epoch();
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(since);
+  return {static_cast<std::int32_t>(seconds.count()),
+          static_cast<std::uint32_t>(std::chrono::nanoseconds(since - seconds).count())};
+}
+
+bool write(const DdsEntity& writer, const void* sample, std::string_view what) {
+  const dds_return_t code = dds_write(writer.get(), sample);
+  if (code == DDS_RETCODE_TIMEOUT) return false;
+  require_dds(code, what);
+  return true;
+}
+
+bool write_map(const DdsEntity& writer, const OccupancyGrid& grid, const std::string& frame,
+               const Stamp& stamp) {
+  std::vector<std::int8_t> values = message_values(grid);
+  nav_msgs_msg_dds__OccupancyGrid_ sample{};
+  sample.header.stamp = time_of(stamp);
+  sample.header.frame_id = text(frame);
+  sample.info.map_load_time = time_of(stamp);
+  sample.info.resolution = static_cast<float>(grid.resolution);
+  sample.info.width = static_cast<std::uint32_t>(grid.width);
+  sample.info.height = static_cast<std::uint32_t>(grid.height);
+  sample.info.origin.position = {grid.origin.x, grid.origin.y, 0.0};
+  sample.info.origin.orientation = {0.0, 0.0, std::sin(grid.origin.theta / 2),
+                                    std::cos(grid.origin.theta / 2)};
+  refer(sample.data, values);
+  return write(writer, &sample, "a map");
+}
+
+}  // namespace gridmerge::internal

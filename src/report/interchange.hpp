@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gridmerge/report/named_merge.hpp"
+
+namespace gridmerge::internal {
+
+// The texts of export_text(), one a format.
+std::string g2o_text(const NamedMerge& merge);
+std::string open_rmf_text(const NamedMerge& merge);
+std::string geojson_text(const NamedMerge& merge);
+
+/// A text in double quotes, as YAML and JSON have it: one line of printable characters. What is not UTF-8
+/// becomes U+FFFD. O(length).
+std::string quoted(const std::string& text);
+
+/// The corners of the smallest upright rectangle in the grid that holds all known cells, in the map's frame,
+/// counter-clockwise; none if nothing is known. O(cells).
+std::vector<Point2> known_corners(const OccupancyGrid& grid);
+
+/// The corners of the smallest convex shape that holds all known cells, in the map's frame,
+/// counter-clockwise; none if nothing is known. O(cells + h log h) for a grid of h rows.
+std::vector<Point2> known_outline(const OccupancyGrid& grid);
+
+/// The corners of the smallest convex shape that holds all points, counter-clockwise, without those on a
+/// straight line between others (Andrew 1979). O(n log n).
+std::vector<Point2> convex_hull(std::vector<Point2> points);
+
+}  // namespace gridmerge::internal

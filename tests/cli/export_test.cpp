@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+
+#include "fixture.hpp"
+
+namespace gridmerge::test {
+namespace {
+
+class Export : public CliTest {
+ protected:
+  Outcome merge(const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"merge", left, right, "-o", output};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  }
+
+  const std::string output = directory.file("out");
+};
+
+TEST_F(Export, IsWrittenBesideTheResultOrWhereItIsTold) {
+  const std::string elsewhere = directory.file("fleet.yaml");
+  const Outcome outcome =
+      merge({"--export", "g2o", "--export=open-rmf=" + elsewhere, "--export", "geojson", other});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  EXPECT_NE(outcome.out.find(output + "/merged.g2o\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(elsewhere + "\n"), std::string::npos) << outcome.out;
+  const std::string g2o = read_file(output + "/merged.g2o");
+  EXPECT_NE(g2o.find("VERTEX_SE2 0 0 0 0\n"), std::string::npos) << g2o;
+  EXPECT_NE(g2o.find("\nFIX 0\n"), std::string::npos) << g2o;
+  EXPECT_NE(g2o.find("\nEDGE_SE2 0 1 "), std::string::npos) << g2o;
+  EXPECT_EQ(g2o.find("no deviation"), std::string::npos) << "a match has one";
+  EXPECT_NE(read_file(elsewhere).find("reference_coordinates:\n      merged:\n        rmf: [["),
+            std::string::npos);
+  const Json geojson = Json::parse(read_file(output + "/merged.geojson"));
+  EXPECT_EQ(geojson["features"].size(), 3u);
+  EXPECT_FALSE(std::filesystem::exists(output + "/open_rmf.yaml"));
+}
+
+TEST_F(Export, OfASavedMergeIsTheSame) {
+  ASSERT_EQ(merge({"--export", "g2o", "--export", "open-rmf", "--export", "geojson"}).exit_code, 0);
+  const Outcome outcome =
+      run({"report", output, "--export", "g2o=" + directory.file("g"), "--export",
+           "open-rmf=" + directory.file("o"), "--export", "geojson=" + directory.file("j")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(read_file(directory.file("g")), read_file(output + "/merged.g2o"));
+  EXPECT_EQ(read_file(directory.file("o")), read_file(output + "/open_rmf.yaml"));
+  EXPECT_EQ(read_file(directory.file("j")), read_file(output + "/merged.geojson"));
+}
+
+TEST_F(Export, OfAFormatThatThereIsNotIsAMistake) {
+  for (const std::string format : {"kml", "", "G2O", "=x", "kml=x"}) {
+    const Outcome outcome = merge({"--export", format});
+    EXPECT_EQ(outcome.exit_code, 2) << format;
+    EXPECT_NE(outcome.err.find("--export"), std::string::npos) << outcome.err;
+    if (format.size() > 0) {
+      EXPECT_NE(outcome.err.find("is no format: there are g2o, open-rmf, geojson"), std::string::npos)
+          << outcome.err;
+    }
+  }
+  EXPECT_NE(merge({"--export", "g2o="}).err.find("'g2o=' names no file"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
+TEST_F(Export, ToWhereItCannotBeIsAnErrorBeforeTheWork) {
+  const std::string nowhere = directory.file("no/folder/x.g2o");
+  expect_error(merge({"--export", "g2o=" + nowhere}), nowhere, "No such file or directory");
+  expect_error(merge({"--export", "g2o=" + output + "/transforms.json"}), output + "/transforms.json",
+               "is a file that the merge itself writes");
+  expect_error(merge({"--export", "g2o=" + left}), left, "is an input and would be replaced");
+  expect_error(
+      merge({"--export", "g2o=" + directory.file("x"), "--export", "geojson=" + directory.file("./x")}),
+      directory.file("./x"), "would be written by two exports");
+  expect_error(merge({"--export", "g2o=/dev/null"}), "/dev/null", "");
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
+TEST_F(Export, OfNothingIsAnErrorAfterTheWork) {
+  const Outcome outcome = run({"merge", left, other, "-o", output, "--export", "g2o"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  EXPECT_NE(outcome.err.find(output + "/merged.g2o: is not written: no two maps were joined"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.out.find("nothing was merged"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(std::filesystem::exists(output + "/transforms.json"));
+  EXPECT_FALSE(std::filesystem::exists(output + "/merged.g2o"));
+  EXPECT_EQ(run({"report", output, "--export", "g2o"}).exit_code, 1);
+}
+
+}  // namespace
+}  // namespace gridmerge::test
