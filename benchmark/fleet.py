@@ -4,7 +4,7 @@
 
 usage: benchmark/fleet.py GRIDMERGE OUTPUT [--maps N,N,...] [--campus fitted|reported] [--twin N] [MERGE OPTION...]
 
-Prints, for each number of maps: time, memory, the share of pairs that was matched, and how many joins are right, wrong
+Prints, for each number of maps: time of processor cores, memory, the share of pairs that was matched, and how many joins are right, wrong
 and lost. Up to `--twin` maps, the same maps are also merged with `--all-pairs`. A join is lost if two maps of one building
 lie together there, right, and not here. The maps stay in OUTPUT for the next run.
 
@@ -23,7 +23,6 @@ import random
 import shutil
 import subprocess
 import sys
-import time
 
 from poses import Pose, compose, inverse, read_pose
 
@@ -126,7 +125,7 @@ def read_truth(folder: pathlib.Path) -> dict[str, Truth]:
 
 @dataclasses.dataclass
 class Outcome:
-    seconds: float
+    seconds: float  # of processor cores
     megabytes: float
     looked_at: int
     components: list[dict[str, Pose]]
@@ -134,17 +133,17 @@ class Outcome:
 
 def merge(gridmerge: str, folder: pathlib.Path, output: pathlib.Path, names: list[str], options: list[str]) -> Outcome:
     command = [gridmerge, "merge", "-o", str(output), "--quiet", *(str(folder / name) for name in names), *options]
-    before = time.monotonic()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)
-    seconds = time.monotonic() - before
+    seconds = usage.ru_utime + usage.ru_stime
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode not in (0, 3):
         sys.exit(f"gridmerge merge ended with exit code {process.returncode}")
     merged = json.loads((output / "transforms.json").read_text())
     components = [{pathlib.Path(member["source"]).name: read_pose(member["transform"]) for member in one["members"]}
                   for one in merged["components"]]
-    return Outcome(seconds, usage.ru_maxrss / 1024, len(merged["joins"]), components)
+    looked_at = len(merged["joins"]) + merged.get("refused", {}).get("count", 0)
+    return Outcome(seconds, usage.ru_maxrss / 1024, looked_at, components)
 
 
 def is_right(a: str, b: str, own: dict[str, Pose], truth: dict[str, Truth]) -> bool:
@@ -191,7 +190,7 @@ def main() -> None:
     parser.add_argument("--make-only", action="store_true", help="make the maps, merge nothing")
     arguments, options = parser.parse_known_args()
 
-    columns = ("maps", "seconds", "MB", "pairs", "matched", "placed right", "wrong", "joins right", "joins wrong", "joins lost")
+    columns = ("maps", "core seconds", "MB", "pairs", "matched", "placed right", "wrong", "joins right", "joins wrong", "joins lost")
     print("| " + " | ".join(columns) + " |\n|" + " --- |" * len(columns))
     for count in map(int, arguments.maps.split(",")):
         folder = make_campus(arguments.gridmerge, arguments.campus, count, arguments.output)
