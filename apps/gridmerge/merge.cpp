@@ -330,7 +330,7 @@ void add_merge(CLI::App& app, Action& action) {
   CLI::Option* missed =
       command
           ->add_option("--max-missed", options->max_missed,
-                       "Of more than 24 maps only likely pairs are looked at: the others may hide this share "
+                       "Of more than 50 maps only likely pairs are looked at: the others may hide this share "
                        "of all joins. Less is slower")
           ->type_name("SHARE")
           ->check(CLI::Range(0.0, 0.99).description(""))

@@ -215,8 +215,8 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
       };
     while (true) {
       JoinProblem problem = groups_.heard(solution.problem, solution.consistent_set, inputs, worth_meeting);
-      ConsistentSet consistent_set =
-          find_consistent_set_within(problem, options_.match.accept_probability, options_.max_false_joins);
+      ConsistentSet consistent_set = find_consistent_set_within(problem, options_.match.accept_probability,
+                                                                max_false_joins_of(maps.size()));
       if (count_alone(consistent_set) >= count_alone(solution.consistent_set)) return solution;
       solution.problem = std::move(problem);
       solution.consistent_set = std::move(consistent_set);
@@ -233,8 +233,15 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
                          std::set<Pair> again) const {
     Solution solution{make_problem(store_, maps, chosen, looks_, again), {}, std::move(again)};
     solution.consistent_set = find_consistent_set_within(solution.problem, options_.match.accept_probability,
-                                                         options_.max_false_joins);
+                                                         max_false_joins_of(maps.size()));
     return solution;
+  }
+
+  /// Many maps are many teams, and each has the budget of one: or what is surely one map would be cut for
+  /// maps that have nothing to do with it.
+  double max_false_joins_of(std::size_t maps) const {
+    return options_.max_false_joins *
+           std::max(1.0, static_cast<double>(maps) / static_cast<double>(kFewMaps));
   }
 
   MergeOptions options_;

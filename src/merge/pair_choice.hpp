@@ -16,8 +16,8 @@
 
 namespace gridmerge::internal {
 
-/// Up to so many maps all pairs are looked at.
-inline constexpr std::size_t kAllPairsUpTo = 24;
+/// Of up to so many maps all pairs are looked at, and a budget of false joins holds for all of them.
+inline constexpr std::size_t kFewMaps = 50;
 
 /// Chooses the pairs of many maps that are looked at, by signatures of the maps: in rounds, the likeliest
 /// first, until those that are left hide at most a given share of all joins. A pair whose maps lie in one
@@ -32,7 +32,7 @@ class PairChoice {
   /// `max_missed`: the share of all joins that may be missed; 0 = look at all pairs.
   explicit PairChoice(double max_missed) : max_missed_(max_missed) {}
 
-  bool takes_all(std::size_t maps) const { return max_missed_ == 0.0 || maps <= kAllPairsUpTo; }
+  bool takes_all(std::size_t maps) const { return max_missed_ == 0.0 || maps <= kFewMaps; }
 
   /// The map is another one, or gone.
   void forget(MapId id);

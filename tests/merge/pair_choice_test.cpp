@@ -66,8 +66,8 @@ std::vector<std::size_t> in_order(std::size_t count) {
 
 TEST(PairChoice, OfFewMapsAllPairsAreLookedAt) {
   const internal::PairChoice some(0.05), none(0.0);
-  EXPECT_TRUE(some.takes_all(internal::kAllPairsUpTo));
-  EXPECT_FALSE(some.takes_all(internal::kAllPairsUpTo + 1));
+  EXPECT_TRUE(some.takes_all(internal::kFewMaps));
+  EXPECT_FALSE(some.takes_all(internal::kFewMaps + 1));
   EXPECT_TRUE(none.takes_all(100000));
 }
 
@@ -78,11 +78,11 @@ TEST(PairChoice, AShareThatMakesNoSenseIsRefused) {
 }
 
 TEST(PairChoice, FewerPairsMakeTheSameMapsWhateverTheOrderAndTheThreads) {
-  const Fleet fleet(28);
+  const Fleet fleet(52);
   const std::vector<std::size_t> order = in_order(fleet.maps.size());
   const MergeResult all = merge(fleet.maps, options(0.0));
   const MergeResult some = merge(fleet.maps, options(0.3));
-  EXPECT_EQ(all.joins.size(), 378u);
+  EXPECT_EQ(all.joins.size(), 1326u);
   EXPECT_LE(some.joins.size(), all.joins.size());  // these floors all look alike
   EXPECT_EQ(parts_of(some, order), parts_of(all, order));
   expect_same(merge(fleet.maps, options(0.3, 1)), some);
@@ -111,7 +111,7 @@ TEST(PairChoice, FewerPairsMakeTheSameMapsWhateverTheOrderAndTheThreads) {
 }
 
 TEST(PairChoice, HostileMapsAmongManyAreLeftOut) {
-  Fleet fleet(22);
+  Fleet fleet(48);
   const std::size_t good = fleet.maps.size();
   fleet.maps.push_back(make_grid(50, 50, 0.05));
   fleet.maps.push_back(make_grid(50, 50, 0.05, {}, Cell::free));

@@ -20,9 +20,10 @@ struct MergeOptions {
   /// not used.
   MatchOptions match;
   /// So many joins of the whole merge may be expected to be false, beside what `match.accept_probability`
-  /// asks of each: the least sure ones are not made (see find_consistent_set_within()).
+  /// asks of each: the least sure ones are not made (see find_consistent_set_within()). Of more than 50
+  /// maps, so many for every 50.
   double max_false_joins = 0.05;
-  /// Of more than two dozen maps only likely pairs are matched: those left out hide, as far as is known, at
+  /// Of more than 50 maps only likely pairs are matched: those left out hide, as far as is known, at
   /// most this share of all joins. 0 = all pairs are matched. In [0, 1).
   double max_missed = 0.05;
   double resolution = 0.0;  ///< of the merged maps [m]; 0 = the finest among a map's inputs
