@@ -321,11 +321,13 @@ void add_merge(CLI::App& app, Action& action) {
   add_strategy_option(*command, options->search);
   CLI::Option* budget =
       command
-          ->add_option("--max-false-joins", options->max_false_joins,
-                       "How many joins of the whole merge may be expected to be false; those that are least "
-                       "sure are not made. It holds beside --accept, which is asked of each join")
+          ->add_option(
+              "--max-false-joins", options->max_false_joins,
+              "How many joins of the whole merge may be expected to be false, or of more than 50 maps "
+              "for every 50; those that are least sure are not made. It holds beside --accept, which "
+              "is asked of each join")
           ->type_name("NUMBER")
-          ->check(CLI::Range(0.0, 1e6).description(""))
+          ->check(kNotNegative)
           ->capture_default_str();
   CLI::Option* missed =
       command
@@ -333,7 +335,7 @@ void add_merge(CLI::App& app, Action& action) {
                        "Of more than 50 maps only likely pairs are looked at: the others may hide this share "
                        "of all joins. Less is slower")
           ->type_name("SHARE")
-          ->check(CLI::Range(0.0, 0.99).description(""))
+          ->check(kProbability)
           ->capture_default_str();
   CLI::Option* all_pairs =
       command->add_flag("--all-pairs", options->all_pairs, "Look at every pair, however many maps there are")
@@ -354,7 +356,8 @@ void add_merge(CLI::App& app, Action& action) {
       "see one directory. Pairs are looked at in two rounds: quickly, and thoroughly those whose maps that\n"
       "leaves apart. A shard needs no other for the first round, and all others for the second. So run "
       "every\n"
-      "shard, wait for all, and run every shard once more; the merge itself makes what is missing:\n"
+      "shard, wait for all, and run every shard once more; the merge itself makes what is missing. Of more\n"
+      "than 50 maps there are more rounds, because likely pairs alone are looked at (--max-missed):\n"
       "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (and 2/2 elsewhere)\n"
       "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (when both have ended; and 2/2 "
       "elsewhere)\n"
@@ -368,6 +371,8 @@ void add_merge(CLI::App& app, Action& action) {
   command->callback([options, budget, missed, all_pairs, &action] {
     if (budget->count() > 0 && options->search.up_the_tree())
       throw CLI::ValidationError("--max-false-joins", "needs --strategy joint");
+    if (options->max_missed >= 1.0)
+      throw CLI::ValidationError("--max-missed", "all joins may not be missed: give less than 1");
     for (const CLI::Option* option : {missed, all_pairs}) {
       if (option->count() > 0 && options->search.up_the_tree())
         throw CLI::ValidationError(option->get_name(), "needs --strategy joint");
