@@ -28,10 +28,24 @@ from poses import Pose, compose, inverse, read_pose
 
 # Kinds of buildings and their sizes in metres. Few sizes, so that some buildings look alike.
 CAMPUSES = {
-    "fitted": (("office", ("44x30", "52x36")), ("warehouse", ("40x28",)), ("curved", ("46x30",)), ("bare", ("40x28",)),
-               ("office", ("36x26",)), ("corridor", ("50x24",)), ("arena", ("36x30",))),
-    "reported": (("hall", ("40x30", "48x34")), ("apartment", ("24x18",)), ("loop", ("46x34",)), ("outdoor", ("40x32",)),
-                 ("symmetric", ("44x30",)), ("maze", ("30x24",)), ("hall", ("40x30",))),
+    "fitted": (
+        ("office", ("44x30", "52x36")),
+        ("warehouse", ("40x28",)),
+        ("curved", ("46x30",)),
+        ("bare", ("40x28",)),
+        ("office", ("36x26",)),
+        ("corridor", ("50x24",)),
+        ("arena", ("36x30",)),
+    ),
+    "reported": (
+        ("hall", ("40x30", "48x34")),
+        ("apartment", ("24x18",)),
+        ("loop", ("46x34",)),
+        ("outdoor", ("40x32",)),
+        ("symmetric", ("44x30",)),
+        ("maze", ("30x24",)),
+        ("hall", ("40x30",)),
+    ),
 }
 SEEDS = {"fitted": 40_000, "reported": 70_000}
 RADIUS = 8.0  # at which an angle counts as a displacement [m]
@@ -52,18 +66,48 @@ def options_of(campus: str, number: int) -> list[str]:
     dice = random.Random(SEEDS[campus] + number)
     kinds = CAMPUSES[campus]
     kind, sizes = kinds[number % len(kinds)]
-    return ["--kind", kind, "--size", dice.choice(sizes), "--robots", str(dice.randint(3, 8)),
-            "--overlap", str(dice.choice((0.3, 0.5, 0.7))), "--drift", str(dice.choice((0, 0.2, 0.4))),
-            "--clutter", str(dice.choice((0.5, 1))), "--range", str(dice.choice((8, 12))), "--others", "0",
-            "--resolution", dice.choice(("0.1", "0.1", "0.08")), "--seed", str(SEEDS[campus] + number)]
+    return [
+        "--kind",
+        kind,
+        "--size",
+        dice.choice(sizes),
+        "--robots",
+        str(dice.randint(3, 8)),
+        "--overlap",
+        str(dice.choice((0.3, 0.5, 0.7))),
+        "--drift",
+        str(dice.choice((0, 0.2, 0.4))),
+        "--clutter",
+        str(dice.choice((0.5, 1))),
+        "--range",
+        str(dice.choice((8, 12))),
+        "--others",
+        "0",
+        "--resolution",
+        dice.choice(("0.1", "0.1", "0.08")),
+        "--seed",
+        str(SEEDS[campus] + number),
+    ]
 
 
 def make_building(gridmerge: str, campus: str, number: int, folder: pathlib.Path) -> list[str]:
     """The names of its maps; none where the wanted overlap cannot be had."""
     done = folder / "done"
     if not done.exists():
-        subprocess.run([gridmerge, "simulate", "-o", str(folder), "--threads", "1", "--quiet", *options_of(campus, number)],
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.run(
+            [
+                gridmerge,
+                "simulate",
+                "-o",
+                str(folder),
+                "--threads",
+                "1",
+                "--quiet",
+                *options_of(campus, number),
+            ],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         folder.mkdir(parents=True, exist_ok=True)
         done.touch()
     if not (folder / "sets.tsv").exists():
@@ -110,8 +154,13 @@ def make_campus(gridmerge: str, campus: str, count: int, output: pathlib.Path) -
         with (home / "pairs.tsv").open(newline="") as file:
             for row in csv.DictReader(file, delimiter="\t"):
                 if (home, row["fixed"]) in renamed and (home, row["moving"]) in renamed:
-                    lines.append([renamed[home, row["fixed"]], renamed[home, row["moving"]],
-                                  *(row[key] for key in ("x", "y", "theta", "tolerance", "tier", "overlap"))])
+                    lines.append(
+                        [
+                            renamed[home, row["fixed"]],
+                            renamed[home, row["moving"]],
+                            *(row[key] for key in ("x", "y", "theta", "tolerance", "tier", "overlap")),
+                        ]
+                    )
     head = ["fixed", "moving", "x", "y", "theta", "tolerance", "tier", "overlap"]
     (folder / "pairs.tsv").write_text("".join("\t".join(line) + "\n" for line in [head, *lines]))
     return folder
@@ -119,8 +168,12 @@ def make_campus(gridmerge: str, campus: str, count: int, output: pathlib.Path) -
 
 def read_truth(folder: pathlib.Path) -> dict[str, Truth]:
     with (folder / "sets.tsv").open(newline="") as file:
-        return {row["map"]: Truth(row["set"], (float(row["x"]), float(row["y"]), float(row["theta"])), float(row["tolerance"]))
-                for row in csv.DictReader(file, delimiter="\t")}
+        return {
+            row["map"]: Truth(
+                row["set"], (float(row["x"]), float(row["y"]), float(row["theta"])), float(row["tolerance"])
+            )
+            for row in csv.DictReader(file, delimiter="\t")
+        }
 
 
 @dataclasses.dataclass
@@ -131,8 +184,18 @@ class Outcome:
     components: list[dict[str, Pose]]
 
 
-def merge(gridmerge: str, folder: pathlib.Path, output: pathlib.Path, names: list[str], options: list[str]) -> Outcome:
-    command = [gridmerge, "merge", "-o", str(output), "--quiet", *(str(folder / name) for name in names), *options]
+def merge(
+    gridmerge: str, folder: pathlib.Path, output: pathlib.Path, names: list[str], options: list[str]
+) -> Outcome:
+    command = [
+        gridmerge,
+        "merge",
+        "-o",
+        str(output),
+        "--quiet",
+        *(str(folder / name) for name in names),
+        *options,
+    ]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)
     seconds = usage.ru_utime + usage.ru_stime
@@ -140,8 +203,10 @@ def merge(gridmerge: str, folder: pathlib.Path, output: pathlib.Path, names: lis
     if process.returncode not in (0, 3):
         sys.exit(f"gridmerge merge ended with exit code {process.returncode}")
     merged = json.loads((output / "transforms.json").read_text())
-    components = [{pathlib.Path(member["source"]).name: read_pose(member["transform"]) for member in one["members"]}
-                  for one in merged["components"]]
+    components = [
+        {pathlib.Path(member["source"]).name: read_pose(member["transform"]) for member in one["members"]}
+        for one in merged["components"]
+    ]
     looked_at = len(merged["joins"]) + merged.get("refused", {}).get("count", 0)
     return Outcome(seconds, usage.ru_maxrss / 1024, looked_at, components)
 
@@ -181,16 +246,31 @@ def judge(outcome: Outcome, truth: dict[str, Truth]) -> Judged:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("gridmerge")
     parser.add_argument("output", type=pathlib.Path)
     parser.add_argument("--maps", default="100,300,1000", help="how many; several with commas")
     parser.add_argument("--campus", choices=CAMPUSES, default="reported")
-    parser.add_argument("--twin", type=int, default=100, help="up to so many maps, merge with --all-pairs too")
+    parser.add_argument(
+        "--twin", type=int, default=100, help="up to so many maps, merge with --all-pairs too"
+    )
     parser.add_argument("--make-only", action="store_true", help="make the maps, merge nothing")
     arguments, options = parser.parse_known_args()
 
-    columns = ("maps", "core seconds", "MB", "pairs", "matched", "placed right", "wrong", "joins right", "joins wrong", "joins lost")
+    columns = (
+        "maps",
+        "core seconds",
+        "MB",
+        "pairs",
+        "matched",
+        "placed right",
+        "wrong",
+        "joins right",
+        "joins wrong",
+        "joins lost",
+    )
     print("| " + " | ".join(columns) + " |\n|" + " --- |" * len(columns))
     for count in map(int, arguments.maps.split(",")):
         folder = make_campus(arguments.gridmerge, arguments.campus, count, arguments.output)
@@ -198,16 +278,23 @@ def main() -> None:
             continue
         truth = read_truth(folder)
         twin: Judged | None = None
-        runs = [("", options)] if count > arguments.twin else [(" (all pairs)", [*options, "--all-pairs"]), ("", options)]
+        runs = (
+            [("", options)]
+            if count > arguments.twin
+            else [(" (all pairs)", [*options, "--all-pairs"]), ("", options)]
+        )
         for label, some in runs:
             output = arguments.output / f"merged_{arguments.campus}_{count}{'_all' if label else ''}"
             outcome = merge(arguments.gridmerge, folder, output, sorted(truth), some)
             judged = judge(outcome, truth)
             pairs = count * (count - 1) // 2
             lost = "" if twin is None else str(len(twin.right - judged.right))
-            print(f"| {count}{label} | {outcome.seconds:.1f} | {outcome.megabytes:.0f} | {pairs} | "
-                  f"{outcome.looked_at} ({100 * outcome.looked_at / pairs:.1f} %) | {judged.placed} | {judged.misplaced} | "
-                  f"{len(judged.right)} | {len(judged.wrong)} | {lost} |", flush=True)
+            print(
+                f"| {count}{label} | {outcome.seconds:.1f} | {outcome.megabytes:.0f} | {pairs} | "
+                f"{outcome.looked_at} ({100 * outcome.looked_at / pairs:.1f} %) | {judged.placed} | {judged.misplaced} | "
+                f"{len(judged.right)} | {len(judged.wrong)} | {lost} |",
+                flush=True,
+            )
             if label:
                 twin = judged
 

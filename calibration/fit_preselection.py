@@ -19,7 +19,17 @@ import subprocess
 
 import numpy as np
 
-TERMS = ("better than chance", "met", "open", "seen", "votes", "rival's votes", "likeness", "walls", "seen of walls")
+TERMS = (
+    "better than chance",
+    "met",
+    "open",
+    "seen",
+    "votes",
+    "rival's votes",
+    "likeness",
+    "walls",
+    "seen of walls",
+)
 SIGNS = (1, 1, -1, 0, 1, -1, 1, 0, 0)  # which a weight may have; 0 = both
 JOINED = 0.9
 
@@ -29,23 +39,45 @@ def read(gridmerge: str, signatures: str, folder: pathlib.Path) -> tuple[np.ndar
     maps = sorted(folder.glob("map_*.yaml"))
     table = folder / "signatures.tsv"
     if not table.exists():
-        table.write_text(subprocess.run([signatures, *map(str, maps)], capture_output=True, text=True, check=True).stdout)
+        table.write_text(
+            subprocess.run([signatures, *map(str, maps)], capture_output=True, text=True, check=True).stdout
+        )
     judged = folder / "evaluated.json"
     if not judged.exists():
-        subprocess.run([gridmerge, "evaluate", str(folder / "pairs.tsv"), "--json", str(judged)], check=True, stdout=subprocess.DEVNULL)
-    found = {frozenset((pathlib.Path(case["fixed"]).name, pathlib.Path(case["moving"]).name))
-             for case in json.loads(judged.read_text())["cases"] if case["correct"] and case["probability"] >= JOINED}
+        subprocess.run(
+            [gridmerge, "evaluate", str(folder / "pairs.tsv"), "--json", str(judged)],
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
+    found = {
+        frozenset((pathlib.Path(case["fixed"]).name, pathlib.Path(case["moving"]).name))
+        for case in json.loads(judged.read_text())["cases"]
+        if case["correct"] and case["probability"] >= JOINED
+    }
     with (folder / "sets.tsv").open(newline="") as file:
         home = {row["map"]: row["set"] for row in csv.DictReader(file, delimiter="\t")}
     with table.open(newline="") as file:
         rows = list(csv.DictReader(file, delimiter="\t"))
     names = [(pathlib.Path(row["fixed"]).name, pathlib.Path(row["moving"]).name) for row in rows]
-    value = {key: np.array([float(row[key]) for row in rows])
-             for key in ("seen", "met", "open", "chance", "votes", "next_votes", "likeness", "walls_a", "walls_b")}
+    value = {
+        key: np.array([float(row[key]) for row in rows])
+        for key in ("seen", "met", "open", "chance", "votes", "next_votes", "likeness", "walls_a", "walls_b")
+    }
     walls = np.minimum(value["walls_a"], value["walls_b"])
-    terms = np.stack([(value["met"] - value["chance"]) / np.sqrt(value["seen"] + 10), value["met"] / (value["seen"] + 5),
-                      value["open"] / (value["seen"] + 5), np.log(value["seen"] + 5), np.sqrt(value["votes"]),
-                      np.sqrt(value["next_votes"]), value["likeness"], np.log(walls + 5), value["seen"] / (walls + 5)], 1)
+    terms = np.stack(
+        [
+            (value["met"] - value["chance"]) / np.sqrt(value["seen"] + 10),
+            value["met"] / (value["seen"] + 5),
+            value["open"] / (value["seen"] + 5),
+            np.log(value["seen"] + 5),
+            np.sqrt(value["votes"]),
+            np.sqrt(value["next_votes"]),
+            value["likeness"],
+            np.log(walls + 5),
+            value["seen"] / (walls + 5),
+        ],
+        1,
+    )
     joined = np.array([frozenset(pair) in found for pair in names])
     unrelated = np.array([home[a] != home[b] for a, b in names])
     return terms, joined, unrelated
@@ -63,7 +95,9 @@ def fit(terms: np.ndarray, joined: np.ndarray, ridge: float = 1.0) -> np.ndarray
         weights[-1] = -4.0
         for _ in range(100):
             p = 1 / (1 + np.exp(-z @ weights))
-            step = np.linalg.solve((z * (p * (1 - p))[:, None]).T @ z + penalty, z.T @ (p - joined) + penalty @ weights)
+            step = np.linalg.solve(
+                (z * (p * (1 - p))[:, None]).T @ z + penalty, z.T @ (p - joined) + penalty @ weights
+            )
             weights -= step * min(1.0, 3.0 / max(np.abs(step).max(), 1e-12))
         wrong = [(abs(weight), term) for weight, term in zip(weights, used) if SIGNS[term] * weight < 0]
         if not wrong:
@@ -83,7 +117,9 @@ def after_a_look(log_odds: np.ndarray, probability: np.ndarray, joined: np.ndarr
     weights = np.array([-1.0, 0.5, 0.5])
     for _ in range(100):
         q = 1 / (1 + np.exp(-z @ weights))
-        step = np.linalg.solve((z * (q * (1 - q))[:, None]).T @ z + 0.1 * np.eye(3), z.T @ (q - joined) + 0.1 * weights)
+        step = np.linalg.solve(
+            (z * (q * (1 - q))[:, None]).T @ z + 0.1 * np.eye(3), z.T @ (q - joined) + 0.1 * weights
+        )
         weights -= step * min(1.0, 3.0 / max(np.abs(step).max(), 1e-12))
     return weights
 
@@ -98,7 +134,9 @@ def shift_of(log_odds: np.ndarray, fitted_share: float) -> float:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("gridmerge")
     parser.add_argument("signatures")
     parser.add_argument("folders", type=pathlib.Path, nargs="+")
@@ -109,21 +147,42 @@ def main() -> None:
     use = joined | unrelated
     weights = fit(terms[use], joined[use].astype(float))
     share = float(np.mean(joined[use]))
-    print("constexpr std::array<double, 9> kWeights{" + ", ".join(f"{weight:.4g}" for weight in weights[:-1]) + "};")
+    print(
+        "constexpr std::array<double, 9> kWeights{"
+        + ", ".join(f"{weight:.4g}" for weight in weights[:-1])
+        + "};"
+    )
     print(f"constexpr double kBias = {weights[-1]:.4g};\nconstexpr double kFittedShare = {share:.4g};")
-    for name, part in [("fitted", (terms, joined, unrelated)),
-                       *((str(folder), read(arguments.gridmerge, arguments.signatures, folder)) for folder in arguments.test)]:
+    for name, part in [
+        ("fitted", (terms, joined, unrelated)),
+        *(
+            (str(folder), read(arguments.gridmerge, arguments.signatures, folder))
+            for folder in arguments.test
+        ),
+    ]:
         log_odds = part[0] @ weights[:-1] + weights[-1]
         print(f"{name}: {part[1].sum()} joined, {part[2].sum()} unrelated")
         for recall in (0.9, 0.95, 0.98, 0.99, 1.0):
             least = np.quantile(log_odds[part[1]], 1 - recall, method="lower")
-            print(f"  {100 * recall:.0f} % of the joined reach what {100 * np.mean(log_odds[part[2]] >= least):.2f} % of the unrelated do")
+            print(
+                f"  {100 * recall:.0f} % of the joined reach what {100 * np.mean(log_odds[part[2]] >= least):.2f} % of the unrelated do"
+            )
         keep = part[1] | part[2]
         p = 1 / (1 + np.exp(-log_odds[keep] - shift_of(log_odds[keep], share)))
         print(f"  expected {p.sum():.1f} joined, true {part[1].sum()}")
-        for low, high in ((0, 1e-4), (1e-4, 1e-3), (1e-3, 0.01), (0.01, 0.1), (0.1, 0.5), (0.5, 0.9), (0.9, 1.01)):
+        for low, high in (
+            (0, 1e-4),
+            (1e-4, 1e-3),
+            (1e-3, 0.01),
+            (0.01, 0.1),
+            (0.1, 0.5),
+            (0.5, 0.9),
+            (0.9, 1.01),
+        ):
             inside = (p >= low) & (p < high)
-            print(f"  {low:g} to {min(high, 1):g}: {inside.sum()} pairs, expected {p[inside].sum():.2f}, true {part[1][keep][inside].sum()}")
+            print(
+                f"  {low:g} to {min(high, 1):g}: {inside.sum()} pairs, expected {p[inside].sum():.2f}, true {part[1][keep][inside].sum()}"
+            )
 
 
 if __name__ == "__main__":

@@ -252,8 +252,8 @@ def merge(
         threads: 0 = one a core. The result does not depend on it.
         accept: maps are joined from this probability on, 0.95 if None. Of the random walk it is the acceptance index,
             0.98 if None.
-        max_false_joins: so many joins of the whole merge may be expected to be false, or of more than 50 maps for every 50;
-            those that are least sure are not made. It holds beside `accept`. "tree" does not use it.
+        max_false_joins: so many joins of the whole merge may be expected to be false, or of more than 50 maps for every
+            50; those that are least sure are not made. It holds beside `accept`. "tree" does not use it.
         max_missed: of more than 50 maps only likely pairs are matched: the others may hide this share of all joins.
             0 = all pairs are matched. "tree" does not use it.
         output_resolution: of the merged maps [m]; None = the finest of the maps'.
