@@ -35,11 +35,11 @@ struct MergeOptions {
 /// Merges `maps` by what all pairs of them say together.
 ///
 /// Every pair is matched, or of many maps every likely one (see MergeOptions::max_missed), and all hypotheses
-/// are kept. The consistent set of all maps that they speak for most is chosen (see find_consistent_set_within()): a weak pair that agrees with the others is used, a
-/// strong one that contradicts them is not. Then all poses are adjusted together, to what the pairs and the
-/// maps' walls say (robust least squares), and the maps of each component are fused in one pass. Maps that
-/// nothing joins surely enough are left out; groups between which nothing is sure are components of their
-/// own.
+/// are kept. The consistent set of all maps that they speak for most is chosen (see
+/// find_consistent_set_within()): a weak pair that agrees with the others is used, a strong one that
+/// contradicts them is not. Then all poses are adjusted together, to what the pairs and the maps' walls say
+/// (robust least squares), and the maps of each component are fused in one pass. Maps that nothing joins
+/// surely enough are left out; groups between which nothing is sure are components of their own.
 ///
 /// `known_poses[i]`, where there is one, is what is known of map i beforehand; it may be shorter than `maps`.
 /// Known poses of two maps that are not fixed speak for joining them so: the maps' own hypothesis there
