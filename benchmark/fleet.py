@@ -5,7 +5,7 @@
 usage: benchmark/fleet.py GRIDMERGE OUTPUT [--maps N,N,...] [--campus fitted|reported] [--twin N] [MERGE OPTION...]
 
 Prints, for each number of maps: time of processor cores, memory, the share of pairs that was matched, and how many joins are right, wrong
-and lost. Up to `--twin` maps, the same maps are also merged with `--all-pairs`. A join is lost if two maps of one building
+and lost. Up to `--twin` maps, the same maps are also merged with all pairs. A join is lost if two maps of one building
 lie together there, right, and not here. The maps stay in OUTPUT for the next run.
 
 The two campuses have other kinds of buildings and other seeds. Whatever is fitted to maps is fitted to the first one.
@@ -253,9 +253,8 @@ def main() -> None:
     parser.add_argument("output", type=pathlib.Path)
     parser.add_argument("--maps", default="100,300,1000", help="how many; several with commas")
     parser.add_argument("--campus", choices=CAMPUSES, default="reported")
-    parser.add_argument(
-        "--twin", type=int, default=100, help="up to so many maps, merge with --all-pairs too"
-    )
+    parser.add_argument("--twin", type=int, default=100, help="up to so many maps, match all pairs too")
+    parser.add_argument("--max-missed", type=float, default=0.25, help="as of gridmerge merge")
     parser.add_argument("--make-only", action="store_true", help="make the maps, merge nothing")
     arguments, options = parser.parse_known_args()
 
@@ -278,11 +277,9 @@ def main() -> None:
             continue
         truth = read_truth(folder)
         twin: Judged | None = None
-        runs = (
-            [("", options)]
-            if count > arguments.twin
-            else [(" (all pairs)", [*options, "--all-pairs"]), ("", options)]
-        )
+        chosen = ("", [*options, "--max-missed", str(arguments.max_missed)])
+        every = (" (all pairs)", [*options, "--max-missed", "0"])
+        runs = [every, chosen] if count <= arguments.twin else [chosen]
         for label, some in runs:
             output = arguments.output / f"merged_{arguments.campus}_{count}{'_all' if label else ''}"
             outcome = merge(arguments.gridmerge, folder, output, sorted(truth), some)

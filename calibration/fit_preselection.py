@@ -15,6 +15,7 @@ import argparse
 import csv
 import json
 import pathlib
+import re
 import subprocess
 
 import numpy as np
@@ -133,6 +134,16 @@ def shift_of(log_odds: np.ndarray, fitted_share: float) -> float:
     return shift
 
 
+def read_model(source: pathlib.Path) -> tuple[np.ndarray, float]:
+    """Weights with the bias, and the share of joined pairs, of src/preselect/chance.cpp."""
+    text = source.read_text()
+    weights = re.search(r"kWeights\{([^}]*)\}", text)
+    bias, share = (re.search(rf"{name} = ([-0-9.e]+);", text) for name in ("kBias", "kFittedShare"))
+    if not (weights and bias and share):
+        raise SystemExit(f"{source}: has no model")
+    return np.array([*map(float, weights[1].split(",")), float(bias[1])]), float(share[1])
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -141,12 +152,15 @@ def main() -> None:
     parser.add_argument("signatures")
     parser.add_argument("folders", type=pathlib.Path, nargs="+")
     parser.add_argument("--test", type=pathlib.Path, action="append", default=[])
+    parser.add_argument("--code", type=pathlib.Path, help="fit nothing: judge the model that this source has")
     arguments = parser.parse_args()
     parts = [read(arguments.gridmerge, arguments.signatures, folder) for folder in arguments.folders]
     terms, joined, unrelated = (np.concatenate([part[i] for part in parts]) for i in range(3))
     use = joined | unrelated
-    weights = fit(terms[use], joined[use].astype(float))
-    share = float(np.mean(joined[use]))
+    if arguments.code:
+        weights, share = read_model(arguments.code)
+    else:
+        weights, share = fit(terms[use], joined[use].astype(float)), float(np.mean(joined[use]))
     print(
         "constexpr std::array<double, 9> kWeights{"
         + ", ".join(f"{weight:.4g}" for weight in weights[:-1])

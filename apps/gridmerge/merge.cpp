@@ -41,7 +41,6 @@ struct MergeCommandOptions {
   double output_resolution = 0.0;
   double max_false_joins = MergeOptions{}.max_false_joins;
   double max_missed = MergeOptions{}.max_missed;
-  bool all_pairs = false;
   SearchOptions search;
   KnownPoseOptions known;
   CacheOptions cache;
@@ -115,7 +114,7 @@ MergeOptions merge_options(const MergeCommandOptions& options, Console& console)
   engine.match = match_options(options.common, options.search);
   engine.resolution = options.output_resolution;
   engine.max_false_joins = options.max_false_joins;
-  engine.max_missed = options.all_pairs ? 0.0 : options.max_missed;
+  engine.max_missed = options.max_missed;
   engine.progress = [&console](std::size_t done, std::size_t total) {
     if (done < total) {
       console.progress("matching pairs", static_cast<double>(done) / static_cast<double>(total));
@@ -332,14 +331,11 @@ void add_merge(CLI::App& app, Action& action) {
   CLI::Option* missed =
       command
           ->add_option("--max-missed", options->max_missed,
-                       "Of more than 50 maps only likely pairs are looked at: the others may hide this share "
-                       "of all joins. Less is slower")
+                       "Of more than 50 maps match likely pairs only: the others may hide this share of all "
+                       "joins, 0.25 or so. Up to 0.2 all pairs are matched")
           ->type_name("SHARE")
           ->check(kProbability)
           ->capture_default_str();
-  CLI::Option* all_pairs =
-      command->add_flag("--all-pairs", options->all_pairs, "Look at every pair, however many maps there are")
-          ->excludes(missed);
   add_trace_option(*command, options->search);
   add_cache_option(*command, options->cache);
   add_shard_option(*command, options->cache);
@@ -357,7 +353,7 @@ void add_merge(CLI::App& app, Action& action) {
       "leaves apart. A shard needs no other for the first round, and all others for the second. So run "
       "every\n"
       "shard, wait for all, and run every shard once more; the merge itself makes what is missing. Of more\n"
-      "than 50 maps there are more rounds, because likely pairs alone are looked at (--max-missed):\n"
+      "than 50 maps there may be more rounds: --max-missed chooses pairs by what was found before:\n"
       "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (and 2/2 elsewhere)\n"
       "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (when both have ended; and 2/2 "
       "elsewhere)\n"
@@ -368,15 +364,13 @@ void add_merge(CLI::App& app, Action& action) {
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml --fix robot2.yaml -o "
       "merged");
-  command->callback([options, budget, missed, all_pairs, &action] {
+  command->callback([options, budget, missed, &action] {
     if (budget->count() > 0 && options->search.up_the_tree())
       throw CLI::ValidationError("--max-false-joins", "needs --strategy joint");
     if (options->max_missed >= 1.0)
       throw CLI::ValidationError("--max-missed", "all joins may not be missed: give less than 1");
-    for (const CLI::Option* option : {missed, all_pairs}) {
-      if (option->count() > 0 && options->search.up_the_tree())
-        throw CLI::ValidationError(option->get_name(), "needs --strategy joint");
-    }
+    if (missed->count() > 0 && options->search.up_the_tree())
+      throw CLI::ValidationError("--max-missed", "needs --strategy joint");
     const bool knows_poses = !options->known.init.empty() || !options->known.fix.empty();
     if (knows_poses && options->search.up_the_tree())
       throw CLI::ValidationError(options->known.init.empty() ? "--fix" : "--init", "needs --strategy joint");

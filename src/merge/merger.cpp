@@ -164,7 +164,7 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
       if (takes_all) {
         more = PairLooks::choose_pairs(maps);
       } else {
-        more = choice_.next(round, store_, chosen, first.solution.problem, first.solution.consistent_set);
+        more = choice_.next(round, store_, chosen, first.solution.consistent_set);
         if (more.empty()) return first;
       }
       if (std::vector<Pair> missing = looks_.due_for_the_first_look(more); !missing.empty()) {

@@ -33,7 +33,8 @@ constexpr std::size_t kMostLaid = 16;
 /// Bounds of the joins that were found by the joins that signatures expected.
 constexpr double kLeastFound = 0.1;
 constexpr double kMostFound = 3.0;
-/// Of the share of joins that may be missed, the part for pairs that get no look, and no second look.
+/// Of the share of joins that signatures show and that may be missed, the part for pairs that get no look,
+/// and no second look.
 constexpr double kForTheFirstLook = 0.8;
 constexpr double kForTheSecondLook = 0.1;
 constexpr double kForGroups = 0.1;
@@ -43,51 +44,6 @@ double damping(std::size_t size_a, std::size_t size_b) {
   return std::pow(1.0 - kShownByAnother, std::min(others, kMostOthers));
 }
 
-/// How many of the joins of a consistent set hold maps together that nothing else does. O(joins).
-std::size_t count_bridges(const JoinProblem& problem, const ConsistentSet& consistent_set) {
-  struct Visit {
-    std::size_t map;
-    std::size_t came_by;  // index of a join
-    std::size_t next;     // place among its joins
-  };
-  const std::size_t none = consistent_set.used.size();
-  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> joins(
-      problem.maps.size());  // other map, join
-  for (std::size_t i = 0; i < none; ++i) {
-    const PairCandidates& pair = problem.pairs[consistent_set.used[i].pair];
-    joins[pair.fixed].emplace_back(pair.moving, i);
-    joins[pair.moving].emplace_back(pair.fixed, i);
-  }
-  // Depth first (Tarjan 1974): a join is a bridge if nothing beyond it leads back.
-  std::vector<std::size_t> found(problem.maps.size()), lowest(problem.maps.size());
-  std::size_t time = 0, bridges = 0;
-  for (std::size_t start = 0; start < problem.maps.size(); ++start) {
-    if (found[start] != 0) continue;
-    std::vector<Visit> path{{start, none, 0}};
-    found[start] = lowest[start] = ++time;
-    while (!path.empty()) {
-      const std::size_t map = path.back().map, came_by = path.back().came_by;
-      if (path.back().next == joins[map].size()) {
-        path.pop_back();
-        if (path.empty()) continue;
-        std::size_t& of_last = lowest[path.back().map];
-        of_last = std::min(of_last, lowest[map]);
-        if (lowest[map] > found[path.back().map]) ++bridges;
-        continue;
-      }
-      const auto [other, join] = joins[map][path.back().next++];
-      if (join == came_by) continue;
-      if (found[other] != 0) {
-        lowest[map] = std::min(lowest[map], found[other]);
-      } else {
-        found[other] = lowest[other] = ++time;
-        path.push_back({other, join, 0});
-      }
-    }
-  }
-  return bridges;
-}
-
 double sum_of(const std::vector<double>& weights) {
   double sum = 0.0;
   for (const double weight : weights) sum += weight;
@@ -95,6 +51,8 @@ double sum_of(const std::vector<double>& weights) {
 }
 
 }  // namespace
+
+PairChoice::PairChoice(double max_missed) : max_shown_(std::max(0.0, max_missed - kHiddenShare)) {}
 
 void PairChoice::forget(MapId id) {
   signatures_.erase(id);
@@ -162,7 +120,7 @@ bool PairChoice::known_to_meet(const MapStore& store, std::size_t a, std::size_t
 }
 
 std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore& store,
-                                               const std::set<Pair>& chosen, const JoinProblem& problem,
+                                               const std::set<Pair>& chosen,
                                                const ConsistentSet& consistent_set) const {
   std::vector<std::size_t> group_of;
   const std::vector<std::size_t> sizes = group_sizes(consistent_set, group_of);
@@ -195,12 +153,9 @@ std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore
   const double found = std::clamp((static_cast<double>(consistent_set.used.size()) + 1.0) / (expected + 1.0),
                                   kLeastFound, kMostFound);
   rest *= found;
-  // A join of which signatures say nothing matters where no other one holds its maps together: as many of
-  // those that are hidden as of those that were found.
-  rest += kHiddenShare * static_cast<double>(count_bridges(problem, consistent_set));
   const double all = static_cast<double>(consistent_set.used.size()) + rest;
-  const double share = std::max(kForTheFirstLook * max_missed_,
-                                kFirstShare * std::pow(kShareStep, static_cast<double>(round)));
+  const double share =
+      std::max(kForTheFirstLook * max_shown_, kFirstShare * std::pow(kShareStep, static_cast<double>(round)));
   std::vector<std::size_t> taken(maps_.size());
   for (const Weighed& one : open) {
     if (rest <= share * all) break;
@@ -210,8 +165,8 @@ std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore
     rest -= one.weight * found;
     pairs.emplace_back(maps_[one.a], maps_[one.b]);
   }
-  if (pairs.empty() && share > kForTheFirstLook * max_missed_)
-    return next(round + 1, store, chosen, problem, consistent_set);
+  if (pairs.empty() && share > kForTheFirstLook * max_shown_)
+    return next(round + 1, store, chosen, consistent_set);
   return pairs.empty() ? laid_on_each_other(store, chosen, consistent_set) : pairs;
 }
 
@@ -270,7 +225,7 @@ std::vector<PairChoice::Pair> PairChoice::worth_a_second_look(const std::vector<
   const double all = static_cast<double>(consistent_set.used.size()) + rest;
   std::vector<Pair> pairs;
   for (const Weighed& one : open) {
-    if (rest <= kForTheSecondLook * max_missed_ * all) break;
+    if (rest <= kForTheSecondLook * max_shown_ * all) break;
     rest -= one.weight;
     pairs.emplace_back(maps_[one.a], maps_[one.b]);
   }
@@ -303,7 +258,7 @@ std::vector<bool> PairChoice::worth_meeting(const std::vector<std::unique_ptr<Pr
   const double all = rest + static_cast<double>(joins);
   std::vector<bool> worth(meetings.size());
   for (const std::size_t i : order) {
-    if (rest <= kForGroups * max_missed_ * all) break;
+    if (rest <= kForGroups * max_shown_ * all) break;
     rest -= weights[i];
     worth[i] = true;
   }

@@ -29,10 +29,11 @@ class PairChoice {
   using MapId = MapStore::MapId;
   using Pair = PairLooks::Pair;
 
-  /// `max_missed`: the share of all joins that may be missed; 0 = look at all pairs.
-  explicit PairChoice(double max_missed) : max_missed_(max_missed) {}
+  /// `max_missed`: the share of all joins that may be missed. All pairs are looked at up to kHiddenShare, so
+  /// many are missed whichever pairs are left.
+  explicit PairChoice(double max_missed);
 
-  bool takes_all(std::size_t maps) const { return max_missed_ == 0.0 || maps <= kFewMaps; }
+  bool takes_all(std::size_t maps) const { return max_shown_ == 0.0 || maps <= kFewMaps; }
 
   /// The map is another one, or gone.
   void forget(MapId id);
@@ -45,7 +46,7 @@ class PairChoice {
   /// none when the rest may be left. `round` counts from 0. The first map of a pair stands before the second
   /// one in `maps`. O(pairs log(pairs)).
   std::vector<Pair> next(std::size_t round, const MapStore& store, const std::set<Pair>& chosen,
-                         const JoinProblem& problem, const ConsistentSet& consistent_set) const;
+                         const ConsistentSet& consistent_set) const;
 
   /// Of the pairs whose maps the first look leaves apart, those that get a second one.
   std::vector<Pair> worth_a_second_look(const std::vector<Pair>& apart, const PairLooks& looks,
@@ -70,7 +71,7 @@ class PairChoice {
                                        const ConsistentSet& consistent_set) const;
   bool known_to_meet(const MapStore& store, std::size_t a, std::size_t b) const;
 
-  double max_missed_;
+  double max_shown_;         // share of all joins that may be missed although signatures show them
   std::vector<MapId> maps_;  // of prepare()
   std::map<MapId, std::unique_ptr<const Signature>> signatures_;
   std::vector<float> log_odds_;  // of each pair of maps_, a < b, in their order

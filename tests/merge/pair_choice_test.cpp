@@ -94,10 +94,11 @@ std::vector<std::size_t> in_order(std::size_t count) {
 }
 
 TEST(PairChoice, OfFewMapsAllPairsAreLookedAt) {
-  const internal::PairChoice some(0.05), none(0.0);
+  const internal::PairChoice some(0.25), hidden(0.2), none(0.0);
   EXPECT_TRUE(some.takes_all(internal::kFewMaps));
   EXPECT_FALSE(some.takes_all(internal::kFewMaps + 1));
   EXPECT_TRUE(none.takes_all(100000));
+  EXPECT_TRUE(hidden.takes_all(100000));
 }
 
 TEST(PairChoice, AShareThatMakesNoSenseIsRefused) {
@@ -110,7 +111,7 @@ TEST(PairChoice, FewerPairsMakeTheSameMapsWhateverTheOrderAndTheThreads) {
   const Fleet fleet(60);
   const std::vector<std::size_t> order = in_order(60);
   std::size_t of_all = 0, of_some = 0;
-  MergeOptions all = options(0.0), some = options(0.3), one_thread = options(0.3, 1);
+  MergeOptions all = options(0.0), some = options(0.5), one_thread = options(0.5, 1);
   for (MergeOptions* each : {&all, &some, &one_thread}) each->max_false_joins = 1.0;
   const MergeResult expected = merge_of(fleet, order, all, &of_all);
   const MergeResult result = merge_of(fleet, order, some, &of_some);
@@ -135,7 +136,7 @@ TEST(PairChoice, FewerPairsMakeTheSameMapsWhateverTheOrderAndTheThreads) {
 TEST(PairChoice, ManyMapsHaveABudgetOfFalseJoinsForEveryFifty) {
   const Fleet fleet(100);
   const auto joined = [&](std::size_t maps, double budget) {
-    MergeOptions some = options(0.3);
+    MergeOptions some = options(0.5);
     some.max_false_joins = budget;
     const MergeResult result = merge_of(fleet, in_order(maps), some);
     EXPECT_LE(result.expected_false_joins, budget * std::max(1.0, static_cast<double>(maps) / 50.0));

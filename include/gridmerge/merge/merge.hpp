@@ -23,9 +23,9 @@ struct MergeOptions {
   /// asks of each: the least sure ones are not made (see find_consistent_set_within()). Of more than 50
   /// maps, so many for every 50.
   double max_false_joins = 0.05;
-  /// Of more than 50 maps only likely pairs are matched: those left out hide, as far as is known, at
-  /// most this share of all joins. 0 = all pairs are matched. In [0, 1).
-  double max_missed = 0.08;
+  /// Of more than 50 maps only likely pairs are matched: those left out hide, as far as is known, at most
+  /// this share of all joins. Up to 0.2, and of fewer maps, all pairs are matched. In [0, 1).
+  double max_missed = 0.0;
   double resolution = 0.0;  ///< of the merged maps [m]; 0 = the finest among a map's inputs
   /// Called with the numbers of pairs that are matched and to be matched, never from two threads at once. Of
   /// the second look, if there is one, the numbers begin anew.
@@ -34,7 +34,7 @@ struct MergeOptions {
 
 /// Merges `maps` by what all pairs of them say together.
 ///
-/// Every pair is matched, or of many maps every likely one (see MergeOptions::max_missed), and all hypotheses
+/// Every pair is matched, or of many maps the likely ones (see MergeOptions::max_missed), and all hypotheses
 /// are kept. The consistent set of all maps that they speak for most is chosen (see
 /// find_consistent_set_within()): a weak pair that agrees with the others is used, a strong one that
 /// contradicts them is not. Then all poses are adjusted together, to what the pairs and the maps' walls say
