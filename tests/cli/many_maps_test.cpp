@@ -25,7 +25,7 @@ class ManyMapsTest : public testing::Test {
   Outcome merge(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments{"merge"};
     arguments.insert(arguments.end(), maps.begin(), maps.end());
-    arguments.insert(arguments.end(), {"--search", "quick", "--max-missed", "0.6"});
+    arguments.insert(arguments.end(), {"--search", "quick", "--max-missed", "0.9"});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
