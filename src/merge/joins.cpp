@@ -96,9 +96,7 @@ LeftOut left_out(std::size_t map, const std::vector<Join>& joins) {
     if (join.fixed != map && join.moving != map) continue;
     if (nearest == nullptr || join.match.probability > nearest->match.probability) nearest = &join;
   }
-  if (nearest != nullptr) return {map, nearest->reason()};
-  // Of many maps no pair of this one was thought worth a look.
-  return {map, joins.empty() ? Reason::nothing_to_compare : Reason::too_little_overlap};
+  return {map, nearest == nullptr ? Reason::nothing_to_compare : nearest->reason()};
 }
 
 }  // namespace gridmerge::internal
