@@ -251,6 +251,7 @@ def merge(
     threads: int = 0,
     accept: float | None = None,
     max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
+    max_missed: float = _core.DEFAULT_MAX_MISSED,
     output_resolution: float | None = None,
     elastic: bool = False,
     search: str = "exhaustive",
@@ -271,8 +272,10 @@ def merge(
         threads: 0 = one a core. The result does not depend on it.
         accept: maps are joined from this probability on, 0.95 if None. Of the random walk it is the acceptance index,
             0.98 if None.
-        max_false_joins: so many joins of the whole merge may be expected to be false; those that are least sure are not
-            made. It holds beside `accept`. "tree" does not use it.
+        max_false_joins: so many joins of the whole merge may be expected to be false, or of more than 50 maps for every
+            50; those that are least sure are not made. It holds beside `accept`. "tree" does not use it.
+        max_missed: of more than 50 maps match likely pairs only: the others may hide this share of all joins, 0.25 or so.
+            Up to 0.2 all pairs are matched. "tree" does not use it.
         output_resolution: of the merged maps [m]; None = the finest of the maps'.
         elastic: whether maps are bent so that walls that several have seen come to lie on each other: for maps that
             drift has bent. See Member.deformation. Fixed maps stay straight. It changes neither which maps join nor
@@ -308,6 +311,7 @@ def merge(
     known = to_known_poses(NamedMaps(called, grids), init, fix)
     checked_accept = None if accept is None else _arguments.share("accept", accept)
     max_false_joins = _arguments.not_negative("max_false_joins", max_false_joins)
+    max_missed = _arguments.share("max_missed", max_missed)
     resolution = to_output_resolution(output_resolution)
     search = _arguments.choice("search", search, tuple(_core.search_methods()))
     told = _arguments.progress(progress)
@@ -318,6 +322,7 @@ def merge(
             _arguments.threads(threads),
             checked_accept,
             max_false_joins,
+            max_missed,
             resolution,
             up_the_tree,
             bool(elastic),
@@ -329,6 +334,7 @@ def merge(
             _arguments.threads(threads),
             _core.DEFAULT_ACCEPT if checked_accept is None else checked_accept,
             max_false_joins,
+            max_missed,
             resolution,
             bool(elastic),
             search,

@@ -41,8 +41,9 @@ MergeResult merge_grids(const std::vector<OccupancyGrid>& grids,
 }
 
 Merged merge_maps(std::vector<Map> maps, const std::vector<std::optional<Known>>& known, int threads,
-                  std::optional<double> accept, double max_false_joins, double output_resolution,
-                  bool up_the_tree, bool elastic, const std::string& search, const nb::object& progress) {
+                  std::optional<double> accept, double max_false_joins, double max_missed,
+                  double output_resolution, bool up_the_tree, bool elastic, const std::string& search,
+                  const nb::object& progress) {
   std::vector<std::optional<KnownPose>> known_poses;
   known_poses.reserve(known.size());
   for (const std::optional<Known>& one : known) known_poses.push_back(to_known_pose(one));
@@ -50,6 +51,7 @@ Merged merge_maps(std::vector<Map> maps, const std::vector<std::optional<Known>>
   options.match.threads = threads;
   set_search(options.match, search, accept);
   options.max_false_joins = max_false_joins;
+  options.max_missed = max_missed;
   options.resolution = output_resolution;
   options.elastic = elastic;
   MergeResult result = compute_in_worker(progress, [&](const Report& report) {
@@ -188,8 +190,9 @@ void bind_merge(nb::module_& module) {
   module.def(
       "validate_known_pose", [](const Known& known) { validate(*to_known_pose(known)); }, nb::arg("known"));
   module.def("merge", &merge_maps, nb::arg("maps"), nb::arg("known"), nb::arg("threads"),
-             nb::arg("accept").none(), nb::arg("max_false_joins"), nb::arg("output_resolution"),
-             nb::arg("up_the_tree"), nb::arg("elastic"), nb::arg("search"), nb::arg("progress").none());
+             nb::arg("accept").none(), nb::arg("max_false_joins"), nb::arg("max_missed"),
+             nb::arg("output_resolution"), nb::arg("up_the_tree"), nb::arg("elastic"), nb::arg("search"),
+             nb::arg("progress").none());
   module.def(
       "bent_map",
       [](const Map& map, const Deformation& deformation) {

@@ -33,7 +33,10 @@ std::vector<Join> make_joins(const MapStore& store, const std::vector<MapId>& ma
   std::vector<Join> joins;
   for (std::size_t i = 0; i < problem.pairs.size(); ++i) {
     const PairCandidates& pair = problem.pairs[i];
-    const MatchResult match = looks.between(maps[pair.fixed], maps[pair.moving], solution.again);
+    // Nobody may have looked at it, if a group speaks for the pair.
+    const MatchResult match = looks.holds(maps[pair.fixed], maps[pair.moving])
+                                  ? looks.between(maps[pair.fixed], maps[pair.moving], solution.again)
+                                  : MatchResult{};
     const CandidateJoin* candidate = used.contains(i) ? &pair.candidates[used.at(i)] : nullptr;
     const bool is_in_company = is_placed[pair.fixed] || is_placed[pair.moving];
     Join join = make_join(index[pair.fixed], index[pair.moving], match, {candidate, is_in_company});
@@ -72,7 +75,8 @@ void sort_components(MergeResult& result) {
 
 }  // namespace
 
-JoinProblem make_problem(const MapStore& store, const std::vector<MapId>& maps, const PairLooks& looks,
+JoinProblem make_problem(const MapStore& store, const std::vector<MapId>& maps,
+                         const std::vector<Pair>& chosen, const PairLooks& looks,
                          const std::set<Pair>& again) {
   JoinProblem problem;
   std::map<MapId, std::size_t> place;
@@ -83,7 +87,7 @@ JoinProblem make_problem(const MapStore& store, const std::vector<MapId>& maps, 
     const std::optional<KnownPose> known = store.known_pose(id);
     problem.fixed.push_back(known && known->fixed ? std::optional(known->T_world_map) : std::nullopt);
   }
-  for (const auto& [fixed, moving] : PairLooks::choose_pairs(maps)) {
+  for (const auto& [fixed, moving] : chosen) {
     const std::size_t a = place.at(fixed), b = place.at(moving);
     PairCandidates pair{a, b, candidate_joins(looks.between(fixed, moving, again))};
     const std::optional<KnownPose> of_a = store.known_pose(fixed), of_b = store.known_pose(moving);
@@ -91,6 +95,10 @@ JoinProblem make_problem(const MapStore& store, const std::vector<MapId>& maps, 
       apply_known_poses(*of_a, *of_b, problem.maps[a], problem.maps[b], pair);
     problem.pairs.push_back(std::move(pair));
   }
+  // In whatever order they were chosen.
+  std::sort(problem.pairs.begin(), problem.pairs.end(), [](const PairCandidates& a, const PairCandidates& b) {
+    return std::pair(a.fixed, a.moving) < std::pair(b.fixed, b.moving);
+  });
   return problem;
 }
 

@@ -24,7 +24,8 @@ struct Solution {
 
 /// What the pairs that were chosen say of these maps, with what is known of their poses.
 JoinProblem make_problem(const MapStore& store, const std::vector<MapStore::MapId>& maps,
-                         const PairLooks& looks, const std::set<PairLooks::Pair>& again);
+                         const std::vector<PairLooks::Pair>& chosen, const PairLooks& looks,
+                         const std::set<PairLooks::Pair>& again);
 
 /// Those of the chosen pairs whose maps lie in no common group. `maps` are those of the consistent set.
 std::vector<PairLooks::Pair> pairs_apart(const std::vector<PairLooks::Pair>& chosen,
