@@ -356,6 +356,11 @@ void add_merge(CLI::App& app, Action& action) {
           ->type_name("SHARE")
           ->check(kProbability)
           ->capture_default_str();
+  command
+      ->add_flag_callback(
+          "--all-pairs", [options] { options->max_missed = 0.0; },
+          "Match all pairs, however many maps there are: --max-missed 0")
+      ->excludes(missed);
   command->add_flag(
       "--elastic", options->elastic,
       "Bend the maps so that walls that several have seen come to lie on each other: for maps that "

@@ -208,11 +208,12 @@ SignatureMatch compare(const Signature& fixed, const Signature& moving) {
   std::stable_sort(distinct.begin(), distinct.end(), better);
   std::vector<Checked> best(distinct.begin(), distinct.begin() + std::min(distinct.size(), kMaxChecked));
   for (Checked& one : best) one.tally = tally_both(fixed, moving, one.T, 1);
-  std::stable_sort(best.begin(), best.end(), better);
-  best.resize(std::min(best.size(), kMaxRefined));
+  const std::size_t kept = std::min(best.size(), kMaxRefined);
+  std::partial_sort(best.begin(), best.begin() + static_cast<std::ptrdiff_t>(kept), best.end(), better);
+  best.resize(kept);
   if (worth(best.front()) > kPromising) {
     for (Checked& one : best) one = refined(fixed, moving, one);
-    std::stable_sort(best.begin(), best.end(), better);
+    std::iter_swap(best.begin(), std::min_element(best.begin(), best.end(), better));
   }
   const Checked& first = best.front();
   match.T_fixed_moving = fixed.T_map_grid * SE2{first.T.x, first.T.y, normalize_angle(first.T.theta)} *

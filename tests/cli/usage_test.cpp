@@ -73,6 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
         Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--max-missed", "nan"},
         Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--max-missed", "5%"},
         Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--max-missed", ""},
+        Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--max-missed", "0.3", "--all-pairs"},
         Words{"merge", "a.yaml", "b.yaml", "-o", "out", "--strategy", "tree", "--max-missed", "0.1"},
         Words{"view"}, Words{"view", "a", "--port", "65536"}, Words{"view", "a", "--port", "-1"},
         Words{"view", "a", "--port", "http"}, Words{"view", "a", "--address", "0.0.0.0"},
