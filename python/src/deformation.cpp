@@ -60,7 +60,9 @@ void bind_deformation(nb::module_& module) {
       .def_prop_ro("spacing", &Deformation::spacing)
       .def_prop_ro("columns", &Deformation::columns)
       .def_prop_ro("rows", &Deformation::rows)
-      .def_prop_ro("shifts", [](const Deformation& one) { return to_numpy(one.shifts()); })
+      .def_prop_ro(
+          "shifts", [](const Deformation& one) { return to_numpy(one.shifts()); },
+          nb::rv_policy::move)  // it owns its values
       .def_prop_ro("strain_bound", &Deformation::strain_bound)
       .def(
           "bend",

@@ -63,23 +63,8 @@ def test_deformations_are_values() -> None:
 
 
 def test_elastic_merge(cli: Cli, tmp_path: Path) -> None:
-    cli(
-        *[
-            "simulate",
-            "--robots",
-            "3",
-            "--overlap",
-            "0.8",
-            "--others",
-            "0",
-            "--drift",
-            "1.5",
-            "--seed",
-            "3",
-            "-o",
-        ],
-        str(tmp_path / "maps"),
-    )
+    options = "--kind office --robots 3 --overlap 0.7 --drift 1 --others 0 --clutter 0 --seed 101"
+    cli("simulate", *options.split(), "-o", tmp_path / "maps")
     maps = [str(tmp_path / "maps" / f"robot_{i}.yaml") for i in (1, 2, 3)]
     rigid = gridmerge.merge(maps)
     elastic = gridmerge.merge(maps, elastic=True)
