@@ -71,7 +71,7 @@ def write_grid(path: pathlib.Path, grid: Grid) -> None:
     height, width = grid.cells.shape
     image = path.with_suffix(".pgm")
     image.write_bytes(f"P5\n{width} {height}\n255\n".encode() + grid.cells[::-1].tobytes())
-    path.write_text(f"image: {image.name}\nresolution: {grid.resolution}\norigin: [{grid.x!r}, {grid.y!r}, 0.0]\n"
+    path.write_text(f"image: {image.name}\nresolution: {grid.resolution}\norigin: [{float(grid.x)!r}, {float(grid.y)!r}, 0.0]\n"
                     "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n")
 
 

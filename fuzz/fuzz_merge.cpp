@@ -37,6 +37,8 @@ void require_sound(const MergeResult& result, const std::vector<OccupancyGrid>& 
     for (const Member& member : component.members) {
       fuzz::require(member.map < maps.size() && seen.insert(member.map).second);
       fuzz::require(fuzz::is_finite(member.T_component_map));
+      fuzz::require(options.elastic || member.deformation.is_identity());
+      fuzz::require(member.deformation.strain_bound() <= Deformation::kMostStrain);
       fuzz::require(member.probability && *member.probability >= 0.0 && *member.probability <= 1.0);
       fuzz::require(member.sd && member.sd->position >= 0.0 && member.sd->theta >= 0.0);
       fuzz::require(std::isfinite(member.sd->position) && std::isfinite(member.sd->theta));
@@ -55,6 +57,7 @@ void require_sound(const MergeResult& result, const std::vector<OccupancyGrid>& 
 bool are_same(const MergeResult& a, const MergeResult& b) {
   const auto same_member = [](const Member& one, const Member& other) {
     return one.map == other.map && one.T_component_map == other.T_component_map &&
+           one.deformation == other.deformation &&
            one.probability == other.probability && one.sd->position == other.sd->position &&
            one.sd->theta == other.sd->theta;
   };
@@ -77,6 +80,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto count = bytes.ConsumeIntegralInRange(std::size_t{2}, std::size_t{4});
   const KnownPoses known = draw_known_poses(bytes, count);
   const std::vector<OccupancyGrid> maps = fuzz::draw_maps(bytes, count);
+  options.elastic = bytes.ConsumeBool();
   MergeResult result;
   try {
     result = merge(maps, options, known);

@@ -43,14 +43,6 @@ const CLI::Validator kShard(
     },
     "");
 
-Merger merger_of(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
-                 const std::vector<std::optional<KnownPose>>& known_poses) {
-  Merger merger(options);
-  for (std::size_t i = 0; i < maps.size(); ++i)
-    merger.add(maps[i], i < known_poses.size() ? known_poses[i] : std::nullopt);
-  return merger;
-}
-
 std::string matches(std::size_t count) {
   return fmt::format("{} {}", count, count == 1 ? "match" : "matches");
 }

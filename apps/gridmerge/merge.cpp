@@ -19,6 +19,7 @@
 #include "console.hpp"
 #include "exports.hpp"
 #include "gridmerge/bag/any_map.hpp"
+#include "gridmerge/merge/doubled_walls.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"
@@ -40,6 +41,8 @@ struct MergeCommandOptions {
   LoadOptions load;
   double output_resolution = 0.0;
   double max_false_joins = MergeOptions{}.max_false_joins;
+  bool elastic = false;
+  double max_missed = MergeOptions{}.max_missed;
   SearchOptions search;
   KnownPoseOptions known;
   CacheOptions cache;
@@ -113,6 +116,8 @@ MergeOptions merge_options(const MergeCommandOptions& options, Console& console)
   engine.match = match_options(options.common, options.search);
   engine.resolution = options.output_resolution;
   engine.max_false_joins = options.max_false_joins;
+  engine.elastic = options.elastic;
+  engine.max_missed = options.max_missed;
   engine.progress = [&console](std::size_t done, std::size_t total) {
     if (done < total) {
       console.progress("matching pairs", static_cast<double>(done) / static_cast<double>(total));
@@ -252,6 +257,22 @@ std::string scale_hints(const MergeCommandOptions& options, const std::vector<Oc
   return text;
 }
 
+/// How many walls lie double, and what may help: where it is asked for, or there are many.
+std::string describe_doubled(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
+                             const MergeResult& result) {
+  if (options.search.up_the_tree()) return {};
+  std::string text;
+  for (std::size_t i = 0; i < result.components.size(); ++i) {
+    const double share = measure_doubled_walls(maps, result.components[i]).share();
+    const bool may_help = !options.elastic && share >= kManyDoubled;
+    if (!may_help && !options.common.verbose) continue;
+    fmt::format_to(std::back_inserter(text), "{}: {:.1f} % of the walls that several maps saw lie double{}\n",
+                   component_file(i), 100.0 * share,
+                   may_help ? "; --elastic bends maps so that they fit better" : "");
+  }
+  return text;
+}
+
 int run_shard(const MergeCommandOptions& options) {
   Console console(options.common);
   const KnownPoses known_poses(options.known, options.maps, console);
@@ -287,7 +308,8 @@ int run_merge(const MergeCommandOptions& options) {
   console.progress("writing the result");
   write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   matcher.write_trace();
-  const std::string hints = scale_hints(options, inputs.maps, result, console);
+  const std::string hints =
+      scale_hints(options, inputs.maps, result, console) + describe_doubled(options, inputs.maps, result);
   console.clear();
   if (options.common.verbose) print(describe_joins(options, result));
   print(describe(options, result, known_poses.describe_unused(inputs.maps, result)) + hints);
@@ -318,12 +340,27 @@ void add_merge(CLI::App& app, Action& action) {
   add_strategy_option(*command, options->search);
   CLI::Option* budget =
       command
-          ->add_option("--max-false-joins", options->max_false_joins,
-                       "How many joins of the whole merge may be expected to be false; those that are least "
-                       "sure are not made. It holds beside --accept, which is asked of each join")
+          ->add_option(
+              "--max-false-joins", options->max_false_joins,
+              "How many joins of the whole merge may be expected to be false, or of more than 50 maps "
+              "for every 50; those that are least sure are not made. It holds beside --accept, which "
+              "is asked of each join")
           ->type_name("NUMBER")
-          ->check(CLI::Range(0.0, 1e6).description(""))
+          ->check(kNotNegative)
           ->capture_default_str();
+  CLI::Option* missed =
+      command
+          ->add_option("--max-missed", options->max_missed,
+                       "Of more than 50 maps match likely pairs only: the others may hide this share of all "
+                       "joins, 0.25 or so. Up to 0.2 all pairs are matched")
+          ->type_name("SHARE")
+          ->check(kProbability)
+          ->capture_default_str();
+  command->add_flag(
+      "--elastic", options->elastic,
+      "Bend the maps so that walls that several have seen come to lie on each other: for maps that "
+      "drift has bent. A map that --fix holds stays straight. It changes neither which maps join nor "
+      "how sure that is");
   add_trace_option(*command, options->search);
   add_cache_option(*command, options->cache);
   add_shard_option(*command, options->cache);
@@ -340,7 +377,8 @@ void add_merge(CLI::App& app, Action& action) {
       "see one directory. Pairs are looked at in two rounds: quickly, and thoroughly those whose maps that\n"
       "leaves apart. A shard needs no other for the first round, and all others for the second. So run "
       "every\n"
-      "shard, wait for all, and run every shard once more; the merge itself makes what is missing:\n"
+      "shard, wait for all, and run every shard once more; the merge itself makes what is missing. Of more\n"
+      "than 50 maps there may be more rounds: --max-missed chooses pairs by what was found before:\n"
       "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (and 2/2 elsewhere)\n"
       "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (when both have ended; and 2/2 "
       "elsewhere)\n"
@@ -351,9 +389,15 @@ void add_merge(CLI::App& app, Action& action) {
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml --fix robot2.yaml -o "
       "merged");
-  command->callback([options, budget, &action] {
+  command->callback([options, budget, missed, &action] {
     if (budget->count() > 0 && options->search.up_the_tree())
       throw CLI::ValidationError("--max-false-joins", "needs --strategy joint");
+    if (options->elastic && options->search.up_the_tree())
+      throw CLI::ValidationError("--elastic", "needs --strategy joint");
+    if (options->max_missed >= 1.0)
+      throw CLI::ValidationError("--max-missed", "all joins may not be missed: give less than 1");
+    if (missed->count() > 0 && options->search.up_the_tree())
+      throw CLI::ValidationError("--max-missed", "needs --strategy joint");
     const bool knows_poses = !options->known.init.empty() || !options->known.fix.empty();
     if (knows_poses && options->search.up_the_tree())
       throw CLI::ValidationError(options->known.init.empty() ? "--fix" : "--init", "needs --strategy joint");

@@ -152,7 +152,7 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
           "How many joins of the whole team may be expected to be false; those that are least sure are not "
           "made")
       ->type_name("NUMBER")
-      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->check(kNotNegative)
       ->capture_default_str();
   command
       .add_option("--output-resolution", node.team.merge.resolution,

@@ -16,6 +16,7 @@ from types import FunctionType
 
 from ._bag import BagTopic, RecordedMap, bag_topics, recorded_maps
 from ._core import FileError
+from ._deformation import Deformation
 from ._evaluate import (
     Evaluation,
     MatchCase,
@@ -72,6 +73,7 @@ __all__ = [
     "CellClass",
     "CommonCells",
     "Component",
+    "Deformation",
     "DistancePass",
     "Evaluation",
     "ExecutorError",

@@ -281,7 +281,12 @@ class _Answers:
         mergers: list[tuple[_core.Merger, dict[int, _executor.SharedMap]]] = []
         for members in sets:
             merger = _core.Merger(
-                self._threads, self._accept, _core.DEFAULT_MAX_FALSE_JOINS, 0.0, "exhaustive"
+                self._threads,
+                self._accept,
+                _core.DEFAULT_MAX_FALSE_JOINS,
+                _core.DEFAULT_MAX_MISSED,
+                0.0,
+                "exhaustive",
             )
             shared = {merger.add(self._load(member), None): self._share(member) for member in members}
             mergers.append((merger, shared))

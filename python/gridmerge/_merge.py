@@ -7,8 +7,12 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from . import _arguments, _core, _executor, _html
 from ._arguments import Progress
+from ._deformation import Deformation
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_maps_and_files
 from ._known_poses import InitialPoses, MapKey, NamedMaps, to_known_poses
@@ -43,6 +47,21 @@ class Member:
     """Standard deviation of the middle of the map's known cells [m]; 0 for what holds the frame, None up the tree."""
     sd_theta: float | None
     """Standard deviation of the direction [rad]; 0 for what holds the frame, None up the tree."""
+    deformation: Deformation | None = None
+    """How the map is bent, in its own frame, before the transform takes it to the component's. None for a straight map,
+    as all are without ``elastic=True``."""
+
+    def to_component(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Where points of the map's frame lie in the component's [m]: an array of shape (..., 2), and so is the result.
+
+        Raises ValueError for another shape.
+        """
+        return self.transform.apply(points if self.deformation is None else self.deformation.bend(points))
+
+    def to_map(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Where points of the component's frame lie in the map's: the inverse of to_component()."""
+        placed = self.transform.inverse().apply(points)
+        return placed if self.deformation is None else self.deformation.straighten(placed)
 
     def __repr__(self) -> str:
         return (
@@ -232,7 +251,9 @@ def merge(
     threads: int = 0,
     accept: float | None = None,
     max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
+    max_missed: float = _core.DEFAULT_MAX_MISSED,
     output_resolution: float | None = None,
+    elastic: bool = False,
     search: str = "exhaustive",
     executor: Executor | None = None,
     progress: Progress | None = None,
@@ -251,9 +272,14 @@ def merge(
         threads: 0 = one a core. The result does not depend on it.
         accept: maps are joined from this probability on, 0.95 if None. Of the random walk it is the acceptance index,
             0.98 if None.
-        max_false_joins: so many joins of the whole merge may be expected to be false; those that are least sure are not
-            made. It holds beside `accept`. "tree" does not use it.
+        max_false_joins: so many joins of the whole merge may be expected to be false, or of more than 50 maps for every
+            50; those that are least sure are not made. It holds beside `accept`. "tree" does not use it.
+        max_missed: of more than 50 maps match likely pairs only: the others may hide this share of all joins, 0.25 or so.
+            Up to 0.2 all pairs are matched. "tree" does not use it.
         output_resolution: of the merged maps [m]; None = the finest of the maps'.
+        elastic: whether maps are bent so that walls that several have seen come to lie on each other: for maps that
+            drift has bent. See Member.deformation. Fixed maps stay straight. It changes neither which maps join nor
+            how sure that is, and needs the strategy "joint".
         search: as of match(). With "exhaustive" the thorough look is for pairs whose maps the quick one leaves apart.
             "random-walk" needs the strategy "tree".
         executor: makes the matches: any concurrent.futures.Executor, of processes, threads, Dask or MPI. The result is
@@ -276,6 +302,8 @@ def merge(
         raise ValueError(
             "search: 'random-walk' needs the strategy 'tree': it has one pose per pair, no probability"
         )
+    if elastic and up_the_tree:
+        raise ValueError("strategy: elastic needs 'joint'")
     if _executor.check(executor) is not None and up_the_tree:
         raise ValueError("executor: needs the strategy 'joint': a tree's matches wait for each other")
     # The program may go to another directory before it saves.
@@ -283,6 +311,7 @@ def merge(
     known = to_known_poses(NamedMaps(called, grids), init, fix)
     checked_accept = None if accept is None else _arguments.share("accept", accept)
     max_false_joins = _arguments.not_negative("max_false_joins", max_false_joins)
+    max_missed = _arguments.share("max_missed", max_missed)
     resolution = to_output_resolution(output_resolution)
     search = _arguments.choice("search", search, tuple(_core.search_methods()))
     told = _arguments.progress(progress)
@@ -293,8 +322,10 @@ def merge(
             _arguments.threads(threads),
             checked_accept,
             max_false_joins,
+            max_missed,
             resolution,
             up_the_tree,
+            bool(elastic),
             search,
             told,
         )
@@ -303,7 +334,9 @@ def merge(
             _arguments.threads(threads),
             _core.DEFAULT_ACCEPT if checked_accept is None else checked_accept,
             max_false_joins,
+            max_missed,
             resolution,
+            bool(elastic),
             search,
         )
         ids = [merger.add(grid._core, pose) for grid, pose in zip(grids, known, strict=True)]
@@ -390,6 +423,7 @@ def _to_member(member: _core.Member, names: Sequence[str]) -> Member:
         probability=member.probability,
         sd_position=None if member.sd is None else member.sd.position,
         sd_theta=None if member.sd is None else member.sd.theta,
+        deformation=None if member.deformation.is_identity else Deformation._of(member.deformation),
     )
 
 

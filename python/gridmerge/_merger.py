@@ -36,18 +36,22 @@ class Merger:
         threads: int = 0,
         accept: float = _core.DEFAULT_ACCEPT,
         max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
+        max_missed: float = _core.DEFAULT_MAX_MISSED,
         output_resolution: float | None = None,
+        elastic: bool = False,
     ) -> None:
         self._set_up(
             (
                 _arguments.threads(threads),
                 _arguments.share("accept", accept),
                 _arguments.not_negative("max_false_joins", max_false_joins),
+                _arguments.share("max_missed", max_missed),
                 to_output_resolution(output_resolution),
+                bool(elastic),
             )
         )
 
-    def _set_up(self, options: tuple[int, float, float, float]) -> None:
+    def _set_up(self, options: tuple[int, float, float, float, float, bool]) -> None:
         self._options = options
         self._core = _core.Merger(*options, "exhaustive")
         self._maps: dict[int, tuple[OccupancyGrid, str]] = {}

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from ._grid import OccupancyGrid
 from ._measure import measure_poses, poses_between
 from ._transform import Transform
 
@@ -24,7 +25,6 @@ except ImportError as error:
     raise ImportError("plot() needs matplotlib: pip install 'gridmerge[plot]'") from error
 
 if TYPE_CHECKING:
-    from ._grid import OccupancyGrid
     from ._merge import MergeResult
     from ._random_walk import Walk
 
@@ -50,6 +50,8 @@ def plot_component(result: MergeResult, component: int, ax: Axes | None) -> Axes
     for member in result.components[component].members:
         colour = _core.map_colour(member.map)
         grid = result.maps[member.map]
+        if member.deformation is not None:
+            grid = OccupancyGrid._of(_core.bent_map(grid._core, member.deformation._core))
         _draw(axes, grid, member.transform, colour, tint=_TINT)
         corners.append(_corners(grid, member.transform))
         red, green, blue = (value / 255.0 for value in colour)

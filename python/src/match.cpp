@@ -32,6 +32,7 @@ void bind_match(nb::module_& module) {
   module.attr("DEFAULT_ACCEPT") = MatchOptions{}.accept_probability;
   module.attr("DEFAULT_MAX_HYPOTHESES") = MatchOptions{}.max_hypotheses;
   module.attr("DEFAULT_MAX_FALSE_JOINS") = MergeOptions{}.max_false_joins;
+  module.attr("DEFAULT_MAX_MISSED") = MergeOptions{}.max_missed;
   nb::class_<Hypothesis>(module, "Hypothesis")
       .def_prop_ro("transform", [](const Hypothesis& it) { return to_pose(it.T_fixed_moving); })
       .def_ro("score", &Hypothesis::score)

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/merge/fuse.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/interchange.hpp"
 #include "gridmerge/report/merge_output.hpp"
@@ -40,8 +41,9 @@ MergeResult merge_grids(const std::vector<OccupancyGrid>& grids,
 }
 
 Merged merge_maps(std::vector<Map> maps, const std::vector<std::optional<Known>>& known, int threads,
-                  std::optional<double> accept, double max_false_joins, double output_resolution,
-                  bool up_the_tree, const std::string& search, const nb::object& progress) {
+                  std::optional<double> accept, double max_false_joins, double max_missed,
+                  double output_resolution, bool up_the_tree, bool elastic, const std::string& search,
+                  const nb::object& progress) {
   std::vector<std::optional<KnownPose>> known_poses;
   known_poses.reserve(known.size());
   for (const std::optional<Known>& one : known) known_poses.push_back(to_known_pose(one));
@@ -49,7 +51,9 @@ Merged merge_maps(std::vector<Map> maps, const std::vector<std::optional<Known>>
   options.match.threads = threads;
   set_search(options.match, search, accept);
   options.max_false_joins = max_false_joins;
+  options.max_missed = max_missed;
   options.resolution = output_resolution;
+  options.elastic = elastic;
   MergeResult result = compute_in_worker(progress, [&](const Report& report) {
     options.progress = [&report](std::size_t done, std::size_t total) {
       report(static_cast<double>(done) / static_cast<double>(total));
@@ -117,7 +121,8 @@ void bind_results(nb::module_& module) {
       .def_ro("map", &Member::map)
       .def_prop_ro("transform", [](const Member& member) { return to_pose(member.T_component_map); })
       .def_ro("probability", &Member::probability)
-      .def_ro("sd", &Member::sd);
+      .def_ro("sd", &Member::sd)
+      .def_ro("deformation", &Member::deformation);
   nb::class_<OpenWay>(module, "OpenWay")
       .def_ro("fixed", &OpenWay::fixed)
       .def_ro("moving", &OpenWay::moving)
@@ -185,8 +190,16 @@ void bind_merge(nb::module_& module) {
   module.def(
       "validate_known_pose", [](const Known& known) { validate(*to_known_pose(known)); }, nb::arg("known"));
   module.def("merge", &merge_maps, nb::arg("maps"), nb::arg("known"), nb::arg("threads"),
-             nb::arg("accept").none(), nb::arg("max_false_joins"), nb::arg("output_resolution"),
-             nb::arg("up_the_tree"), nb::arg("search"), nb::arg("progress").none());
+             nb::arg("accept").none(), nb::arg("max_false_joins"), nb::arg("max_missed"),
+             nb::arg("output_resolution"), nb::arg("up_the_tree"), nb::arg("elastic"), nb::arg("search"),
+             nb::arg("progress").none());
+  module.def(
+      "bent_map",
+      [](const Map& map, const Deformation& deformation) {
+        const OthersRun meanwhile;
+        return Map{std::make_shared<const OccupancyGrid>(bent_map(*map.grid, deformation)), {}, {}};
+      },
+      nb::arg("map"), nb::arg("deformation"));
   module.def("export_formats", [] {
     std::vector<std::string> names;
     for (const ExportFormat format : export_formats()) names.emplace_back(name_of(format));

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "gridmerge/match/match_bytes.hpp"
 #include "match/pair_pose_bytes.hpp"
@@ -58,6 +60,31 @@ OccupancyGrid read_grid(ByteReader& reader) {
   return grid;
 }
 
+void write(const Deformation& deformation, ByteWriter& writer) {
+  writer.pose(deformation.T_map_lattice());
+  writer.number(deformation.spacing());
+  writer.whole(static_cast<std::uint64_t>(deformation.columns()));
+  writer.whole(static_cast<std::uint64_t>(deformation.rows()));
+  writer.whole(deformation.shifts().size());
+  for (const Point2& shift : deformation.shifts()) {
+    writer.number(shift.x);
+    writer.number(shift.y);
+  }
+}
+
+Deformation read_deformation(ByteReader& reader) {
+  const SE2 T_map_lattice = reader.pose();
+  const double spacing = reader.number();
+  const auto columns = static_cast<int>(reader.whole()), rows = static_cast<int>(reader.whole());
+  std::vector<Point2> shifts(reader.count(2 * kNumber));
+  for (Point2& shift : shifts) {
+    shift.x = reader.number();
+    shift.y = reader.number();
+  }
+  if (shifts.empty()) return {};
+  return {T_map_lattice, spacing, columns, rows, std::move(shifts)};
+}
+
 void write(const Component& component, ByteWriter& writer) {
   writer.whole(component.members.size());
   for (const Member& member : component.members) {
@@ -66,6 +93,7 @@ void write(const Component& component, ByteWriter& writer) {
     write(member.probability, writer);
     write(member.sd ? std::optional(member.sd->position) : std::nullopt, writer);
     write(member.sd ? std::optional(member.sd->theta) : std::nullopt, writer);
+    write(member.deformation, writer);
   }
   write(component.fused.grid, writer);
   writer.whole(component.fused.agreeing);
@@ -85,6 +113,7 @@ Component read_component(ByteReader& reader) {
     member.probability = read_optional(reader);
     const std::optional<double> position = read_optional(reader), theta = read_optional(reader);
     if (position && theta) member.sd = PoseDeviation{*position, *theta};
+    member.deformation = read_deformation(reader);
   }
   component.fused.grid = read_grid(reader);
   component.fused.agreeing = reader.whole();

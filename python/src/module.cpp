@@ -13,6 +13,7 @@ NB_MODULE(_core, module) {
   bind_bag(module);
   bind_match(module);
   bind_measure(module);
+  bind_deformation(module);
   bind_merge(module);
   bind_merger(module);
   bind_random_walk(module);

@@ -401,3 +401,17 @@ def test_a_plot_puts_walls_where_they_are() -> None:
     assert isinstance(to_data, Affine2DBase)
     expected = grid.origin.apply([15.5 * 0.5, 2.5 * 0.5])
     np.testing.assert_allclose(to_data.transform((x, y)), expected, atol=1e-9)
+
+
+@pytest.mark.parametrize("share", [-0.1, 1.0, 1.5, float("nan"), float("inf")])
+def test_a_share_of_missed_joins_that_makes_no_sense_is_refused(share: float, robots: list[str]) -> None:
+    with pytest.raises(ValueError, match="max_missed"):
+        gridmerge.merge(robots, max_missed=share)
+    with pytest.raises(ValueError, match="max_missed"):
+        gridmerge.Merger(max_missed=share)
+
+
+def test_of_few_maps_the_share_of_missed_joins_changes_nothing(robots: list[str]) -> None:
+    some, every = (gridmerge.merge(robots, max_missed=share) for share in (0.9, 0.0))
+    assert len(some.joins) == 3
+    assert to_bits(as_json(some)["components"]) == to_bits(as_json(every)["components"])

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "merge/alignment.hpp"
+#include "merge/elastic.hpp"
 #include "merge/joins.hpp"
 
 namespace gridmerge::internal {
@@ -33,10 +34,21 @@ std::vector<RelativePose> measured_in(const NodeGroup& group, const JoinProblem&
   return measured;
 }
 
+/// By how much maps are off where they are joined, the median [m].
+double usual_deviation(const std::vector<RelativePose>& measured) {
+  constexpr double kUnmeasured = 0.3;
+  if (measured.empty()) return kUnmeasured;
+  std::vector<double> deviations;
+  for (const RelativePose& relative : measured) deviations.push_back(relative.sd_position);
+  std::sort(deviations.begin(), deviations.end());
+  return deviations[deviations.size() / 2];
+}
+
 }  // namespace
 
 Component make_component(const NodeGroup& group, const JoinProblem& problem,
-                         const ConsistentSet& consistent_set, const MergeInputs& inputs, double resolution) {
+                         const ConsistentSet& consistent_set, const MergeInputs& inputs,
+                         const MergeOptions& options) {
   std::vector<AlignedMap> maps;
   std::size_t first = 0;  // of the result
   bool is_world = false;
@@ -47,22 +59,36 @@ Component make_component(const NodeGroup& group, const JoinProblem& problem,
     is_world = is_world || maps.back().is_fixed();
   }
   const std::vector<RelativePose> measured = measured_in(group, problem, consistent_set);
-  const std::vector<SE2> poses = align(maps, measured);
+  std::vector<SE2> poses = align(maps, measured);
   const std::vector<std::optional<PoseDeviation>> deviations = find_deviations(maps, measured, first);
+
+  std::vector<Deformation> deformations(group.size());
+  if (options.elastic) {
+    std::vector<RigidMember> rigid;
+    for (std::size_t i = 0; i < group.size(); ++i)
+      rigid.push_back({maps[i].map, poses[i], maps[i].is_fixed()});
+    const std::vector<BentMember> bent = bend(rigid, usual_deviation(measured));
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      poses[i] = bent[i].T_group_map;
+      deformations[i] = bent[i].deformation;
+    }
+  }
 
   Component component;
   component.in_world_frame = is_world;
   const SE2 T_frame_aligned = is_world ? SE2{} : inverse(poses[first]);
   for (std::size_t i = 0; i < group.size(); ++i) {
     const SE2 T = is_world ? poses[i] : i == first ? SE2{} : T_frame_aligned * poses[i];
-    component.members.push_back({inputs.index[group[i].map], T, group[i].probability, deviations[i]});
+    component.members.push_back(
+        {inputs.index[group[i].map], T, group[i].probability, deviations[i], deformations[i]});
   }
   std::vector<PlacedMap> placed;
   for (std::size_t i = 0; i < group.size(); ++i)
     placed.push_back({inputs.grids[group[i].map], component.members[i].T_component_map});
   std::sort(component.members.begin(), component.members.end(),
             [](const Member& a, const Member& b) { return a.map < b.map; });
-  component.fused = fuse(placed, resolution > 0.0 ? resolution : finest_resolution(placed));
+  component.fused =
+      fuse(placed, options.resolution > 0.0 ? options.resolution : finest_resolution(placed), deformations);
   return component;
 }
 

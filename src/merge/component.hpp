@@ -6,6 +6,7 @@
 
 #include "gridmerge/match/prepared_map.hpp"
 #include "gridmerge/merge/known_pose.hpp"
+#include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 #include "merge/consistent_set.hpp"
 
@@ -22,6 +23,7 @@ struct MergeInputs {
 /// One merged map of the group: its poses adjusted to all that holds it together, in the world's frame if one
 /// of them is fixed and in that of the member with the lowest index if not, and its maps fused.
 Component make_component(const NodeGroup& group, const JoinProblem& problem,
-                         const ConsistentSet& consistent_set, const MergeInputs& inputs, double resolution);
+                         const ConsistentSet& consistent_set, const MergeInputs& inputs,
+                         const MergeOptions& options);
 
 }  // namespace gridmerge::internal

@@ -93,7 +93,9 @@ void add_copies(const std::vector<Copy>& copies, const std::vector<const Occupan
         continue;
       }
       const auto [first, second] = std::minmax(of_a.original, of_b.original);
-      const Join& of_originals = joins.at({first, second});
+      const auto found = joins.find({first, second});
+      if (found == joins.end()) continue;  // nobody has looked at the two
+      const Join& of_originals = found->second;
       Join join = carried_over(first == of_a.original ? of_originals : inverted(of_originals), T_a,
                                of_b.T_original_map);
       join.fixed = a;
@@ -116,6 +118,7 @@ void add_copies(const std::vector<Copy>& copies, const std::vector<const Occupan
     Member member = *original;
     member.map = copy.map;
     member.T_component_map = original->T_component_map * copy.T_original_map;
+    member.deformation = seen_from(inverse(copy.T_original_map), original->deformation);
     component->members.push_back(member);
   }
   for (Component& component : result.components) {

@@ -53,9 +53,10 @@ std::optional<EqualCells> measure_omega(const OccupancyGrid& lattice, const std:
 
 }  // namespace
 
-FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution) {
+FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution,
+              const std::vector<Deformation>& deformations) {
   if (inputs.empty()) throw std::invalid_argument("there is no map to fuse");
-  const Lattice lattice = cover(inputs, resolution);
+  const Lattice lattice = cover(inputs, resolution, deformations);
   FusedMap fused;
   fused.grid =
       make_grid(lattice.width, lattice.height, lattice.resolution, {lattice.corner.x, lattice.corner.y, 0.0});
@@ -63,8 +64,11 @@ FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution) {
 
   Totals total{std::vector<std::int32_t>(fused.grid.cells.size(), 0),
                std::vector<std::uint8_t>(fused.grid.cells.size(), 0)};
-  for (const PlacedMap& input : inputs) {
-    add(draw_log_odds(input, lattice), lattice, total);
+  bool is_bent = false;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const Deformation deformation = i < deformations.size() ? deformations[i] : Deformation();
+    is_bent = is_bent || !deformation.is_identity();
+    add(draw_log_odds(inputs[i], lattice, deformation), lattice, total);
   }
 
   for (std::size_t i = 0; i < fused.grid.cells.size(); ++i) {
@@ -77,8 +81,28 @@ FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution) {
     fused.grid.cells[i] = log_odds > 0.0 ? Cell::occupied : Cell::free;
     fused.grid.probability[i] = static_cast<float>(logistic(log_odds));
   }
-  fused.omega = measure_omega(fused.grid, inputs);
+  if (!is_bent) fused.omega = measure_omega(fused.grid, inputs);
   return fused;
+}
+
+OccupancyGrid bent_map(const OccupancyGrid& map, const Deformation& deformation) {
+  validate(map);
+  if (deformation.is_identity()) return map;
+  OccupancyGrid upright = map;
+  upright.origin = {};
+  const Deformation in_grid = seen_from(inverse(map.origin), deformation);
+  const Lattice lattice = cover({PlacedMap{&upright, {}}}, map.resolution, {in_grid});
+  const LogOddsPatch patch = draw_log_odds({&upright, {}}, lattice, in_grid);
+  OccupancyGrid bent = make_grid(lattice.width, lattice.height, lattice.resolution,
+                                 map.origin * SE2{lattice.corner.x, lattice.corner.y, 0.0});
+  for (int row = 0; row < patch.height; ++row) {
+    for (int column = 0; column < patch.width; ++column) {
+      const std::int16_t log_odds = patch.at(column, row);
+      if (log_odds != 0)
+        bent.at(patch.column + column, patch.row + row) = log_odds > 0 ? Cell::occupied : Cell::free;
+    }
+  }
+  return bent;
 }
 
 }  // namespace gridmerge

@@ -52,6 +52,12 @@ void say(const MatchResult& match, const NodeGroup& group, std::size_t map, cons
          JoinProblem& problem) {
   const std::vector<CandidateJoin> candidates = candidate_joins(match);  // of the group's frame and the map
   const std::size_t speaker = nearest_member(group, map, match.T_fixed_moving, inputs);
+  const auto [first, second] = std::minmax(speaker, map);
+  if (std::none_of(problem.pairs.begin(), problem.pairs.end(),
+                   [first = first, second = second](const PairCandidates& pair) {
+                     return pair.fixed == first && pair.moving == second;
+                   }))
+    problem.pairs.push_back({first, second, {}});  // nobody has looked at the two
   for (PairCandidates& pair : problem.pairs) {
     const bool is_moving = pair.moving == map;
     if (!is_moving && pair.fixed != map) continue;
@@ -76,23 +82,39 @@ GroupMatches::GroupMatches(const MatchOptions& options) : options_(options) {
 }
 
 JoinProblem GroupMatches::heard(const JoinProblem& problem, const ConsistentSet& consistent_set,
-                                const MergeInputs& inputs) {
+                                const MergeInputs& inputs, const WorthMeeting& worth_meeting) {
   const std::vector<NodeGroup>& groups = consistent_set.groups;
-  std::vector<Meeting> meetings;
+  std::vector<std::pair<std::size_t, std::size_t>> all;
+  std::vector<std::size_t> meeting_groups;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (groups[g].size() < 2) continue;
+    const std::size_t before = all.size();
     for (const NodeGroup& other : groups) {
-      const std::size_t map = other.front().map;
-      if (other.size() > 1 || inputs.known_poses[map]) continue;
-      Key key{static_cast<double>(inputs.index[map])};
-      for (const PlacedNode& node : groups[g]) {
-        const SE2& T = node.T_group_map;
-        key.insert(key.end(), {static_cast<double>(inputs.index[node.map]), T.x, T.y, T.theta});
-      }
-      meetings.push_back({g, map, std::move(key)});
+      if (other.size() == 1 && !inputs.known_poses[other.front().map]) all.emplace_back(g, other.front().map);
     }
+    if (all.size() > before) meeting_groups.push_back(g);
   }
   std::vector<std::unique_ptr<PreparedMap>> prepared(groups.size());
+  if (worth_meeting) {
+    parallel_for(meeting_groups.size(), [&](std::size_t i) {
+      prepared[meeting_groups[i]] = prepare(groups[meeting_groups[i]], inputs);
+    });
+    const std::vector<bool> is_worth = worth_meeting(prepared, all);
+    std::vector<std::pair<std::size_t, std::size_t>> worth;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (is_worth[i]) worth.push_back(all[i]);
+    }
+    all = std::move(worth);
+  }
+  std::vector<Meeting> meetings;
+  for (const auto& [g, map] : all) {
+    Key key{static_cast<double>(inputs.index[map])};
+    for (const PlacedNode& node : groups[g]) {
+      const SE2& T = node.T_group_map;
+      key.insert(key.end(), {static_cast<double>(inputs.index[node.map]), T.x, T.y, T.theta});
+    }
+    meetings.push_back({g, map, std::move(key)});
+  }
   std::map<Key, MatchResult> needed;
   std::vector<std::pair<const Meeting*, MatchResult*>> fresh;
   for (const Meeting& meeting : meetings) {

@@ -47,6 +47,33 @@ Box known_box(const PlacedMap& input) {
   return box;
 }
 
+// The same of a bent input: its extreme points are bent corners of cells at the rim of what it knows, or
+// between two of them, where the rim bulges by less than a cell.
+Box known_box(const PlacedMap& input, const Deformation& deformation) {
+  if (deformation.is_identity()) return known_box(input);
+  const OccupancyGrid& map = *input.map;
+  const auto is_known = [&](int column, int row) {
+    return map.contains(column, row) && map.at(column, row) != Cell::unknown;
+  };
+  Box box;
+  for (int row = 0; row < map.height; ++row) {
+    throw_if_cancelled();
+    for (int column = 0; column < map.width; ++column) {
+      if (!is_known(column, row)) continue;
+      if (is_known(column - 1, row) && is_known(column + 1, row) && is_known(column, row - 1) &&
+          is_known(column, row + 1))
+        continue;
+      for (const int x : {column, column + 1}) {
+        for (const int y : {row, row + 1}) {
+          const Point2 corner = map.origin * Point2{x * map.resolution, y * map.resolution};
+          box.add(input.T_output_map * deformation.bend(corner));
+        }
+      }
+    }
+  }
+  return box;
+}
+
 void validate_input(const PlacedMap& input) {
   if (input.map == nullptr) throw std::invalid_argument("a placed map must have a map");
   validate(*input.map);
@@ -190,6 +217,64 @@ void sample_map(const PlacedMap& input, const Lattice& lattice, int samples, Log
   }
 }
 
+// From the output's frame to a bent map's, at the nodes of a coarse grid over a patch; linear between them.
+class StraightenedGrid {
+ public:
+  StraightenedGrid(const PlacedMap& input, const Deformation& deformation, const Lattice& lattice,
+                   const LogOddsPatch& patch)
+      : step_(std::max(1, static_cast<int>(kNodesApart * deformation.spacing() / lattice.resolution))),
+        columns_(patch.width / step_ + 2) {
+    const SE2 T_map_output = inverse(input.T_output_map), T_grid_map = inverse(input.map->origin);
+    const int rows = patch.height / step_ + 2;
+    for (int j = 0; j < rows; ++j) {
+      throw_if_cancelled();
+      for (int i = 0; i < columns_; ++i) {
+        const Point2 node{lattice.corner.x + (patch.column + i * step_) * lattice.resolution,
+                          lattice.corner.y + (patch.row + j * step_) * lattice.resolution};
+        const Point2 in_grid = T_grid_map * deformation.straighten(T_map_output * node);
+        nodes_.push_back({in_grid.x / input.map->resolution, in_grid.y / input.map->resolution});
+      }
+    }
+  }
+
+  // Of a point of the patch, from its lower-left corner [cells of the lattice]: in the map's cells.
+  Point2 at(double column, double row) const {
+    const double x = column / step_, y = row / step_;
+    const int i = static_cast<int>(x), j = static_cast<int>(y);
+    const double u = x - i, v = y - j;
+    const Point2* const low = nodes_.data() + static_cast<std::ptrdiff_t>(j) * columns_ + i;
+    const Point2* const high = low + columns_;
+    return {(1.0 - v) * ((1.0 - u) * low[0].x + u * low[1].x) + v * ((1.0 - u) * high[0].x + u * high[1].x),
+            (1.0 - v) * ((1.0 - u) * low[0].y + u * low[1].y) + v * ((1.0 - u) * high[0].y + u * high[1].y)};
+  }
+
+ private:
+  static constexpr double kNodesApart = 1.0 / 16.0;  // [spacings]
+
+  int step_;
+  int columns_;
+  std::vector<Point2> nodes_;
+};
+
+// As sample_map() for a bent map.
+void sample_bent_map(const PlacedMap& input, const Deformation& deformation, const Lattice& lattice,
+                     int samples, LogOddsPatch& patch) {
+  const LogOddsSource source(*input.map);
+  const StraightenedGrid straightened(input, deformation, lattice, patch);
+  std::size_t target = 0;
+  for (int row = 0; row < patch.height; ++row) {
+    throw_if_cancelled();
+    for (int column = 0; column < patch.width; ++column, ++target) {
+      for (int j = 0; j < samples; ++j) {
+        for (int i = 0; i < samples; ++i) {
+          const Point2 p = straightened.at(column + (i + 0.5) / samples, row + (j + 0.5) / samples);
+          keep_strongest(patch.log_odds[target], source.at(p.x, p.y));
+        }
+      }
+    }
+  }
+}
+
 // Drops every known cell of the map into the patch's cell that its centre lies in.
 void splat_map(const PlacedMap& input, const Lattice& lattice, LogOddsPatch& patch) {
   const OccupancyGrid& map = *input.map;
@@ -216,14 +301,15 @@ void splat_map(const PlacedMap& input, const Lattice& lattice, LogOddsPatch& pat
 
 }  // namespace
 
-Lattice cover(const std::vector<PlacedMap>& inputs, double resolution) {
+Lattice cover(const std::vector<PlacedMap>& inputs, double resolution,
+              const std::vector<Deformation>& deformations) {
   if (!std::isfinite(resolution) || resolution <= 0.0) {
     throw std::invalid_argument("the output's resolution must be a positive number of metres");
   }
   Box box;
-  for (const PlacedMap& input : inputs) {
-    validate_input(input);
-    box.add(known_box(input));
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    validate_input(inputs[i]);
+    box.add(i < deformations.size() ? known_box(inputs[i], deformations[i]) : known_box(inputs[i]));
   }
   if (box.empty()) return {1, 1, resolution, {}};
 
@@ -238,14 +324,21 @@ Lattice cover(const std::vector<PlacedMap>& inputs, double resolution) {
   return {static_cast<int>(columns), static_cast<int>(rows), resolution, corner};
 }
 
-LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice) {
+LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice, const Deformation& deformation) {
   validate_input(input);
-  LogOddsPatch patch = patch_over(known_box(input), lattice);
+  LogOddsPatch patch = patch_over(known_box(input, deformation), lattice);
   if (patch.log_odds.empty()) return patch;
   // A square of side a holds a point of any square grid of spacing a / sqrt(2), however that is rotated. So
   // from that ratio on, every lattice cell meets the centre of a map cell; below it, two samples a side meet
   // every map cell.
   const double ratio = lattice.resolution / input.map->resolution;
+  if (!deformation.is_identity()) {
+    // Squeezed at most so much, the cells of the map are so much denser.
+    constexpr double kMostSqueezed = 1.0 / (1.0 - Deformation::kMostStrain);
+    const int samples = ratio <= 1.0 + kSlack ? 1 : static_cast<int>(std::ceil(kMostSqueezed * ratio));
+    sample_bent_map(input, deformation, lattice, samples, patch);
+    return patch;
+  }
   if (ratio >= std::numbers::sqrt2) {
     splat_map(input, lattice, patch);
   } else {

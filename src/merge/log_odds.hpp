@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "gridmerge/grid/deformation.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "internal_export.hpp"
 
@@ -23,8 +24,9 @@ struct Lattice {
 /// the frame is not shifted by a part of a cell; without such an input it starts at the lower-left corner of
 /// what it covers. The inputs' order plays no part. Throws std::invalid_argument for an invalid grid, a
 /// transform that is not finite, a resolution that is not positive, or a lattice of more than 2^28 cells.
-/// O(cells of the inputs).
-GRIDMERGE_INTERNAL_EXPORT Lattice cover(const std::vector<PlacedMap>& inputs, double resolution);
+/// `deformations` as of fuse(). O(cells of the inputs).
+GRIDMERGE_INTERNAL_EXPORT Lattice cover(const std::vector<PlacedMap>& inputs, double resolution,
+                                        const std::vector<Deformation>& deformations = {});
 
 /// Log-odds are kept in steps of 1/1024 nat, so that sums are exact and their order does not matter.
 inline constexpr double kLogOddsPerNat = 1024.0;
@@ -55,9 +57,12 @@ struct LogOddsPatch {
 ///   cells in it, else the weakest "free": one statement a map, however many cells it has there, and thin
 ///   walls stay.
 /// - A map coarser than the lattice says of every lattice cell what it says of its own cell there.
+/// - A lattice cell looks up a bent map where the deformation's inverse says, which is exact at every few
+///   cells and linear between them: off by a thousandth of the spacing of the deformation's lattice at most.
 ///
 /// O(map cells + lattice cells in the bounding box of the map's known cells). Throws std::invalid_argument
 /// for an invalid grid or a transform that is not finite.
-GRIDMERGE_INTERNAL_EXPORT LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice);
+GRIDMERGE_INTERNAL_EXPORT LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice,
+                                                     const Deformation& deformation = {});
 
 }  // namespace gridmerge::internal

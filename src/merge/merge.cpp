@@ -9,8 +9,8 @@
 
 namespace gridmerge {
 
-MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
-                  const std::vector<std::optional<KnownPose>>& known_poses) {
+Merger merger_of(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
+                 const std::vector<std::optional<KnownPose>>& known_poses) {
   if (known_poses.size() > maps.size()) throw std::invalid_argument("there are more known poses than maps");
   Merger merger(options);
   for (std::size_t i = 0; i < maps.size(); ++i) {
@@ -22,7 +22,12 @@ MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& op
       throw std::invalid_argument("map " + std::to_string(i) + ": " + error.what());
     }
   }
-  return merger.solve();
+  return merger;
+}
+
+MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
+                  const std::vector<std::optional<KnownPose>>& known_poses) {
+  return merger_of(maps, options, known_poses).solve();
 }
 
 }  // namespace gridmerge

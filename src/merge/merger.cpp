@@ -14,6 +14,7 @@
 #include "merge/group_match.hpp"
 #include "merge/joins.hpp"
 #include "merge/map_store.hpp"
+#include "merge/pair_choice.hpp"
 #include "merge/pair_looks.hpp"
 #include "merge/solution.hpp"
 
@@ -34,6 +35,8 @@ MergeOptions checked(MergeOptions options) {
   validate_merge({}, options.resolution);
   if (!(options.max_false_joins >= 0.0) || !std::isfinite(options.max_false_joins))
     throw std::invalid_argument("max_false_joins must be a number from 0 on");
+  if (!(options.max_missed >= 0.0 && options.max_missed < 1.0))
+    throw std::invalid_argument("max_missed must be a share in [0, 1)");
   options.match.progress = nullptr;
   options.match.max_hypotheses = std::max(options.match.max_hypotheses, kKeptHypotheses);
   return options;
@@ -44,7 +47,10 @@ MergeOptions checked(MergeOptions options) {
 class __attribute__((visibility("hidden"))) Merger::State {  // or it is as public as Merger
  public:
   explicit State(MergeOptions options)
-      : options_(checked(std::move(options))), looks_(options_.match), groups_(options_.match) {}
+      : options_(checked(std::move(options))),
+        looks_(options_.match),
+        groups_(options_.match),
+        choice_(options_.max_missed) {}
 
   MapId add(std::shared_ptr<const OccupancyGrid> map, std::optional<KnownPose> known_pose) {
     const MapId id = store_.add(std::move(map), known_pose);
@@ -63,6 +69,7 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     first_.reset();
     groups_.forget();
     looks_.outdate(id);
+    choice_.forget(id);
   }
 
   void forget(MapId id) {
@@ -90,13 +97,12 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     std::vector<DueMatch> due;
     with_threads(options_.match.threads, [&] {
       const std::vector<MapId> maps = maps_that_count();
-      const std::vector<Pair> chosen = PairLooks::choose_pairs(maps);
       SearchMethod search = looks_.first_search();
-      std::vector<Pair> pairs = looks_.due_for_the_first_look(chosen);
-      if (pairs.empty() && looks_.looks_twice()) {
-        if (!first_) first_ = find_solution(maps, {});
+      std::vector<Pair> pairs;
+      if (!first_) first_ = find_first(maps, &pairs);
+      if (first_ && looks_.looks_twice()) {
         search = looks_.second_search();
-        pairs = looks_.due_for_a_second_look(pairs_apart(chosen, maps, first_->consistent_set));
+        pairs = looks_.due_for_a_second_look(pairs_for_a_second_look(maps, *first_));
       }
       for (const Pair& pair : pairs) due.push_back({pair.first, pair.second, search});
     });
@@ -126,7 +132,7 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
       const std::vector<Copy> copies = store_.find_copies(all);
       const std::vector<MapId> maps = store_.those_that_count(all, copies);
       const Solution solution = find_best_solution(maps, most_thorough);
-      result = make_result(store_, maps, copies, looks_, solution, options_.resolution);
+      result = make_result(store_, maps, copies, looks_, solution, options_);
     });
     return result;
   }
@@ -139,35 +145,80 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     return store_.those_that_count(all, store_.find_copies(all));
   }
 
+  /// What the first look says.
+  struct First {
+    std::vector<Pair> chosen;  // the pairs that were looked at
+    Solution solution;
+  };
+
+  /// Looks at pairs as PairChoice chooses them; at all where it takes all. With `due`, makes no match: gives
+  /// the first ones that are missing, and nothing else if there are any.
+  std::optional<First> find_first(const std::vector<MapId>& maps, std::vector<Pair>* due) {
+    First first;
+    std::set<Pair> chosen;
+    const bool takes_all = choice_.takes_all(maps.size());
+    if (!takes_all) {
+      choice_.prepare(store_, maps);
+      first.solution = find_solution(maps, {}, {});
+    }
+    for (std::size_t round = 0;; ++round) {
+      std::vector<Pair> more;
+      if (takes_all) {
+        more = PairLooks::choose_pairs(maps);
+      } else {
+        more = choice_.next(round, store_, chosen, first.solution.consistent_set);
+        if (more.empty()) return first;
+      }
+      if (std::vector<Pair> missing = looks_.due_for_the_first_look(more); !missing.empty()) {
+        if (due != nullptr) {
+          *due = std::move(missing);
+          return std::nullopt;
+        }
+        looks_.look(missing, store_, options_.progress);
+      }
+      chosen.insert(more.begin(), more.end());
+      first.chosen.insert(first.chosen.end(), more.begin(), more.end());
+      first.solution = find_solution(maps, first.chosen, {});
+      if (takes_all) return first;
+    }
+  }
+
+  std::vector<Pair> pairs_for_a_second_look(const std::vector<MapId>& maps, const First& first) const {
+    std::vector<Pair> apart = pairs_apart(first.chosen, maps, first.solution.consistent_set);
+    if (choice_.takes_all(maps.size())) return apart;
+    return choice_.worth_a_second_look(apart, looks_, first.solution.consistent_set);
+  }
+
   /// Looks at the chosen pairs quickly, and again at those whose maps that leaves apart: maps that lie in one
   /// component gain little by one more join.
   /// At most so many pairs are looked at again now: is_complete_ says whether that was all.
   Solution find_best_solution(const std::vector<MapId>& maps, std::size_t most_thorough) {
     is_complete_ = true;
-    const std::vector<Pair> chosen = PairLooks::choose_pairs(maps);
-    if (const std::vector<Pair> due = looks_.due_for_the_first_look(chosen); !due.empty()) {
-      first_.reset();
-      looks_.look(due, store_, options_.progress);
-    }
-    Solution solution = first_ ? *std::exchange(first_, std::nullopt) : find_solution(maps, {});
-    if (!looks_.looks_twice()) return solution;
-    const std::vector<Pair> apart = pairs_apart(chosen, maps, solution.consistent_set);
+    First first = first_ ? *std::exchange(first_, std::nullopt) : *find_first(maps, nullptr);
+    if (!looks_.looks_twice()) return std::move(first.solution);
+    const std::vector<Pair> apart = pairs_for_a_second_look(maps, first);
     std::vector<Pair> due = looks_.due_for_a_second_look(apart);
     is_complete_ = due.size() <= most_thorough;
     due.resize(std::min(due.size(), most_thorough));
     looks_.look_again(due, store_, options_.progress);
     std::set<Pair> again = looks_.seen_again(apart);
-    if (!again.empty()) solution = find_solution(maps, std::move(again));
+    Solution solution =
+        again.empty() ? std::move(first.solution) : find_solution(maps, first.chosen, std::move(again));
     return is_complete_ && !apart.empty() ? hear_groups(maps, std::move(solution)) : solution;
   }
 
   /// Maps that still lie alone are matched with each group, as long as that places more of them.
   Solution hear_groups(const std::vector<MapId>& maps, Solution solution) {
     const MergeInputs inputs = store_.inputs_of(maps);
+    GroupMatches::WorthMeeting worth_meeting;
+    if (!choice_.takes_all(maps.size()))
+      worth_meeting = [&](const auto& groups, const auto& meetings) {
+        return choice_.worth_meeting(groups, meetings, solution.consistent_set.used.size());
+      };
     while (true) {
-      JoinProblem problem = groups_.heard(solution.problem, solution.consistent_set, inputs);
-      ConsistentSet consistent_set =
-          find_consistent_set_within(problem, options_.match.accept_probability, options_.max_false_joins);
+      JoinProblem problem = groups_.heard(solution.problem, solution.consistent_set, inputs, worth_meeting);
+      ConsistentSet consistent_set = find_consistent_set_within(problem, options_.match.accept_probability,
+                                                                max_false_joins_of(maps.size()));
       if (count_alone(consistent_set) >= count_alone(solution.consistent_set)) return solution;
       solution.problem = std::move(problem);
       solution.consistent_set = std::move(consistent_set);
@@ -179,19 +230,28 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
                          [](const NodeGroup& group) { return group.size() == 1; });
   }
 
-  /// With the second look at the pairs in `again`.
-  Solution find_solution(const std::vector<MapId>& maps, std::set<Pair> again) const {
-    Solution solution{make_problem(store_, maps, looks_, again), {}, std::move(again)};
+  /// By the chosen pairs, with the second look at those in `again`.
+  Solution find_solution(const std::vector<MapId>& maps, const std::vector<Pair>& chosen,
+                         std::set<Pair> again) const {
+    Solution solution{make_problem(store_, maps, chosen, looks_, again), {}, std::move(again)};
     solution.consistent_set = find_consistent_set_within(solution.problem, options_.match.accept_probability,
-                                                         options_.max_false_joins);
+                                                         max_false_joins_of(maps.size()));
     return solution;
+  }
+
+  /// Many maps are many teams, and each has the budget of one: or what is surely one map would be cut for
+  /// maps that have nothing to do with it.
+  double max_false_joins_of(std::size_t maps) const {
+    return options_.max_false_joins *
+           std::max(1.0, static_cast<double>(maps) / static_cast<double>(kFewMaps));
   }
 
   MergeOptions options_;
   MapStore store_;
   PairLooks looks_;
   GroupMatches groups_;
-  std::optional<Solution> first_;  // by the first look alone, while due() knows it
+  PairChoice choice_;
+  std::optional<First> first_;  // while due() knows it
   bool is_complete_ = true;
 };
 

@@ -26,9 +26,8 @@ class PairLooks {
   /// `options` are valid, with as many hypotheses as are kept.
   explicit PairLooks(MatchOptions options);
 
-  /// The one place where pairs are chosen: those that are looked at, and in which order. A pair that is not
-  /// chosen says nothing, and is not looked at again. The first map of a pair stands before the second one
-  /// in `maps`.
+  /// All pairs, for few maps: of many PairChoice chooses some. A pair that is not chosen says nothing, and is
+  /// not looked at again. The first map of a pair stands before the second one in `maps`.
   static std::vector<Pair> choose_pairs(const std::vector<MapId>& maps);
 
   /// Whether there is a second look.
@@ -60,6 +59,9 @@ class PairLooks {
 
   /// Those of the pairs that have had a second look, up to date or not: the lower id and the higher one.
   std::set<Pair> seen_again(const std::vector<Pair>& pairs) const;
+
+  /// Whether there was a first look at the pair.
+  bool holds(MapId a, MapId b) const { return first_.holds(a, b); }
 
   /// By the second look if the pair is in `again`, and by the first if not.
   MatchResult between(MapId fixed, MapId moving, const std::set<Pair>& again) const;

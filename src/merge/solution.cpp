@@ -33,7 +33,10 @@ std::vector<Join> make_joins(const MapStore& store, const std::vector<MapId>& ma
   std::vector<Join> joins;
   for (std::size_t i = 0; i < problem.pairs.size(); ++i) {
     const PairCandidates& pair = problem.pairs[i];
-    const MatchResult match = looks.between(maps[pair.fixed], maps[pair.moving], solution.again);
+    // Nobody may have looked at it, if a group speaks for the pair.
+    const MatchResult match = looks.holds(maps[pair.fixed], maps[pair.moving])
+                                  ? looks.between(maps[pair.fixed], maps[pair.moving], solution.again)
+                                  : MatchResult{};
     const CandidateJoin* candidate = used.contains(i) ? &pair.candidates[used.at(i)] : nullptr;
     const bool is_in_company = is_placed[pair.fixed] || is_placed[pair.moving];
     Join join = make_join(index[pair.fixed], index[pair.moving], match, {candidate, is_in_company});
@@ -47,14 +50,14 @@ std::vector<Join> make_joins(const MapStore& store, const std::vector<MapId>& ma
   return joins;
 }
 
-void add_components(const MergeInputs& inputs, const Solution& solution, double resolution,
+void add_components(const MergeInputs& inputs, const Solution& solution, const MergeOptions& options,
                     MergeResult& result) {
   for (const NodeGroup& group : solution.consistent_set.groups) {
     if (group.size() == 1) {
       result.left_out.push_back(left_out(inputs.index[group.front().map], result.joins));
     } else {
       result.components.push_back(
-          make_component(group, solution.problem, solution.consistent_set, inputs, resolution));
+          make_component(group, solution.problem, solution.consistent_set, inputs, options));
     }
   }
   std::sort(result.left_out.begin(), result.left_out.end(),
@@ -72,7 +75,8 @@ void sort_components(MergeResult& result) {
 
 }  // namespace
 
-JoinProblem make_problem(const MapStore& store, const std::vector<MapId>& maps, const PairLooks& looks,
+JoinProblem make_problem(const MapStore& store, const std::vector<MapId>& maps,
+                         const std::vector<Pair>& chosen, const PairLooks& looks,
                          const std::set<Pair>& again) {
   JoinProblem problem;
   std::map<MapId, std::size_t> place;
@@ -83,7 +87,7 @@ JoinProblem make_problem(const MapStore& store, const std::vector<MapId>& maps, 
     const std::optional<KnownPose> known = store.known_pose(id);
     problem.fixed.push_back(known && known->fixed ? std::optional(known->T_world_map) : std::nullopt);
   }
-  for (const auto& [fixed, moving] : PairLooks::choose_pairs(maps)) {
+  for (const auto& [fixed, moving] : chosen) {
     const std::size_t a = place.at(fixed), b = place.at(moving);
     PairCandidates pair{a, b, candidate_joins(looks.between(fixed, moving, again))};
     const std::optional<KnownPose> of_a = store.known_pose(fixed), of_b = store.known_pose(moving);
@@ -91,6 +95,10 @@ JoinProblem make_problem(const MapStore& store, const std::vector<MapId>& maps, 
       apply_known_poses(*of_a, *of_b, problem.maps[a], problem.maps[b], pair);
     problem.pairs.push_back(std::move(pair));
   }
+  // In whatever order they were chosen.
+  std::sort(problem.pairs.begin(), problem.pairs.end(), [](const PairCandidates& a, const PairCandidates& b) {
+    return std::pair(a.fixed, a.moving) < std::pair(b.fixed, b.moving);
+  });
   return problem;
 }
 
@@ -107,13 +115,13 @@ std::vector<Pair> pairs_apart(const std::vector<Pair>& chosen, const std::vector
 
 MergeResult make_result(const MapStore& store, const std::vector<MapId>& maps,
                         const std::vector<Copy>& copies, const PairLooks& looks, const Solution& solution,
-                        double resolution) {
+                        const MergeOptions& options) {
   MergeResult result;
   result.expected_false_joins = expected_false_joins(solution.consistent_set);
   result.joins = make_joins(store, maps, looks, solution);
   result.open_ways = make_open_ways(store.places_of(maps), solution.problem, solution.consistent_set);
-  add_components(store.inputs_of(maps), solution, resolution, result);
-  add_copies(copies, store.grids(), resolution, result);
+  add_components(store.inputs_of(maps), solution, options, result);
+  add_copies(copies, store.grids(), options.resolution, result);
   sort_components(result);
   return result;
 }

@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 #include "merge/consistent_set.hpp"
 #include "merge/copies.hpp"
@@ -23,7 +24,8 @@ struct Solution {
 
 /// What the pairs that were chosen say of these maps, with what is known of their poses.
 JoinProblem make_problem(const MapStore& store, const std::vector<MapStore::MapId>& maps,
-                         const PairLooks& looks, const std::set<PairLooks::Pair>& again);
+                         const std::vector<PairLooks::Pair>& chosen, const PairLooks& looks,
+                         const std::set<PairLooks::Pair>& again);
 
 /// Those of the chosen pairs whose maps lie in no common group. `maps` are those of the consistent set.
 std::vector<PairLooks::Pair> pairs_apart(const std::vector<PairLooks::Pair>& chosen,
@@ -33,6 +35,6 @@ std::vector<PairLooks::Pair> pairs_apart(const std::vector<PairLooks::Pair>& cho
 /// What a solution means for all maps, with the copies that it does without. Runs in the calling TBB arena.
 MergeResult make_result(const MapStore& store, const std::vector<MapStore::MapId>& maps,
                         const std::vector<Copy>& copies, const PairLooks& looks, const Solution& solution,
-                        double resolution);
+                        const MergeOptions& options);
 
 }  // namespace gridmerge::internal

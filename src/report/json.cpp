@@ -13,10 +13,12 @@ using namespace internal;
 namespace {
 
 Json member_json(const std::string& name, const Member& member) {
-  return {{"source", name},
-          {"transform", transform_json(member.T_component_map)},
-          {"probability", probability_json(member.probability)},
-          {"sd", deviation_json(member.sd)}};
+  Json json{{"source", name},
+            {"transform", transform_json(member.T_component_map)},
+            {"probability", probability_json(member.probability)},
+            {"sd", deviation_json(member.sd)}};
+  if (!member.deformation.is_identity()) json["deformation"] = deformation_json(member.deformation);
+  return json;
 }
 
 Json join_json(const std::string& fixed, const std::string& moving, const Join& join, bool in_full) {

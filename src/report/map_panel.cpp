@@ -24,11 +24,13 @@ struct Sighting {
   std::uint32_t first_occupied = 0;
 };
 
-std::vector<Sighting> sight(const std::vector<PlacedMap>& maps, const Lattice& lattice) {
+std::vector<Sighting> sight(const MapPanel& panel, const Lattice& lattice) {
   std::vector<Sighting> sightings(static_cast<std::size_t>(lattice.width) *
                                   static_cast<std::size_t>(lattice.height));
-  for (std::size_t i = 0; i < maps.size(); ++i) {
-    const LogOddsPatch patch = draw_log_odds(maps[i], lattice);
+  for (std::size_t i = 0; i < panel.maps.size(); ++i) {
+    const LogOddsPatch patch = i < panel.deformations.size()
+                                   ? draw_log_odds(panel.maps[i], lattice, panel.deformations[i])
+                                   : draw_log_odds(panel.maps[i], lattice);
     for (int row = 0; row < patch.height; ++row) {
       for (int column = 0; column < patch.width; ++column) {
         const std::int16_t log_odds = patch.at(column, row);
@@ -54,7 +56,7 @@ Colour colour_of(const Sighting& cell, const std::vector<Colour>& colours) {
 }
 
 Canvas draw_maps(const MapPanel& panel, const Lattice& lattice, int zoom) {
-  const std::vector<Sighting> sightings = sight(panel.maps, lattice);
+  const std::vector<Sighting> sightings = sight(panel, lattice);
   Canvas canvas(lattice.width * zoom + 2 * kMargin, lattice.height * zoom + 2 * kMargin,
                 PreviewColours::kUnknown);
   for (int row = 0; row < lattice.height; ++row) {
@@ -115,7 +117,7 @@ Canvas draw_panel(const MapPanel& panel, TextSize title) {
   // One cell less than there is room for: a coarser lattice need not begin where the maps do.
   const int room = panel.max_side - 2 * kMargin - 1;
   const double coarsening = std::max(1.0, std::ceil(panel.longest_side / room));
-  const Lattice lattice = cover(panel.maps, panel.resolution * coarsening);
+  const Lattice lattice = cover(panel.maps, panel.resolution * coarsening, panel.deformations);
   const int zoom = std::clamp(panel.min_side / std::max(lattice.width, lattice.height), 1, kMaxZoom);
   const Canvas drawing = draw_maps(panel, lattice, zoom);
   const Canvas scale_bar =

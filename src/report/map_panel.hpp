@@ -14,12 +14,13 @@ namespace gridmerge::internal {
 struct MapPanel {
   std::string title;
   std::vector<PlacedMap> maps;
-  std::vector<Colour> colours;  ///< one a map
-  double resolution = 0.0;      ///< of the finest drawing that makes sense [m/cell]
-  double longest_side = 0.0;    ///< of the maps together, in such cells; may be too large
-  int min_width = 0;            ///< pixels of the whole panel, for its title
-  int min_side = 0;             ///< pixels: drawings below are magnified
-  int max_side = 0;             ///< pixels: drawings above, margins included, are made coarser
+  std::vector<Deformation> deformations;  ///< of the maps, as of fuse()
+  std::vector<Colour> colours;            ///< one a map
+  double resolution = 0.0;                ///< of the finest drawing that makes sense [m/cell]
+  double longest_side = 0.0;              ///< of the maps together, in such cells; may be too large
+  int min_width = 0;                      ///< pixels of the whole panel, for its title
+  int min_side = 0;                       ///< pixels: drawings below are magnified
+  int max_side = 0;                       ///< pixels: drawings above, margins included, are made coarser
 };
 
 /// The panel with its title above and a scale bar below.

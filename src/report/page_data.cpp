@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "grid/parallel.hpp"
+#include "gridmerge/merge/fuse.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/preview.hpp"
 #include "gridmerge/version.hpp"
@@ -43,13 +45,16 @@ Json map_json(const std::string& name, std::size_t index, const ShownMap& shown)
   return json;
 }
 
-Json component_json(std::size_t index, const Component& component, const ShownMap& shown) {
+/// With the lattices of bent maps, or without.
+Json component_json(std::size_t index, const Component& component, const ShownMap& shown, bool in_full) {
   Json members = Json::array();
   for (const Member& member : component.members) {
     members.push_back({{"map", member.map},
                        {"transform", transform_json(member.T_component_map)},
                        {"probability", probability_json(member.probability)},
                        {"sd", deviation_json(member.sd)}});
+    if (in_full && !member.deformation.is_identity())
+      members.back()["deformation"] = deformation_json(member.deformation);
   }
   const std::optional<std::size_t> frame = frame_of(component);
   Json json{{"file", component_file(index)},
@@ -89,6 +94,22 @@ Json refused_json(const MergeResult& result, const ToldJoins& told) {
   return {{"count", count}, {"rows", std::move(rows)}};
 }
 
+/// The maps that are bent, as they lie; nothing for the others.
+std::vector<std::optional<OccupancyGrid>> bent_maps(const std::vector<OccupancyGrid>& maps,
+                                                    const MergeResult& result) {
+  std::vector<const Member*> members;
+  for (const Component& component : result.components) {
+    for (const Member& member : component.members) {
+      if (!member.deformation.is_identity()) members.push_back(&member);
+    }
+  }
+  std::vector<std::optional<OccupancyGrid>> bent(maps.size());
+  parallel_for(members.size(), [&](std::size_t i) {
+    bent[members[i]->map] = bent_map(maps.at(members[i]->map), members[i]->deformation);
+  });
+  return bent;
+}
+
 /// What takes time is done for several at once. If they take more than `bytes`, the largest are shown
 /// coarser.
 std::vector<ShownMap> show_all(const std::vector<const OccupancyGrid*>& grids, std::size_t bytes) {
@@ -116,8 +137,11 @@ std::vector<ShownMap> show_all(const std::vector<const OccupancyGrid*>& grids, s
 Json page_data(const NamedMerge& merge) {
   const auto& [names, maps, result] = merge;
   const bool is_small = maps.size() <= kMaxMapsInFull;
+  // The page bends few maps itself, and many are shown as they are merged.
+  std::vector<std::optional<OccupancyGrid>> bent(maps.size());
+  if (!is_small) bent = bent_maps(maps, result);
   std::vector<const OccupancyGrid*> grids;
-  for (const OccupancyGrid& map : maps) grids.push_back(&map);
+  for (std::size_t i = 0; i < maps.size(); ++i) grids.push_back(bent[i] ? &*bent[i] : &maps[i]);
   const std::vector<ShownMap> shown = show_all(grids, is_small ? kAnyBytes : kMostBytesOfMaps);
   grids.clear();
   for (const Component& component : result.components) grids.push_back(&component.fused.grid);
@@ -126,7 +150,7 @@ Json page_data(const NamedMerge& merge) {
   for (std::size_t i = 0; i < maps.size(); ++i) shown_maps.push_back(map_json(names.at(i), i, shown[i]));
   Json components = Json::array();
   for (std::size_t i = 0; i < result.components.size(); ++i)
-    components.push_back(component_json(i, result.components[i], shown_fused[i]));
+    components.push_back(component_json(i, result.components[i], shown_fused[i], is_small));
   Json joins = Json::array();
   const ToldJoins told = tell_joins(result);
   for (const std::size_t i : told.objects) joins.push_back(join_json(result.joins[i], told.in_full));

@@ -34,6 +34,7 @@ MapPanel component_panel(const std::vector<OccupancyGrid>& maps, const MergeResu
   panel.title = fmt::format("{}: {} maps", component_file(index), component.members.size());
   for (const Member& member : component.members) {
     panel.maps.push_back({&maps.at(member.map), member.T_component_map});
+    panel.deformations.push_back(member.deformation);
     panel.colours.push_back(map_colour(member.map));
   }
   const OccupancyGrid& fused = component.fused.grid;

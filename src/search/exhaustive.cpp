@@ -64,7 +64,7 @@ class PeakFinder {
     const TurnedWalls turned = turn_walls(walls_, frame_, rotation, least_met_);
     resize(scores_, turned.shifts_x, turned.shifts_y);
     correlate(evidence_, turned.samples, scores_);
-    return best_peaks(scores_, turned, rotation, 0);
+    return best_peaks(scores_, turned, rotation);
   }
 
   /// Those of them that score `least` (above 0) or more. Most shifts need no score of their own, because four
@@ -74,8 +74,9 @@ class PeakFinder {
     resize(bounds_, (turned.shifts_x + 1) / 2, (turned.shifts_y + 1) / 2);
     correlate(pooled_, pool_pairs(turned.samples), bounds_);
     resize(scores_, turned.shifts_x, turned.shifts_y);
-    correlate_where(evidence_, turned.samples, bounds_, least, scores_);
-    return best_peaks(scores_, turned, rotation, least - 1);
+    const std::vector<ScoreBlock> looked_at =
+        correlate_where(evidence_, turned.samples, bounds_, least, scores_);
+    return best_peaks(scores_, looked_at, turned, rotation, least - 1);
   }
 
  private:

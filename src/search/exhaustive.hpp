@@ -18,7 +18,7 @@ struct ExhaustiveSearchOptions {
   int coarse_factor = 5;      ///< cells of the likelihood fields to a cell of the search, along a side
   int rotations = 180;        ///< evenly spaced over the full turn
   std::size_t samples = 128;  ///< wall points of the moving map that are scored, at most kMaxSearchSamples
-  std::size_t max_candidates = 2500;
+  std::size_t max_candidates = 1000;
   double sigma = 3.2;     ///< tolerance of the score [cells of the likelihood fields]
   double outliers = 0.5;  ///< see ErrorModel: generous, since only the ranking matters here
 };

@@ -32,6 +32,27 @@ void mark_maxima(const std::int16_t* row, int width, int columns, std::int16_t f
   }
 }
 
+/// Adds the maxima of a row in the columns from `first` (1 or more) on, `count` of them. `marks` has a place
+/// for one more on either side.
+void add_maxima(const ScoreImage& scores, int y, int first, int count, int floor,
+                std::vector<std::uint8_t>& marks, std::vector<LocalMaximum>& maxima) {
+  const std::int16_t* const row = scores.values.data() + static_cast<std::size_t>(y) * scores.width;
+  mark_maxima(row + first - 1, scores.width, count + 2, static_cast<std::int16_t>(floor), marks.data());
+  const std::uint8_t *mark = marks.data() + 1, *const end = mark + count;
+  while (mark != end) {
+    mark = static_cast<const std::uint8_t*>(std::memchr(mark, 1, static_cast<std::size_t>(end - mark)));
+    if (mark == nullptr) break;
+    const int x = first + static_cast<int>(mark - (marks.data() + 1));
+    maxima.push_back({x, y, row[x]});
+    ++mark;
+  }
+}
+
+/// The columns of a block that are among the first ones.
+int columns_of(const ScoreBlock& block, int columns) {
+  return std::min(columns - block.x, ScoreBlock::kColumns);
+}
+
 }  // namespace
 
 int find_maximum(const ScoreImage& scores, int columns) {
@@ -41,18 +62,33 @@ int find_maximum(const ScoreImage& scores, int columns) {
   return best;
 }
 
+int find_maximum(const ScoreImage& scores, const std::vector<ScoreBlock>& blocks, int columns) {
+  std::int16_t best = 0;
+  for (const ScoreBlock& block : blocks) {
+    for (int y = block.y; y < std::min(block.y + ScoreBlock::kRows, scores.height); ++y)
+      best = maximum_of(scores.values.data() + static_cast<std::size_t>(y) * scores.width + block.x,
+                        columns_of(block, columns), best);
+  }
+  return best;
+}
+
 std::vector<LocalMaximum> find_local_maxima(const ScoreImage& scores, int columns, int floor) {
   std::vector<LocalMaximum> maxima;
+  if (columns < 3) return maxima;
   std::vector<std::uint8_t> marks(scores.width, 0);
-  for (int y = 1; y + 1 < scores.height; ++y) {
-    const std::int16_t* row = scores.values.data() + static_cast<std::size_t>(y) * scores.width;
-    mark_maxima(row, scores.width, columns, static_cast<std::int16_t>(floor), marks.data());
-    for (int x = 1; x + 1 < columns; ++x) {
-      const void* next = std::memchr(marks.data() + x, 1, static_cast<std::size_t>(columns - 1 - x));
-      if (next == nullptr) break;
-      x = static_cast<int>(static_cast<const std::uint8_t*>(next) - marks.data());
-      maxima.push_back({x, y, row[x]});
-    }
+  for (int y = 1; y + 1 < scores.height; ++y) add_maxima(scores, y, 1, columns - 2, floor, marks, maxima);
+  return maxima;
+}
+
+std::vector<LocalMaximum> find_local_maxima(const ScoreImage& scores, const std::vector<ScoreBlock>& blocks,
+                                            int columns, int floor) {
+  std::vector<LocalMaximum> maxima;
+  std::vector<std::uint8_t> marks(ScoreBlock::kColumns + 2, 0);
+  for (const ScoreBlock& block : blocks) {
+    const int first = std::max(block.x, 1);
+    const int last = std::min(block.x + columns_of(block, columns), columns - 1);  // one behind it
+    for (int y = std::max(block.y, 1); y < std::min(block.y + ScoreBlock::kRows, scores.height - 1); ++y)
+      if (first < last) add_maxima(scores, y, first, last - first, floor, marks, maxima);
   }
   return maxima;
 }

@@ -95,17 +95,32 @@ TurnedWalls turn_walls(const std::vector<WallPoint>& walls, const SearchFrame& f
   return turned;
 }
 
-std::vector<Peak> best_peaks(const ScoreImage& scores, const TurnedWalls& turned, int rotation, int floor) {
-  const int best = find_maximum(scores, turned.shifts_x);
+namespace {
+
+/// The best of a rotation's maxima.
+std::vector<Peak> to_peaks(const std::vector<LocalMaximum>& maxima, const TurnedWalls& turned, int rotation) {
   std::vector<Peak> peaks;
-  for (const LocalMaximum& maximum :
-       find_local_maxima(scores, turned.shifts_x, std::max(floor, best / kPeakFloor)))
+  peaks.reserve(maxima.size());
+  for (const LocalMaximum& maximum : maxima)
     peaks.push_back({rotation, turned.first_x + maximum.x, turned.first_y + maximum.y, maximum.score});
   if (peaks.size() > kPeaksPerRotation) {
     std::nth_element(peaks.begin(), peaks.begin() + kPeaksPerRotation, peaks.end());
     peaks.resize(kPeaksPerRotation);
   }
   return peaks;
+}
+
+}  // namespace
+
+std::vector<Peak> best_peaks(const ScoreImage& scores, const TurnedWalls& turned, int rotation) {
+  const int floor = find_maximum(scores, turned.shifts_x) / kPeakFloor;
+  return to_peaks(find_local_maxima(scores, turned.shifts_x, floor), turned, rotation);
+}
+
+std::vector<Peak> best_peaks(const ScoreImage& scores, const std::vector<ScoreBlock>& looked_at,
+                             const TurnedWalls& turned, int rotation, int floor) {
+  floor = std::max(floor, find_maximum(scores, looked_at, turned.shifts_x) / kPeakFloor);
+  return to_peaks(find_local_maxima(scores, looked_at, turned.shifts_x, floor), turned, rotation);
 }
 
 std::vector<Peak> keep_distinct(std::vector<Peak> peaks, int rotations, std::size_t max_count) {

@@ -62,9 +62,14 @@ struct TurnedWalls {
 TurnedWalls turn_walls(const std::vector<WallPoint>& walls, const SearchFrame& frame, int rotation,
                        std::size_t least);
 
-/// The best local maxima of a rotation's scores above `floor`, at most kPeaksPerRotation, in no order; those
-/// far below the best one are no candidates. O(scores).
-std::vector<Peak> best_peaks(const ScoreImage& scores, const TurnedWalls& turned, int rotation, int floor);
+/// The best local maxima of a rotation's scores above 0, at most kPeaksPerRotation, in no order; those far
+/// below the best one are no candidates. O(scores).
+std::vector<Peak> best_peaks(const ScoreImage& scores, const TurnedWalls& turned, int rotation);
+
+/// The same of those above `floor` (at least 0), where only the scores in the blocks are. O(scores in
+/// blocks).
+std::vector<Peak> best_peaks(const ScoreImage& scores, const std::vector<ScoreBlock>& looked_at,
+                             const TurnedWalls& turned, int rotation, int floor);
 
 /// The best ones, best first, without every peak that has a better one next to it. O(peaks log peaks).
 std::vector<Peak> keep_distinct(std::vector<Peak> peaks, int rotations, std::size_t max_count);

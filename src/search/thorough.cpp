@@ -234,7 +234,7 @@ class PeakFinder {
     for_each_looked_at(looked_at, scores_, [&](std::int16_t& score, int x, int y) {
       score = searched_.normal.score(score, seen_at(x / 2, y / 2));
     });
-    return best_peaks(scores_, turned_, rotation, floor);
+    return best_peaks(scores_, looked_at, turned_, rotation, floor);
   }
 
   const Searched& searched_;

@@ -173,7 +173,9 @@ TEST(Painted, ABlackMapOfRoomsInRowsLiesOnItselfOrSaysThatItRepeats) {
   const MatchResult itself = match(map, map);
   EXPECT_EQ(itself.T_fixed_moving, SE2{});
   EXPECT_EQ(itself.disagreement, 0);
-  if (itself.verdict == Verdict::refused) EXPECT_EQ(itself.reason, Reason::ambiguous);
+  if (itself.verdict == Verdict::refused) {
+    EXPECT_EQ(itself.reason, Reason::ambiguous);
+  }
 }
 
 TEST(Steady, AMapLiesOnItselfExactly) {

@@ -227,5 +227,84 @@ RC_GTEST_PROP(Fuse, EqualsTheNaiveSum, ()) {
   RC_ASSERT(known == count_cells(fused.grid).known());
 }
 
+/// Some lattice over a map of about 3 m x 3 m.
+Deformation any_deformation(unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<Point2> shifts;
+  for (int i = 0; i < 7 * 7; ++i) {
+    const double x = static_cast<double>(random() % 1001) / 1000.0 - 0.5;
+    const double y = static_cast<double>(random() % 1001) / 1000.0 - 0.5;
+    shifts.push_back({0.25 * x, 0.25 * y});
+  }
+  return {{-0.5, -0.4, 0.3}, 1.0, 7, 7, shifts};
+}
+
+RC_GTEST_PROP(Fuse, BentMapsAreLookedUpWhereTheyComeFrom, ()) {
+  const unsigned seed = *rc::gen::inRange(0U, 1000000U);
+  std::mt19937 random(seed);
+  OccupancyGrid map = make_grid(30, 30, 0.1, {0.2, -0.3, *rc::gen::inRange(-31, 31) / 10.0});
+  for (Cell& cell : map.cells) cell = static_cast<Cell>(random() % 3);
+  const Deformation deformation = any_deformation(seed);
+  const SE2 T{1.0, 2.0, *rc::gen::inRange(-31, 31) / 10.0};
+  const double resolution = *rc::gen::element(0.03, 0.1);
+  const OccupancyGrid fused = fuse({{&map, T}}, resolution, {deformation}).grid;
+  const SE2 T_grid_map = inverse(map.origin);
+  int compared = 0;
+  for (int row = 0; row < fused.height; ++row) {
+    for (int column = 0; column < fused.width; ++column) {
+      const Point2 in_map = deformation.straighten(inverse(T) * fused.cell_centre(column, row));
+      const Point2 q = T_grid_map * in_map;
+      const double x = q.x / map.resolution, y = q.y / map.resolution;
+      const auto is_in_the_middle = [](double v) { return std::abs(v - std::floor(v) - 0.5) < 0.1; };
+      if (!is_in_the_middle(x) || !is_in_the_middle(y)) continue;  // where a tenth of a cell changes nothing
+      const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
+      RC_ASSERT(fused.at(column, row) == (map.contains(i, j) ? map.at(i, j) : Cell::unknown));
+      ++compared;
+    }
+  }
+  RC_ASSERT(compared > 5 || resolution > 0.05);  // a few large cells may all miss the middles
+  // Nothing that the map knows lies beyond the result.
+  for (int row = 0; row < map.height; ++row) {
+    for (int column = 0; column < map.width; ++column) {
+      if (map.at(column, row) == Cell::unknown) continue;
+      const Point2 p = inverse(fused.origin) * (T * deformation.bend(map.cell_centre(column, row)));
+      RC_ASSERT(fused.contains(static_cast<int>(std::floor(p.x / resolution)),
+                               static_cast<int>(std::floor(p.y / resolution))));
+    }
+  }
+}
+
+TEST(Fuse, NoDeformationsAreTheSameAsNone) {
+  const OccupancyGrid a = map_from({"#..#", "#. #"}), b = map_from({"#.# #"});
+  const std::vector<PlacedMap> inputs{{&a, {}}, {&b, {1.0, 0.3, 0.7}}};
+  const FusedMap none = fuse(inputs, 0.5), identities = fuse(inputs, 0.5, {Deformation(), Deformation()});
+  EXPECT_EQ(none.grid.cells, identities.grid.cells);
+  EXPECT_EQ(none.omega->equal, identities.omega->equal);
+}
+
+// Cells coarser than the map's: however it is squeezed, none of its walls is lost.
+TEST(Fuse, ABentMapKeepsItsWallsInCoarserCells) {
+  OccupancyGrid map = make_grid(60, 60, 0.05, {}, Cell::free);
+  draw_line(map, 5, 5, 50, 30);
+  const FusedMap fused = fuse({{&map, {}}}, 0.12, {any_deformation(3)});
+  EXPECT_EQ(count_wall_pieces(fused.grid), 1);
+}
+
+TEST(BentMap, IsWhatFuseMakesOfIt) {
+  OccupancyGrid map = make_grid(40, 30, 0.1, {0.2, -0.3, 0.0}, Cell::free);
+  draw_line(map, 5, 5, 30, 20);
+  map.probability.assign(map.cells.size(), 0.2F);
+  const Deformation deformation = any_deformation(5);
+  const OccupancyGrid bent = bent_map(map, deformation);
+  const OccupancyGrid fused = fuse({{&map, {}}}, 0.1, {deformation}).grid;
+  EXPECT_TRUE(bent.probability.empty());
+  ASSERT_EQ(bent.width, fused.width);
+  ASSERT_EQ(bent.height, fused.height);
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < bent.cells.size(); ++i) differ += bent.cells[i] != fused.cells[i] ? 1 : 0;
+  EXPECT_LT(differ, bent.cells.size() / 50) << "cells at boundaries, for the frames are rounded differently";
+  EXPECT_EQ(bent_map(map, {}).probability, map.probability);
+}
+
 }  // namespace
 }  // namespace gridmerge

@@ -228,5 +228,53 @@ TEST(FuseAgain, NeedsTheMergedMaps) {
                        directory.file("merged.yaml")));
 }
 
+/// Two maps, the second of which is bent.
+MergeResult bent_result() {
+  std::vector<Point2> shifts(20);
+  shifts[7] = {0.0625, -1.0 / 3.0};
+  const Deformation deformation({-0.5, 0.1, 0.3}, 1.5, 5, 4, shifts);
+  return test::merged(kMaps, {{{0, {}, 0.9}, {2, {1.25, -3.0, 0.5}, 0.875, {}, deformation}}});
+}
+
+TEST(MergeRecord, KeepsDeformations) {
+  const MergeResult result = bent_result();
+  const MergeRecord record = parse_transforms("t.json", transforms_json(kNames, result));
+  const std::vector<Member>& members = record.result.components.at(0).members;
+  EXPECT_TRUE(members[0].deformation.is_identity());
+  EXPECT_EQ(members[1].deformation, result.components[0].members[1].deformation);
+  EXPECT_EQ(transforms_json(kNames, record.result), transforms_json(kNames, result));
+}
+
+TEST(MergeRecord, RefusesDamagedDeformations) {
+  const Json sound = Json::parse(transforms_json(kNames, bent_result()));
+  const auto message = [&](const std::string& key, const Json& value) {
+    Json damaged = sound;
+    Json& deformation = damaged["components"][0]["members"][1]["deformation"];
+    if (value.is_null()) {
+      deformation.erase(key);
+    } else {
+      deformation[key] = value;
+    }
+    return message_of<FileError>([&] { parse_transforms("t.json", damaged.dump()); });
+  };
+  const std::string place = "t.json: components[0].members[1].deformation";
+  for (const char* key : {"frame", "spacing", "columns", "rows", "shifts"})
+    EXPECT_EQ(message(key, {}), place + "." + key + " is missing");
+  EXPECT_EQ(message("columns", 3), place + ".columns is no number from 4 to 4096");
+  EXPECT_EQ(message("rows", 1e9), place + ".rows is no whole number from 0 to 2^53");
+  EXPECT_EQ(message("rows", 5),
+            place + ".shifts does not hold two numbers for each of columns x rows points");
+  EXPECT_EQ(message("shifts", "none"), place + ".shifts is no list");
+  EXPECT_TRUE(contains(message("spacing", -1.0), place + ".spacing lies outside"));
+  EXPECT_TRUE(contains(message("spacing", 0.0), place + " is none: a lattice's spacing must be"));
+  Json shifts = sound["components"][0]["members"][1]["deformation"]["shifts"];
+  shifts[3] = 1e300;
+  EXPECT_TRUE(contains(message("shifts", shifts), place + ".shifts[3] lies outside"));
+  shifts[3] = "x";
+  EXPECT_EQ(message("shifts", shifts), place + ".shifts[3] is no number");
+  shifts[3] = 5.0;
+  EXPECT_TRUE(contains(message("shifts", shifts), place + " is none: neighbouring shifts"));
+}
+
 }  // namespace
 }  // namespace gridmerge

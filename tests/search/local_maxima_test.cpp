@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <tuple>
+#include <vector>
 
 namespace gridmerge {
 
@@ -46,6 +49,41 @@ TEST(LocalMaxima, EqualTheDefinition) {
       EXPECT_EQ(found[i].y, expected[i].y);
       EXPECT_EQ(found[i].score, expected[i].score);
     }
+  }
+}
+
+TEST(LocalMaxima, OfBlocksAreThoseOfTheWholeImageThatLieInThem) {
+  std::mt19937 random(6);
+  for (int run = 0; run < 50; ++run) {
+    ScoreImage scores = random_scores(random, 2 * kCorrelateBlock, 2 + run % 9);
+    const int columns = 3 + static_cast<int>(random() % (2 * kCorrelateBlock - 2));
+    const int floor = run % 3;
+    std::vector<ScoreBlock> blocks;
+    for (int y = 0; y < scores.height; y += ScoreBlock::kRows) {
+      for (int x = 0; x < columns; x += ScoreBlock::kColumns)
+        if (random() % 2 == 0) blocks.push_back({x, y});
+    }
+    const auto in_a_block = [&](int x, int y) {
+      return std::any_of(blocks.begin(), blocks.end(), [&](const ScoreBlock& block) {
+        return x >= block.x && x < block.x + ScoreBlock::kColumns && y >= block.y &&
+               y < block.y + ScoreBlock::kRows;
+      });
+    };
+    for (int y = 0; y < scores.height; ++y) {
+      for (int x = 0; x < scores.width; ++x)
+        if (!in_a_block(x, y)) scores.values[y * scores.width + x] = kNotLookedAt;
+    }
+    const auto in_reading_order = [](const LocalMaximum& a, const LocalMaximum& b) {
+      return std::tie(a.y, a.x, a.score) < std::tie(b.y, b.x, b.score);
+    };
+    const std::vector<LocalMaximum> expected = find_local_maxima(scores, columns, floor);
+    std::vector<LocalMaximum> found = find_local_maxima(scores, blocks, columns, floor);
+    std::sort(found.begin(), found.end(), in_reading_order);
+    EXPECT_TRUE(std::equal(
+        found.begin(), found.end(), expected.begin(), expected.end(),
+        [&](const auto& a, const auto& b) { return !in_reading_order(a, b) && !in_reading_order(b, a); }))
+        << "run " << run;
+    EXPECT_EQ(find_maximum(scores, blocks, columns), find_maximum(scores, columns)) << "run " << run;
   }
 }
 

@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <random>
+#include <utility>
 
 #include "random_grid.hpp"
 
@@ -40,6 +44,49 @@ TEST(LikelihoodField, DistancesAreWithinEightPercentOfTheEuclideanOnes) {
         EXPECT_GE(nearest, 0.92 * (kDistanceBins - 1.5));
       } else {
         EXPECT_NEAR(bin, nearest, 0.5 + 0.08 * nearest + 1e-9);
+      }
+    }
+  }
+}
+
+/// The chamfer distance (3, 4) between two cells, in thirds of a cell.
+int chamfer(int dx, int dy) {
+  const int longer = std::max(std::abs(dx), std::abs(dy)), shorter = std::min(std::abs(dx), std::abs(dy));
+  return 4 * shorter + 3 * (longer - shorter);
+}
+
+TEST(LikelihoodField, PlacesEqualTheDefinition) {
+  std::mt19937 random(8);
+  for (int run = 0; run < 40; ++run) {
+    const int width = 1 + run, height = 1 + static_cast<int>(random() % 30);
+    OccupancyGrid grid = make_grid(width, height, 0.05, {}, Cell::unknown);
+    const auto known = 2 + random() % 60, walls = 2 + random() % 12;
+    for (Cell& cell : grid.cells)
+      if (random() % known == 0) cell = random() % walls == 0 ? Cell::occupied : Cell::free;
+    const LikelihoodField map = make_likelihood_field(grid, grid.resolution);
+    constexpr int kMargin = 4;
+    ASSERT_EQ(map.width, width + 2 * kMargin);
+    for (int y = 0; y < map.height; ++y) {
+      for (int x = 0; x < map.width; ++x) {
+        int to_known = 1000;
+        for (int row = 0; row < height; ++row) {
+          for (int column = 0; column < width; ++column)
+            if (grid.at(column, row) != Cell::unknown)
+              to_known = std::min(to_known, chamfer(column + kMargin - x, row + kMargin - y));
+        }
+        std::pair<int, int> nearest{60000, 0};  // distance and facing of a wall, the smaller facing of equals
+        for (const WallPoint& wall : map.walls) {
+          const int dx = static_cast<int>(wall.position.x) - x, dy = static_cast<int>(wall.position.y) - y;
+          nearest = std::min(nearest, {chamfer(dx, dy), wall.facing});
+        }
+        const Place& place = map.places[map.index(x, y)];
+        if (to_known > 6) {
+          EXPECT_EQ(place.distance, kUnseen) << run << ": " << x << " " << y;
+        } else {
+          EXPECT_EQ(place.distance, std::min((nearest.first + 1) / 3, kDistanceBins - 1))
+              << run << ": " << x << " " << y;
+          EXPECT_EQ(place.facing, nearest.second) << run << ": " << x << " " << y;
+        }
       }
     }
   }

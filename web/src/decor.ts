@@ -16,7 +16,7 @@ function decimalsOf(step: number): number {
   return Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
 }
 
-function label(context: CanvasRenderingContext2D, colors: DecorColors, text: string, x: number, y: number): void {
+export function label(context: CanvasRenderingContext2D, colors: DecorColors, text: string, x: number, y: number): void {
   context.lineJoin = "round";
   context.lineWidth = 3;
   context.strokeStyle = colors.halo;

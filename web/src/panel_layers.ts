@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { badge, mapLabel } from "./badge";
 import { type Rgb, disagreement, ink, white } from "./color";
+import { straighten } from "./deformation";
 import { h, name, replace, swatch } from "./dom";
 import { Cell } from "./grid";
 import { fixed } from "./numbers";
@@ -43,7 +44,7 @@ export class LayersPanel {
     for (const topic of ["hand", "query"] as const) state.on(topic, () => this.rebuild());
     state.on("looks", () => this.update());
     state.on("colors", () => this.recolor());
-    for (const topic of ["cursor", "hand", "grids"] as const) state.on(topic, () => this.read());
+    for (const topic of ["cursor", "hand", "grids", "bend"] as const) state.on(topic, () => this.read());
     this.rebuild();
   }
 
@@ -77,7 +78,8 @@ export class LayersPanel {
       maps.length < 2 ? null : this.ownRow("agreement", "Agreement", state.agreement, h("span", { class: "legend" },
         legendItem(ink, "walls in two maps or more"), legendItem(white, "floor in two maps or more"),
         legendItem(disagreement, "they contradict each other"),
-        component === null ? null : agreementCounts(state.report.components[component])), "a"));
+        component === null ? null : agreementCounts(state.report.components[component])), "a"),
+      state.hasBent() ? bendRow(state) : null);
     this.readings = new Map();
     replace(this.mapRows, ...listed.map((map) => this.mapRow(map)), moreNote(isLarge(state.report) ? found.length : 0, "map"));
     this.read();
@@ -150,7 +152,8 @@ export class LayersPanel {
   private read(): void {
     const { cursor } = this.state;
     if (this.readings.size === 0) return;
-    for (const { map, T_scene_map } of this.state.placed()) {
+    for (const placed of this.state.placed()) {
+      const { map, T_scene_map, deformation } = placed;
       const reading = this.readings.get(map);
       if (!reading) continue;
       const grid = this.state.grids[map];
@@ -158,7 +161,8 @@ export class LayersPanel {
         reading.textContent = "–";
         continue;
       }
-      const p = apply(inverse(T_scene_map), cursor);
+      const lying = apply(inverse(T_scene_map), cursor);
+      const p = deformation ? straighten(deformation, lying, this.state.bent) : lying;
       reading.textContent = `${fixed(p.x, 2)}, ${fixed(p.y, 2)} m · ${cellWords[grid.at(p)]}`;
     }
   }
@@ -179,6 +183,22 @@ export class LayersPanel {
       h("ul", {}, ...items),
       moreNote(isLarge(this.state.report) ? leftOut.length : 0, "map"));
   }
+}
+
+/** Between maps as they were read and as they are merged. */
+function bendRow(state: State): HTMLElement {
+  const slider = h("input", {
+    type: "range", id: "bent", min: 0, max: 100, step: 10, value: 100 * state.bent,
+    "aria-label": "How far the maps are bent: from as they were read to as they are merged",
+    input: () => state.setBent(Number(slider.value) / 100),
+  });
+  const arrows = h("input", { type: "checkbox", id: "arrows", change: () => state.showArrows(arrows.checked) });
+  arrows.checked = state.arrows;
+  return h("div", { class: "layer" },
+    h("span", { class: "layer-name" }, "Bent"),
+    slider,
+    h("label", { class: "layer-name" }, arrows, "Arrows"),
+    h("span", { class: "legend soft" }, "Left: each map straight, in its best pose. Right: bent, as it is merged. Arrows tell what moves where."));
 }
 
 function agreementCounts({ agreeing, conflicting }: Component): HTMLElement {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import type { Deformation } from "./deformation";
 import type { SE2 } from "./se2";
 import { count } from "./text";
 
@@ -23,6 +24,8 @@ export interface Member {
   transform: SE2;
   probability: number | null;
   sd: { position: number; theta: number } | null;
+  /** Only of bent maps. */
+  deformation?: Deformation;
 }
 
 export interface Component extends PackedGrid {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import type { Deformation } from "./deformation";
 import type { Report } from "./report";
 import { type SE2, identity } from "./se2";
 import { shortNames } from "./text";
@@ -12,6 +13,8 @@ export type SceneId =
 export interface Placed {
   map: number;
   T_scene_map: SE2;
+  /** Only of a map that the merge has bent, where it lies as the merge has it. */
+  deformation?: Deformation;
 }
 
 export interface Scene {
@@ -45,7 +48,9 @@ export function makeScene(report: Report, id: SceneId): Scene {
         id,
         title: component.file,
         frame: component.frame,
-        placed: component.members.map((member) => ({ map: member.map, T_scene_map: member.transform })),
+        placed: component.members.map(({ map, transform, deformation }) => ({
+          map, T_scene_map: transform, ...(deformation && { deformation }),
+        })),
         component: id.component,
       };
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { parseColor } from "./color";
 import type { Picture } from "./compose";
+import { drawArrows } from "./arrows";
 import { type DecorColors, drawAxes, drawCrosshair, drawGrid, drawRuler, drawScaleBar } from "./decor";
 import { h } from "./dom";
 import { Grid } from "./grid";
@@ -53,7 +54,7 @@ export class Stage {
     this.context = this.canvas.getContext("2d", { alpha: false })!;
     state.on("scene", () => this.arrange());
     state.on("grids", () => this.arrange());
-    for (const topic of ["looks", "colors", "hand"] as const) state.on(topic, () => this.recompose());
+    for (const topic of ["looks", "colors", "hand", "bend"] as const) state.on(topic, () => this.recompose());
     for (const topic of ["spotlight", "ruler"] as const) state.on(topic, () => this.redraw());
     new ResizeObserver(() => this.resize()).observe(this.canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
@@ -61,7 +62,7 @@ export class Stage {
 
   /** Shows all of the scene. */
   fit(): void {
-    const corners = this.state.placed().flatMap(({ map, T_scene_map }) => this.state.grids[map]?.corners(T_scene_map) ?? []);
+    const corners = this.state.placed().flatMap((placed) => this.state.gridOf(placed)?.corners(placed.T_scene_map) ?? []);
     const points = corners.length > 0 ? corners : this.mergedGrid()?.corners() ?? [];
     this.look(fit(boxAround(points), this.view.width, this.view.height));
     this.touched = false;
@@ -176,12 +177,13 @@ export class Stage {
     this.stale = "no";
     const layers: Picture["layers"] = [];
     const parts: unknown[] = [this.place, state.merged, state.agreement];
-    for (const { map, T_scene_map } of state.placed()) {
-      const grid = state.grids[map];
+    for (const placed of state.placed()) {
+      const { map, T_scene_map } = placed;
+      const grid = state.gridOf(placed);
       const look = state.looks[map];
       if (!grid || map === state.handled) continue;
       layers.push({ grid, T_scene_map, color: parseColor(look.color), opacity: look.visible ? look.opacity : 0 });
-      parts.push(map, T_scene_map, look);
+      parts.push(map, T_scene_map, look, placed.deformation ? state.bent : 0);
     }
     const grid = this.mergedGrid();
     parts.push(grid !== null);
@@ -217,6 +219,7 @@ export class Stage {
     const complete = this.tiles.draw(context, scaledBy(view, ratio), budget);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.drawStamps();
+    if (this.state.arrows) drawArrows(context, view, colors, this.state);
     if (this.gridShown) drawGrid(context, view, colors);
     if (this.gridShown) drawAxes(context, view, colors);
     drawScaleBar(context, view, colors);
@@ -234,9 +237,10 @@ export class Stage {
 
   private drawStamp(map: number, inHand: boolean): void {
     const { context, view } = this;
-    const grid = this.state.grids[map];
-    const pose = this.state.poseOf(map);
-    if (!grid || !pose) return;
+    const placed = this.state.placed().find((one) => one.map === map);
+    const grid = placed && this.state.gridOf(placed);
+    if (!grid) return;
+    const pose = placed.T_scene_map;
     const { color, visible } = this.state.looks[map];
     if (inHand || visible) this.stampOf(map, grid, color).draw(context, view, pose);
     context.strokeStyle = color;
@@ -268,7 +272,8 @@ export class Stage {
   private stampOf(map: number, grid: Grid, color: string): Stamp {
     const key = `${map} ${color}`;
     let stamp = this.stamps.get(key);
-    if (!stamp) {
+    if (stamp?.grid !== grid) {
+      this.stamps.delete(key);
       // A few are enough: those that were pointed at last.
       if (this.stamps.size >= 8) this.stamps.delete(this.stamps.keys().next().value!);
       this.stamps.set(key, (stamp = new Stamp(grid, color)));

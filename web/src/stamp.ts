@@ -8,7 +8,7 @@ const mostPixels = 1600;
 
 /** One map as a picture of its own, which can be laid anywhere at once: what tiles are too slow for. */
 export class Stamp {
-  private readonly grid: Grid;
+  readonly grid: Grid;
   private readonly level: Level;
   private readonly canvas = document.createElement("canvas");
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { bentGrid } from "./deformation";
 import type { Grid } from "./grid";
 import type { Report } from "./report";
 import type { Ruler } from "./ruler";
@@ -18,9 +19,9 @@ export interface MapLook extends Look {
 
 /**
  * What has changed: which scene, how layers look, in which colours, which map is pointed out, where the cursor is, what is
- * measured, what is placed by hand, which cells are there, which maps are searched for.
+ * measured, what is placed by hand, which cells are there, which maps are searched for, how far maps are bent.
  */
-export type Topic = "scene" | "looks" | "colors" | "spotlight" | "cursor" | "ruler" | "hand" | "grids" | "query";
+export type Topic = "scene" | "looks" | "colors" | "spotlight" | "cursor" | "ruler" | "hand" | "grids" | "query" | "bend";
 
 /** The map in hand, whose cells are there. */
 export interface InHand {
@@ -40,6 +41,10 @@ export class State {
   readonly looks: MapLook[];
   readonly merged: Look = { visible: false, opacity: 1 };
   readonly agreement: Look = { visible: true, opacity: 1 };
+  /** By which share bent maps are bent: 0 shows them as they were read, 1 as they are merged. */
+  bent = 1;
+  /** Whether arrows show where bending moves them. */
+  arrows = false;
   scene: Scene;
   spotlight: number | null = null;
   /** In the scene's frame. */
@@ -58,6 +63,7 @@ export class State {
   private offered: SE2 | null = null;
   /** By scene: poses given by hand, in its frame. */
   private readonly handPoses = new Map<string, Map<number, SE2>>();
+  private readonly bentGrids = new Map<number, { of: Grid; share: number; grid: Grid }>();
   private readonly listeners = new Map<Topic, (() => void)[]>();
 
   constructor(report: Report) {
@@ -100,15 +106,45 @@ export class State {
   /** Where the maps of the scene lie, those that were put there by hand included. */
   placed(): Placed[] {
     const byHand = this.byHand();
-    const own = this.scene.placed.map(({ map, T_scene_map }) => ({ map, T_scene_map: byHand.get(map) ?? T_scene_map }));
+    const own = this.scene.placed.map((placed) => {
+      const T_scene_map = byHand.get(placed.map);
+      return T_scene_map ? { map: placed.map, T_scene_map } : placed;
+    });
     const isOwn = (map: number) => this.scene.placed.some((placed) => placed.map === map);
-    const added = [...byHand].filter(([map]) => !isOwn(map)).map(([map, T_scene_map]) => ({ map, T_scene_map }));
+    const added: Placed[] = [...byHand].filter(([map]) => !isOwn(map)).map(([map, T_scene_map]) => ({ map, T_scene_map }));
     const offered = this.offered ? [{ map: this.handled!, T_scene_map: this.offered }] : [];
     return [...own, ...added, ...offered];
   }
 
   poseOf(map: number): SE2 | null {
     return this.placed().find((placed) => placed.map === map)?.T_scene_map ?? null;
+  }
+
+  /** Whether the scene has maps that the merge has bent. */
+  hasBent(): boolean {
+    return this.scene.placed.some(({ deformation }) => deformation !== undefined);
+  }
+
+  setBent(share: number): void {
+    if (share === this.bent) return;
+    this.bent = share;
+    this.changed("bend");
+  }
+
+  showArrows(shown: boolean): void {
+    this.arrows = shown;
+    this.changed("bend");
+  }
+
+  /** A placed map's cells, bent as far as it is shown; null until they are there. */
+  gridOf({ map, deformation }: Placed): Grid | null {
+    const grid = this.grids[map];
+    if (!grid || !deformation || this.bent === 0 || map === this.handled) return grid;
+    const known = this.bentGrids.get(map);
+    if (known && known.of === grid && known.share === this.bent) return known.grid;
+    const bent = bentGrid(grid, deformation, this.bent);
+    this.bentGrids.set(map, { of: grid, share: this.bent, grid: bent });
+    return bent;
   }
 
   inHand(): InHand | null {

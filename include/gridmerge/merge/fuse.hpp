@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gridmerge/export.hpp"
+#include "gridmerge/grid/deformation.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge {
@@ -25,7 +26,7 @@ struct FusedMap {
   OccupancyGrid grid;           ///< upright (yaw 0), in the output frame; ternary cells and probabilities
   std::size_t agreeing = 0;     ///< cells known in two or more inputs, all equal
   std::size_t conflicting = 0;  ///< cells that some input calls free and another occupied
-  /// None where the inputs cannot be compared so: see count_equal_cells().
+  /// None where the inputs cannot be compared so (see count_equal_cells()), or one is bent.
   std::optional<EqualCells> omega = {};
 };
 
@@ -38,6 +39,18 @@ struct FusedMap {
 /// the result does not depend on the inputs' order. Throws std::invalid_argument for no input, an invalid
 /// grid, a transform that is not finite, a resolution that is not positive, and a result of more than 2^28
 /// cells. O(cells of the inputs + cells of the result).
-GRIDMERGE_EXPORT FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution);
+///
+/// `deformations[i]`, where there is one, bends input i before its transform places it; it may be shorter
+/// than `inputs`. Each cell of the result looks up the bent input where it comes from, to a tenth of a cell,
+/// so this is one pass too. Where a map is squeezed, a wall one cell thick may get gaps. With a bent input
+/// there is no omega.
+GRIDMERGE_EXPORT FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution,
+                               const std::vector<Deformation>& deformations = {});
+
+/// A map as its deformation bends it, in cells of its own size along its own rows: for drawing and for
+/// whoever takes rigid maps only. The map itself if the deformation is the identity; otherwise without
+/// probabilities. Throws std::invalid_argument for an invalid grid, and a result of more than 2^28 cells.
+/// O(cells).
+GRIDMERGE_EXPORT OccupancyGrid bent_map(const OccupancyGrid& map, const Deformation& deformation);
 
 }  // namespace gridmerge

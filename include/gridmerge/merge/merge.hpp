@@ -20,9 +20,16 @@ struct MergeOptions {
   /// not used.
   MatchOptions match;
   /// So many joins of the whole merge may be expected to be false, beside what `match.accept_probability`
-  /// asks of each: the least sure ones are not made (see find_consistent_set_within()).
+  /// asks of each: the least sure ones are not made (see find_consistent_set_within()). Of more than 50
+  /// maps, so many for every 50.
   double max_false_joins = 0.05;
+  /// Of more than 50 maps only likely pairs are matched: those left out hide, as far as is known, at most
+  /// this share of all joins. Up to 0.2, and of fewer maps, all pairs are matched. In [0, 1).
+  double max_missed = 0.0;
   double resolution = 0.0;  ///< of the merged maps [m]; 0 = the finest among a map's inputs
+  /// Whether maps are bent so that walls that are one come to lie on each other: for maps that drift has
+  /// bent. See Member::deformation.
+  bool elastic = false;
   /// Called with the numbers of pairs that are matched and to be matched, never from two threads at once. Of
   /// the second look, if there is one, the numbers begin anew.
   std::function<void(std::size_t, std::size_t)> progress;
@@ -30,12 +37,12 @@ struct MergeOptions {
 
 /// Merges `maps` by what all pairs of them say together.
 ///
-/// Every pair is matched, and all hypotheses are kept. The consistent set of all maps that they speak for
-/// most is chosen (see find_consistent_set_within()): a weak pair that agrees with the others is used, a
-/// strong one that contradicts them is not. Then all poses are adjusted together, to what the pairs and the
-/// maps' walls say (robust least squares), and the maps of each component are fused in one pass. Maps that
-/// nothing joins surely enough are left out; groups between which nothing is sure are components of their
-/// own.
+/// Every pair is matched, or of many maps the likely ones (see MergeOptions::max_missed), and all hypotheses
+/// are kept. The consistent set of all maps that they speak for most is chosen (see
+/// find_consistent_set_within()): a weak pair that agrees with the others is used, a strong one that
+/// contradicts them is not. Then all poses are adjusted together, to what the pairs and the maps' walls say
+/// (robust least squares), and the maps of each component are fused in one pass. Maps that nothing joins
+/// surely enough are left out; groups between which nothing is sure are components of their own.
 ///
 /// `known_poses[i]`, where there is one, is what is known of map i beforehand; it may be shorter than `maps`.
 /// Known poses of two maps that are not fixed speak for joining them so: the maps' own hypothesis there
@@ -46,7 +53,7 @@ struct MergeOptions {
 /// The result does not depend on the number of threads, nor on the order of the maps, except that the frame
 /// of a component is its first member's and `joins` are in the order (0, 1), (0, 2), ... Throws
 /// std::invalid_argument for an invalid grid, option or known pose, naming the map by its index, and when a
-/// merged map would exceed 2^28 cells. k * (k - 1) / 2 matches for k maps.
+/// merged map would exceed 2^28 cells. At most k * (k - 1) / 2 matches for k maps.
 GRIDMERGE_EXPORT MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
                                    const std::vector<std::optional<KnownPose>>& known_poses = {});
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gridmerge/export.hpp"
+#include "gridmerge/grid/deformation.hpp"
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/merge/fuse.hpp"
@@ -60,6 +61,16 @@ struct Member {
   std::optional<double> probability = {};
   /// Relative to what holds the component's frame, which has none. The tree does not know.
   std::optional<PoseDeviation> sd = {};
+  /// How the map is bent, in its own frame, before the transform takes it to the component's: none unless
+  /// MergeOptions::elastic asks for it. It holds no rigid part, which is all in T_component_map.
+  Deformation deformation = {};
+
+  /// Where a point of the map's frame lies in the component's [m].
+  Point2 to_component(const Point2& in_map) const { return T_component_map * deformation.bend(in_map); }
+  /// Where a point of the component's frame lies in the map's [m]: the inverse.
+  Point2 to_map(const Point2& in_component) const {
+    return deformation.straighten(inverse(T_component_map) * in_component);
+  }
 };
 
 /// Maps that were joined.

@@ -110,4 +110,9 @@ class GRIDMERGE_EXPORT Merger {
   std::unique_ptr<State> state_;
 };
 
+/// A merger that holds these maps, the ids in their order, with what merge() takes beside them. Throws as
+/// merge() does.
+GRIDMERGE_EXPORT Merger merger_of(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
+                                  const std::vector<std::optional<KnownPose>>& known_poses = {});
+
 }  // namespace gridmerge

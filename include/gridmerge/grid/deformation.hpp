@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "gridmerge/export.hpp"
+#include "gridmerge/grid/se2.hpp"
+
+namespace gridmerge {
+
+/// A smooth deformation of a map that neither tears nor folds it: every point is shifted, and no two points
+/// become one.
+///
+/// Shifts stand at the points of a square lattice, and between them a uniform cubic B-spline interpolates.
+/// With q = T_lattice_map * p for a point p of the map frame, x = q.x / spacing clamped to
+/// [0, columns - 3], i = min(floor(x), columns - 4), u = x - i, and y, j, v likewise of the rows:
+///
+///     bend(p) = T_map_lattice * (q + sum over a, b in 0..3 of B_a(u) B_b(v) shift(i + a, j + b))
+///
+/// with B_0(t) = (1 - t)^3 / 6, B_1(t) = (3 t^3 - 6 t^2 + 4) / 6, B_2(t) = (-3 t^3 + 3 t^2 + 3 t + 1) / 6 and
+/// B_3(t) = t^3 / 6. Beyond the lattice the shift of its rim goes on. The derivatives of the shift are
+/// weighted means of the differences of neighbouring shifts, so these bound them everywhere: strain_bound().
+/// Up to kMostStrain, which is below 1, the deformation has an inverse on the whole plane (Banach's
+/// fixed-point theorem).
+class GRIDMERGE_EXPORT Deformation {
+ public:
+  /// No lattice is less tame.
+  static constexpr double kMostStrain = 0.5;
+  /// Columns and rows that a lattice may have.
+  static constexpr int kMostPoints = 4096;
+
+  /// The one that leaves every point where it is; it has no lattice.
+  Deformation() = default;
+
+  /// By a lattice of `columns` x `rows` shifts [m, in the lattice's directions], row by row, `spacing` metres
+  /// apart. `T_map_lattice` takes the lattice's frame to the map's: the origin is where x = y = 0 above,
+  /// which is between the first four shifts. Throws std::invalid_argument, saying what is wrong, unless there
+  /// are 4 to kMostPoints columns and rows, their product is the number of shifts, all numbers are finite,
+  /// the spacing is positive and the strain bound at most kMostStrain.
+  Deformation(const SE2& T_map_lattice, double spacing, int columns, int rows, std::vector<Point2> shifts);
+
+  /// Whether it has no lattice.
+  bool is_identity() const { return shifts_.empty(); }
+  /// Where a point goes, both in the map frame [m]. O(1).
+  Point2 bend(const Point2& straight) const;
+  /// Where a point comes from: bend(straighten(p)) is p to 10^-9 of the lattice's size. O(1): some ten times
+  /// bend().
+  Point2 straighten(const Point2& bent) const;
+
+  /// An upper bound of the shift's derivative (Frobenius norm of its Jacobian matrix); 0 without a lattice.
+  double strain_bound() const { return strain_bound_; }
+  /// An upper bound of the shift's length [m]; 0 without a lattice.
+  double shift_bound() const { return shift_bound_; }
+
+  const SE2& T_map_lattice() const { return T_map_lattice_; }    ///< of the lattice in the map frame
+  double spacing() const { return spacing_; }                    ///< [m]; 0 without a lattice
+  int columns() const { return columns_; }                       ///< 0 without a lattice
+  int rows() const { return rows_; }                             ///< 0 without a lattice
+  const std::vector<Point2>& shifts() const { return shifts_; }  ///< row-major [m]
+
+  /// Whether both have the same lattice.
+  friend bool operator==(const Deformation&, const Deformation&) = default;
+
+ private:
+  Point2 shift_at(const Point2& in_lattice) const;
+
+  SE2 T_map_lattice_;
+  double spacing_ = 0.0;
+  int columns_ = 0;
+  int rows_ = 0;
+  std::vector<Point2> shifts_;
+  double strain_bound_ = 0.0;
+  double shift_bound_ = 0.0;
+};
+
+/// The deformation seen from another frame of the same map: bends points of frame a as `deformation` bends
+/// those of frame b. O(1) and a copy of the lattice.
+GRIDMERGE_EXPORT Deformation seen_from(const SE2& T_a_b, const Deformation& deformation);
+
+}  // namespace gridmerge

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/grid/deformation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "grid/spline.hpp"
+
+namespace gridmerge {
+
+using namespace internal;
+
+namespace internal {
+
+double strain_bound(const std::vector<Point2>& shifts, int columns, int rows, double spacing) {
+  double along_x = 0.0, along_y = 0.0;
+  const auto at = [&](int column, int row) {
+    return shifts[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                  static_cast<std::size_t>(column)];
+  };
+  const auto apart = [](const Point2& a, const Point2& b) { return std::hypot(a.x - b.x, a.y - b.y); };
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      if (column + 1 < columns) along_x = std::max(along_x, apart(at(column + 1, row), at(column, row)));
+      if (row + 1 < rows) along_y = std::max(along_y, apart(at(column, row + 1), at(column, row)));
+    }
+  }
+  return std::hypot(along_x, along_y) / spacing;
+}
+
+}  // namespace internal
+
+Deformation::Deformation(const SE2& T_map_lattice, double spacing, int columns, int rows,
+                         std::vector<Point2> shifts)
+    : T_map_lattice_(T_map_lattice),
+      spacing_(spacing),
+      columns_(columns),
+      rows_(rows),
+      shifts_(std::move(shifts)) {
+  const auto require = [](bool holds, const char* otherwise) {
+    if (!holds) throw std::invalid_argument(otherwise);
+  };
+  const auto is_length = [](int points) { return points >= 4 && points <= kMostPoints; };
+  require(is_length(columns) && is_length(rows), "a lattice must have 4 to 4096 columns and rows");
+  require(shifts_.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
+          "a lattice must have columns x rows shifts");
+  require(std::isfinite(spacing) && spacing > 0.0, "a lattice's spacing must be a positive number of metres");
+  require(
+      std::isfinite(T_map_lattice.x) && std::isfinite(T_map_lattice.y) && std::isfinite(T_map_lattice.theta),
+      "a lattice's frame must be finite");
+  for (const Point2& shift : shifts_) {
+    require(std::isfinite(shift.x) && std::isfinite(shift.y), "a lattice's shifts must be finite");
+    shift_bound_ = std::max(shift_bound_, std::hypot(shift.x, shift.y));
+  }
+  strain_bound_ = internal::strain_bound(shifts_, columns, rows, spacing);
+  require(strain_bound_ <= kMostStrain,
+          "neighbouring shifts of a lattice must not differ so much that it may fold");
+}
+
+Point2 Deformation::shift_at(const Point2& in_lattice) const {
+  return interpolated(spline_weights({in_lattice.x / spacing_, in_lattice.y / spacing_}, columns_, rows_),
+                      shifts_.data(), columns_);
+}
+
+Point2 Deformation::bend(const Point2& straight) const {
+  if (is_identity()) return straight;
+  const Point2 q = inverse(T_map_lattice_) * straight, shift = shift_at(q);
+  return T_map_lattice_ * Point2{q.x + shift.x, q.y + shift.y};
+}
+
+Point2 Deformation::straighten(const Point2& bent) const {
+  if (is_identity()) return bent;
+  constexpr int kMostSteps = 64;  // each halves the error at least
+  const Point2 target = inverse(T_map_lattice_) * bent;
+  const double close = 1e-10 * spacing_;
+  Point2 q = target;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Point2 shift = shift_at(q), next{target.x - shift.x, target.y - shift.y};
+    const bool is_close = std::abs(next.x - q.x) + std::abs(next.y - q.y) <= close;
+    q = next;
+    if (is_close) break;
+  }
+  return T_map_lattice_ * q;
+}
+
+Deformation seen_from(const SE2& T_a_b, const Deformation& deformation) {
+  if (deformation.is_identity()) return deformation;
+  return {T_a_b * deformation.T_map_lattice(), deformation.spacing(), deformation.columns(),
+          deformation.rows(), deformation.shifts()};
+}
+
+}  // namespace gridmerge

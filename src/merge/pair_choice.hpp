@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "merge/consistent_set.hpp"
+#include "merge/map_store.hpp"
+#include "merge/pair_looks.hpp"
+#include "preselect/signature.hpp"
+
+namespace gridmerge::internal {
+
+/// Of up to so many maps all pairs are looked at, and a budget of false joins holds for all of them.
+inline constexpr std::size_t kFewMaps = 50;
+
+/// Chooses the pairs of many maps that are looked at, by signatures of the maps: in rounds, the likeliest
+/// first, until those that are left hide at most a given share of all joins. A pair whose maps lie in one
+/// component already can change little, and waits.
+///
+/// What is chosen depends on the maps and on what was chosen before, not on their order or on threads.
+class PairChoice {
+ public:
+  using MapId = MapStore::MapId;
+  using Pair = PairLooks::Pair;
+
+  /// `max_missed`: the share of all joins that may be missed. All pairs are looked at up to kHiddenShare, so
+  /// many are missed whichever pairs are left.
+  explicit PairChoice(double max_missed);
+
+  bool takes_all(std::size_t maps) const { return max_shown_ == 0.0 || maps <= kFewMaps; }
+
+  /// The map is another one, or gone.
+  void forget(MapId id);
+
+  /// Makes the signatures that are missing, and compares them. `maps` are in canonical order. Runs in the
+  /// calling TBB arena. O(maps^2) comparisons of signatures, kept until a map changes.
+  void prepare(const MapStore& store, const std::vector<MapId>& maps);
+
+  /// The pairs to be looked at next, given those that were chosen before and the solution that they made;
+  /// none when the rest may be left. `round` counts from 0. The first map of a pair stands before the second
+  /// one in `maps`. O(pairs log(pairs)).
+  std::vector<Pair> next(std::size_t round, const MapStore& store, const std::set<Pair>& chosen,
+                         const ConsistentSet& consistent_set) const;
+
+  /// Of the pairs whose maps the first look leaves apart, those that get a second one.
+  std::vector<Pair> worth_a_second_look(const std::vector<Pair>& apart, const PairLooks& looks,
+                                        const ConsistentSet& consistent_set) const;
+
+  /// Which meetings of a group and a map that lies alone are worth a match, by the group's signature.
+  /// `joins` were made so far. Runs in the calling TBB arena.
+  std::vector<bool> worth_meeting(const std::vector<std::unique_ptr<PreparedMap>>& groups,
+                                  const std::vector<std::pair<std::size_t, std::size_t>>& meetings,
+                                  std::size_t joins) const;
+
+ private:
+  struct Weighed {
+    double weight;
+    std::uint32_t a, b;  // places in maps_
+  };
+
+  float log_odds(std::size_t a, std::size_t b) const;
+  std::vector<std::size_t> group_sizes(const ConsistentSet& consistent_set,
+                                       std::vector<std::size_t>& group_of) const;
+  std::vector<Pair> laid_on_each_other(const MapStore& store, const std::set<Pair>& chosen,
+                                       const ConsistentSet& consistent_set) const;
+  bool known_to_meet(const MapStore& store, std::size_t a, std::size_t b) const;
+
+  double max_shown_;         // share of all joins that may be missed although signatures show them
+  std::vector<MapId> maps_;  // of prepare()
+  std::map<MapId, std::unique_ptr<const Signature>> signatures_;
+  std::vector<float> log_odds_;  // of each pair of maps_, a < b, in their order
+  double shift_ = 0.0;
+};
+
+}  // namespace gridmerge::internal

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "preselect/profiles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "preselect/dot_products.hpp"
+
+namespace gridmerge::internal {
+
+namespace {
+
+constexpr double kQuarterTurn = std::numbers::pi / 2.0;
+constexpr double kMinCoherence = 0.35;  // of the directions of walls: 1 if all are at right angles
+constexpr int kUsualWithin = 5;         // steps on each side that say how much wall is usual
+constexpr int kMaxLength = 400;         // steps of a profile; longer maps say nothing
+constexpr std::size_t kPeaks = 3;       // shifts along an axis that are tried
+constexpr int kPeakSpacing = 2;         // steps between them
+
+double angle_of(std::uint8_t facing) {
+  return 2.0 * std::numbers::pi * (is_axis(facing) ? facing - kDirections : facing) / kDirections;
+}
+
+/// A shift of one profile on another [steps], and the correlation there.
+struct Shift {
+  int by;
+  double correlation;
+};
+
+/// Correlations of two profiles for all shifts, from -(size of `moving` - 1) on.
+std::vector<std::int32_t> correlate_all(const std::vector<std::int16_t>& fixed,
+                                        const std::vector<std::int16_t>& moving) {
+  const int shifts = static_cast<int>(fixed.size() + moving.size()) - 1;
+  std::vector<std::int32_t> sums(static_cast<std::size_t>(shifts));
+  for (int i = 0; i < shifts; ++i) {
+    const int by = i - (static_cast<int>(moving.size()) - 1);
+    const int from = std::max(0, by);
+    const int to = std::min(static_cast<int>(fixed.size()), static_cast<int>(moving.size()) + by);
+    sums[i] =
+        dot_product(fixed.data() + from, moving.data() + (from - by), static_cast<std::size_t>(to - from));
+  }
+  return sums;
+}
+
+/// The best shifts along a side, by the walls that face it and those that face away.
+std::vector<Shift> best_shifts(const std::vector<std::int32_t>& facing, const std::vector<std::int32_t>& away,
+                               int zero_facing, int zero_away) {
+  std::vector<Shift> all;
+  for (int i = 0; i < std::ssize(facing); ++i) {
+    const int by = i - zero_facing, mirrored = zero_away - by;
+    double sum = facing[i];
+    if (mirrored >= 0 && mirrored < std::ssize(away)) sum += away[mirrored];
+    if (sum > 0.0) all.push_back({by, sum});
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Shift& a, const Shift& b) { return a.correlation > b.correlation; });
+  std::vector<Shift> kept;
+  for (const Shift& shift : all) {
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Shift& other) {
+      return std::abs(other.by - shift.by) < kPeakSpacing;
+    });
+    if (is_new) kept.push_back(shift);
+    if (kept.size() == kPeaks) break;
+  }
+  return kept;
+}
+
+}  // namespace
+
+WallProfiles make_profiles(const LikelihoodField& field) {
+  WallProfiles profiles;
+  double c = 0.0, s = 0.0;
+  std::size_t count = 0;
+  for (const WallPoint& wall : field.walls) {
+    if (wall.facing == kNoDirection) continue;
+    c += std::cos(4.0 * angle_of(wall.facing));
+    s += std::sin(4.0 * angle_of(wall.facing));
+    ++count;
+  }
+  if (count == 0 || std::hypot(c, s) < kMinCoherence * static_cast<double>(count)) return profiles;
+  profiles.theta = std::atan2(s, c) / 4.0;
+  const double reach = std::hypot(field.width, field.height) * field.cell;
+  const int length = static_cast<int>(std::ceil(2.0 * reach / kProfileStep)) + 1;
+  if (length > 2 * kMaxLength) return profiles;
+  std::array<std::vector<double>, 4> sums;
+  for (std::vector<double>& side : sums) side.assign(static_cast<std::size_t>(length), 0.0);
+  int lowest = length, highest = -1;
+  for (const WallPoint& wall : field.walls) {
+    if (wall.facing == kNoDirection) continue;
+    const double turned = angle_of(wall.facing) - profiles.theta;
+    const double quarters = std::round(turned / kQuarterTurn);
+    if (std::abs(turned - quarters * kQuarterTurn) > kQuarterTurn / 3.0) continue;
+    for (int half = 0; half < (is_axis(wall.facing) ? 2 : 1); ++half) {
+      const int side = ((static_cast<int>(quarters) + 2 * half) % 4 + 4) % 4;
+      const double angle = profiles.theta + side * kQuarterTurn;
+      const double along =
+          field.cell * (wall.position.x * std::cos(angle) + wall.position.y * std::sin(angle));
+      const double at = (along + reach) / kProfileStep;
+      const int low = static_cast<int>(at);
+      const double part = at - low;
+      sums[side][low] += 1.0 - part;
+      sums[side][low + 1] += part;
+      lowest = std::min(lowest, low);
+      highest = std::max(highest, low + 1);
+    }
+  }
+  if (highest < lowest) return profiles;
+  profiles.first = lowest * kProfileStep - reach;
+  for (int side = 0; side < 4; ++side) {
+    std::vector<double> lengths;  // square roots: one long wall is not worth many short ones
+    for (int i = lowest; i <= highest; ++i) lengths.push_back(std::sqrt(sums[side][i] * field.cell));
+    for (int i = 0; i < std::ssize(lengths); ++i) {
+      double usual = 0.0;
+      for (int k = i - kUsualWithin; k <= i + kUsualWithin; ++k)
+        usual += k >= 0 && k < std::ssize(lengths) ? lengths[k] : 0.0;
+      const double more = lengths[i] - usual / (2 * kUsualWithin + 1);
+      profiles.sides[side].push_back(
+          static_cast<std::int16_t>(std::lround(std::clamp(128.0 * more, -1000.0, 1000.0))));
+    }
+  }
+  return profiles;
+}
+
+std::vector<ProfilePose> align_profiles(const WallProfiles& fixed, const WallProfiles& moving,
+                                        std::size_t most) {
+  std::vector<ProfilePose> poses;
+  if (fixed.sides[0].empty() || moving.sides[0].empty()) return poses;
+  const int zero = static_cast<int>(moving.sides[0].size()) - 1;
+  for (int quarters = 0; quarters < 4; ++quarters) {
+    // Side `a` of the moving map faces the fixed map's side `a + quarters`.
+    const auto of_side = [&](int side) {
+      return correlate_all(fixed.sides[side], moving.sides[(side - quarters + 4) % 4]);
+    };
+    const std::vector<Shift> along = best_shifts(of_side(0), of_side(2), zero, zero);
+    const std::vector<Shift> across = best_shifts(of_side(1), of_side(3), zero, zero);
+    const double turn = fixed.theta + quarters * kQuarterTurn - moving.theta;
+    for (const Shift& u : along) {
+      for (const Shift& v : across) {
+        // Profiles begin at `first` in either map: that is in the shift.
+        const double du = u.by * kProfileStep + fixed.first - moving.first;
+        const double dv = v.by * kProfileStep + fixed.first - moving.first;
+        const double cos = std::cos(fixed.theta), sin = std::sin(fixed.theta);
+        poses.push_back({{cos * du - sin * dv, sin * du + cos * dv, normalize_angle(turn)},
+                         u.correlation + v.correlation});
+      }
+    }
+  }
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const ProfilePose& a, const ProfilePose& b) { return a.likeness > b.likeness; });
+  poses.resize(std::min(most, poses.size()));
+  return poses;
+}
+
+}  // namespace gridmerge::internal

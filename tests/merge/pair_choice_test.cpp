@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which pairs of many maps are looked at.
+#include "merge/pair_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+#include "gridmerge/grid/resample.hpp"
+#include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/merger.hpp"
+#include "merge/team.hpp"
+
+namespace gridmerge {
+namespace {
+
+using test::draw_building;
+using test::expect_same;
+using test::map_part;
+
+/// Two maps of each of several floors, all from frames of their own.
+struct Fleet {
+  explicit Fleet(std::size_t count) {
+    for (unsigned seed = 1; maps.size() < count; ++seed) {
+      const OccupancyGrid building = draw_building(seed);
+      for (const test::Window& window : {test::Window{0, 0, 12, 13}, test::Window{4, 0, 18, 13}}) {
+        const double i = static_cast<double>(maps.size());
+        T_map_floor.push_back({2.0 * i, -i, 0.37 * i});
+        maps.push_back(downsample(map_part(building, window, T_map_floor.back()), 2));
+      }
+    }
+  }
+
+  /// What a match would find that is always right, and nearly always sure.
+  MatchResult match(std::size_t fixed, std::size_t moving) const {
+    MatchResult result;
+    if (fixed / 2 != moving / 2) return result;
+    result.T_fixed_moving = T_map_floor[fixed] * inverse(T_map_floor[moving]);
+    result.probability = 0.999;
+    result.verdict = Verdict::accepted;
+    result.reason = Reason::none;
+    result.hypotheses = {{result.T_fixed_moving, 1.0, 0.999}};
+    result.hypotheses[0].figures.sigma = 0.1;
+    return result;
+  }
+
+  std::vector<OccupancyGrid> maps;
+  std::vector<SE2> T_map_floor;
+};
+
+MergeOptions options(double max_missed, int threads = 2) {
+  MergeOptions options;
+  options.max_missed = max_missed;
+  options.match.threads = threads;
+  options.match.search = SearchMethod::quick;  // one look is enough to choose by
+  return options;
+}
+
+/// A merge of the first `count` maps of `order`, with matches that are made elsewhere.
+MergeResult merge_of(const Fleet& fleet, const std::vector<std::size_t>& order, const MergeOptions& options,
+                     std::size_t* matches = nullptr) {
+  Merger merger(options);
+  for (const std::size_t map : order) merger.add(fleet.maps[map]);
+  std::size_t made = 0;
+  for (std::vector<DueMatch> due = merger.due(); !due.empty(); due = merger.due()) {
+    for (const DueMatch& one : due) merger.hand_in(one, fleet.match(order[one.fixed], order[one.moving]));
+    made += due.size();
+  }
+  if (matches != nullptr) *matches = made;
+  return merger.solve();
+}
+
+/// The maps of each component.
+std::set<std::set<std::size_t>> parts_of(const MergeResult& result, const std::vector<std::size_t>& order) {
+  std::set<std::set<std::size_t>> parts;
+  for (const Component& component : result.components) {
+    std::set<std::size_t> part;
+    for (const Member& member : component.members) part.insert(order[member.map]);
+    parts.insert(part);
+  }
+  return parts;
+}
+
+std::vector<std::size_t> in_order(std::size_t count) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+
+TEST(PairChoice, OfFewMapsAllPairsAreLookedAt) {
+  const internal::PairChoice some(0.25), hidden(0.2), none(0.0);
+  EXPECT_TRUE(some.takes_all(internal::kFewMaps));
+  EXPECT_FALSE(some.takes_all(internal::kFewMaps + 1));
+  EXPECT_TRUE(none.takes_all(100000));
+  EXPECT_TRUE(hidden.takes_all(100000));
+}
+
+TEST(PairChoice, AShareThatMakesNoSenseIsRefused) {
+  EXPECT_THROW(merge({}, options(-0.1)), std::invalid_argument);
+  EXPECT_THROW(merge({}, options(1.0)), std::invalid_argument);
+  EXPECT_THROW(merge({}, options(std::numeric_limits<double>::quiet_NaN())), std::invalid_argument);
+}
+
+TEST(PairChoice, FewerPairsMakeTheSameMapsWhateverTheOrderAndTheThreads) {
+  const Fleet fleet(60);
+  const std::vector<std::size_t> order = in_order(60);
+  std::size_t of_all = 0, of_some = 0;
+  MergeOptions all = options(0.0), some = options(0.5), one_thread = options(0.5, 1);
+  for (MergeOptions* each : {&all, &some, &one_thread}) each->max_false_joins = 1.0;
+  const MergeResult expected = merge_of(fleet, order, all, &of_all);
+  const MergeResult result = merge_of(fleet, order, some, &of_some);
+  EXPECT_EQ(of_all, 60u * 59u / 2u);
+  EXPECT_LT(of_some, of_all);
+  EXPECT_EQ(result.joins.size(), of_some);
+  EXPECT_EQ(parts_of(expected, order).size(), 30u);
+  EXPECT_EQ(parts_of(result, order), parts_of(expected, order));
+  expect_same(merge_of(fleet, order, one_thread), result);
+
+  std::vector<std::size_t> shuffled = order;
+  std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(5));
+  const MergeResult other = merge_of(fleet, shuffled, some);
+  EXPECT_EQ(parts_of(other, shuffled), parts_of(result, order));
+  std::set<std::pair<std::size_t, std::size_t>> pairs, other_pairs;
+  for (const Join& join : result.joins) pairs.insert({join.fixed, join.moving});
+  for (const Join& join : other.joins)
+    other_pairs.insert(std::minmax(shuffled[join.fixed], shuffled[join.moving]));
+  EXPECT_EQ(other_pairs, pairs);
+}
+
+TEST(PairChoice, ManyMapsHaveABudgetOfFalseJoinsForEveryFifty) {
+  const Fleet fleet(100);
+  const auto joined = [&](std::size_t maps, double budget) {
+    MergeOptions some = options(0.5);
+    some.max_false_joins = budget;
+    const MergeResult result = merge_of(fleet, in_order(maps), some);
+    EXPECT_LE(result.expected_false_joins, budget * std::max(1.0, static_cast<double>(maps) / 50.0));
+    return result.components.size();
+  };
+  // Each of these joins of two is false in more than one of 100 cases, by what is believed of them.
+  const std::size_t of_few = joined(internal::kFewMaps, 0.5);
+  EXPECT_EQ(of_few, 25u);
+  EXPECT_EQ(joined(100, 0.5), 2 * of_few);
+  EXPECT_EQ(joined(100, 0.0), 0u);
+}
+
+TEST(PairChoice, HostileMapsAmongManyAreLeftOut) {
+  Fleet fleet(48);
+  const std::size_t good = fleet.maps.size();
+  fleet.maps.push_back(make_grid(50, 50, 0.05));
+  fleet.maps.push_back(make_grid(50, 50, 0.05, {}, Cell::free));
+  fleet.maps.push_back(make_grid(50, 50, 0.05, {}, Cell::occupied));
+  fleet.maps.push_back(make_grid(1, 1, 0.05));
+  fleet.maps.push_back(fleet.maps[0]);  // a copy
+  const MergeResult result = merge(fleet.maps, options(0.9));
+  for (std::size_t map = good; map < good + 4; ++map) {
+    EXPECT_TRUE(std::any_of(result.left_out.begin(), result.left_out.end(), [&](const LeftOut& one) {
+      return one.map == map;
+    })) << map;
+  }
+  const auto of_copy =
+      std::find_if(result.components.begin(), result.components.end(), [&](const Component& one) {
+        return std::any_of(one.members.begin(), one.members.end(),
+                           [&](const Member& member) { return member.map == good + 4; });
+      });
+  ASSERT_NE(of_copy, result.components.end());
+  EXPECT_EQ(of_copy->members.front().map, 0u);
+}
+
+}  // namespace
+}  // namespace gridmerge

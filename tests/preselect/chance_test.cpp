@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "preselect/chance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "grid/logistic.hpp"
+
+namespace gridmerge::internal {
+namespace {
+
+/// Log-odds as a model that is right for a share of 0.0024 would give them, of a set with another share.
+std::vector<float> drawn(std::size_t joined, std::size_t unrelated) {
+  std::mt19937 random(7);
+  // Two normal distributions of one width: their log-likelihood ratio is linear.
+  const double apart = 4.0;
+  std::normal_distribution<double> normal;
+  std::vector<float> log_odds;
+  const auto add = [&](double mean) {
+    const double x = mean + normal(random);
+    log_odds.push_back(
+        static_cast<float>(apart * x - apart * apart / 2.0 + std::log(0.002372 / (1.0 - 0.002372))));
+  };
+  for (std::size_t i = 0; i < joined; ++i) add(apart);
+  for (std::size_t i = 0; i < unrelated; ++i) add(0.0);
+  return log_odds;
+}
+
+TEST(Chance, ProbabilitiesFitASetInWhichJoinsAreRarerOrMoreCommon) {
+  for (const std::size_t unrelated : {500, 5000, 200000}) {
+    const std::vector<float> log_odds = drawn(100, unrelated);
+    const double shift = shift_to_this_set(log_odds);
+    double expected = 0.0;
+    for (const float one : log_odds) expected += logistic(one + shift);
+    EXPECT_NEAR(expected, 100.0, 15.0) << unrelated;
+  }
+}
+
+TEST(Chance, NoPairsNeedNoShift) {
+  EXPECT_EQ(shift_to_this_set({}), 0.0);
+}
+
+TEST(Chance, ASetWithoutJoinsExpectsNone) {
+  const std::vector<float> log_odds = drawn(0, 5000);
+  const double shift = shift_to_this_set(log_odds);
+  double expected = 0.0;
+  for (const float one : log_odds) expected += logistic(one + shift);
+  EXPECT_LT(expected, 3.0);
+  EXPECT_TRUE(std::isfinite(shift));
+}
+
+TEST(Chance, MoreWallsThatMeetAreMoreLikelyOfOnePlace) {
+  Signature map;
+  map.wall_length = 100.0;
+  SignatureMatch match;
+  match.seen = 60.0;
+  match.chance = 8.0;
+  double last = -1e9;
+  for (double met = 0.0; met <= 60.0; met += 10.0) {
+    match.met = met;
+    const double next = log_odds_of_joining(match, map, map);
+    EXPECT_GT(next, last);
+    last = next;
+  }
+  match.votes = 5.0;
+  EXPECT_GT(log_odds_of_joining(match, map, map), last);
+}
+
+TEST(Chance, AFirstLookThatThinksMorePromisesMore) {
+  EXPECT_GT(log_odds_after_a_look(0.0, 0.9), log_odds_after_a_look(0.0, 0.1));
+  EXPECT_GT(log_odds_after_a_look(2.0, 0.1), log_odds_after_a_look(-2.0, 0.1));
+  EXPECT_TRUE(std::isfinite(log_odds_after_a_look(0.0, 0.0)));
+  EXPECT_TRUE(std::isfinite(log_odds_after_a_look(0.0, 1.0)));
+}
+
+}  // namespace
+}  // namespace gridmerge::internal
