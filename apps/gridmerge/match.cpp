@@ -114,15 +114,15 @@ Answer match_files(const MatchCommandOptions& options) {
   MapReader reader(options.load, console);
   const LoadedMap fixed = reader.read(options.fixed);
   const LoadedMap moving = reader.read(options.moving);
+  if (options.scaled()) {
+    check_walls(options.fixed, fixed.grid);
+    check_walls(options.moving, moving.grid);
+  }
   reader.tell_warnings();
   if (!options.search.trace.empty()) {
     std::vector<std::filesystem::path> inputs = fixed.files;
     inputs.insert(inputs.end(), moving.files.begin(), moving.files.end());
     try_output_file(options.search.trace, inputs);
-  }
-  if (options.scaled()) {
-    check_walls(options.fixed, fixed.grid);
-    check_walls(options.moving, moving.grid);
   }
   PairMatcher matcher(options.common, options.search,
                       [&](double share) { console.progress("matching", share); });
@@ -167,7 +167,7 @@ void add_match(CLI::App& app, Action& action) {
       "The transform takes points of MOVING to FIXED, in metres and radians of the map frames.\n"
       "It is given for a refused pair too; the exit code is 3 then.\n\n"
       "Example:\n  gridmerge match robot1.yaml robot2.yaml\n  gridmerge match team.mcap#/tb1/map "
-      "team.mcap#/tb2/map\n  gridmerge match robot1.yaml layout.png --resolution 0.05 --scale 0.5:2");
+      "team.mcap#/tb2/map\n  gridmerge match robot1.yaml layout.yaml --scale 0.5:2");
   command->callback([options, &action] { action = [options] { return run_match(*options); }; });
 }
 

@@ -34,6 +34,9 @@ class FirstSteps : public testing::Test {
     directory.write("team.mcap", mcap_file({record("/tb1/map", 1, maps[0]), record("/tb2/map", 2, maps[1]),
                                             record("/tb3/map", 3, maps[2])}));
     write_map(directory, "other", draw_building(2));
+    OccupancyGrid layout = building;  // an architect's, who drew it smaller
+    layout.resolution *= 0.8;
+    write_map(directory, "layout", layout);
     const std::string first = names[0] + ".yaml", second = names[1] + ".yaml";
     directory.write("poses.tsv",
                     "map\tx\ty\ttheta\n" + first + "\t0\t0\t0\n" + second + "\t1.25\t-3\t0.52\n");

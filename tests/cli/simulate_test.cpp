@@ -53,7 +53,7 @@ TEST_F(Simulate, ASeedGivesTheSameFiles) {
     EXPECT_EQ(bytes_of(entry.path()), bytes_of(std::filesystem::path(output("b")) / entry.path().filename()));
     ++files;
   }
-  EXPECT_EQ(files, 2U * 2U + 2U + 2U + 3U);  // two robots, one elsewhere, the building, three tables
+  EXPECT_EQ(files, 2U * 2U + 2U + 2U + 4U);  // two robots, one elsewhere, the building, four tables
 }
 
 TEST_F(Simulate, WhatCannotBeHadIsAnErrorAndWritesNothing) {
