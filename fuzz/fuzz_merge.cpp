@@ -57,9 +57,8 @@ void require_sound(const MergeResult& result, const std::vector<OccupancyGrid>& 
 bool are_same(const MergeResult& a, const MergeResult& b) {
   const auto same_member = [](const Member& one, const Member& other) {
     return one.map == other.map && one.T_component_map == other.T_component_map &&
-           one.deformation == other.deformation &&
-           one.probability == other.probability && one.sd->position == other.sd->position &&
-           one.sd->theta == other.sd->theta;
+           one.deformation == other.deformation && one.probability == other.probability &&
+           one.sd->position == other.sd->position && one.sd->theta == other.sd->theta;
   };
   return a.left_out == b.left_out && a.expected_false_joins == b.expected_false_joins &&
          std::ranges::equal(a.components, b.components, [&](const Component& one, const Component& other) {

@@ -32,7 +32,7 @@ struct Round {
 /// cheap, and the rest is climbed from.
 std::array<Round, 4> rounds_by_amount(double coarse, const RefineOptions& options) {
   return {{
-      {150, kAll, 0.0, 1.0, 0.35, 0.0},                   // score only
+      {150, kAll, 0.0, 1.0, 0.35, 0.0},                  // score only
       {200, 75, 0.5, coarse / 4.0, 0.35, coarse / 4.0},  // into the basin
       {400, 30, 0.25, 1.0, 0.0, coarse / 2.0},           // the error model settles
       {1000, 2 * options.max_poses, 0.25, 0.25, 0.0, options.distinct},

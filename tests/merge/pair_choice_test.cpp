@@ -157,7 +157,14 @@ TEST(PairChoice, HostileMapsAmongManyAreLeftOut) {
   fleet.maps.push_back(make_grid(50, 50, 0.05, {}, Cell::occupied));
   fleet.maps.push_back(make_grid(1, 1, 0.05));
   fleet.maps.push_back(fleet.maps[0]);  // a copy
-  const MergeResult result = merge(fleet.maps, options(0.9));
+  Merger merger = merger_of(fleet.maps, options(0.9));
+  for (std::vector<DueMatch> due = merger.due(); !due.empty(); due = merger.due()) {
+    for (const DueMatch& one : due) {
+      const bool both_good = std::max(one.fixed, one.moving) < good;
+      merger.hand_in(one, both_good ? fleet.match(one.fixed, one.moving) : merger.make(one));
+    }
+  }
+  const MergeResult result = merger.solve();
   for (std::size_t map = good; map < good + 4; ++map) {
     EXPECT_TRUE(std::any_of(result.left_out.begin(), result.left_out.end(), [&](const LeftOut& one) {
       return one.map == map;
