@@ -359,5 +359,11 @@ TEST(Merge, EmptyMapsAreNoCopiesOfEachOther) {
   EXPECT_TRUE(merge({empty, empty}).components.empty());
 }
 
+TEST(Merge, SearchesNoScales) {
+  MergeOptions options;
+  options.match.scales = ScaleRange{0.5, 2.0};
+  EXPECT_THROW(merge({}, options), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace gridmerge

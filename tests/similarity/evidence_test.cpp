@@ -155,7 +155,7 @@ RC_GTEST_PROP(WallEvidence, OfAScaleIsTheSumOverWallsThatAreMovedByIt, (unsigned
   }
   const Evidence found = WallEvidence(fixed, moving, kAll)(T, 0.0, scale);
   // A wall on the edge of a cell may fall to either side of it, as floats round.
-  RC_ASSERT(std::abs(found.score - best) < 12.0 + 1e-5 * std::abs(best));
+  RC_ASSERT(std::abs(found.score - best) < 3.0 + 1e-5 * std::abs(best));
 }
 
 RC_GTEST_PROP(WallEvidence, IsTheSameFromEitherSide, (unsigned seed)) {
