@@ -19,12 +19,11 @@
 #include "console.hpp"
 #include "exports.hpp"
 #include "gridmerge/bag/any_map.hpp"
-#include "gridmerge/merge/doubled_walls.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "known_poses.hpp"
-#include "report/wording.hpp"
+#include "merge_summary.hpp"
 #include "scale_hint.hpp"
 #include "search_options.hpp"
 
@@ -144,97 +143,6 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
   }
 }
 
-/// What is asked of a pair.
-const char* figure_name(const SearchOptions& search) {
-  return search.random_walk() ? "acceptance index" : "probability";
-}
-
-std::string describe_joins(const MergeCommandOptions& options, const MergeResult& result) {
-  const std::vector<std::string>& names = options.maps;
-  std::string text;
-  for (const Join& join : result.joins) {
-    fmt::format_to(std::back_inserter(text), "{:<8} {} {:.4f}, {:.3f} s: {} and {}\n", name_of(join.outcome),
-                   figure_name(options.search), join.probability, join.match.seconds,
-                   escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
-  }
-  return text;
-}
-
-/// The head of a result that holds no merged map. What became of known poses comes first: who gives them
-/// wants them used.
-std::string describe_nothing(const MergeCommandOptions& options, const MergeResult& result,
-                             const std::string& unused_poses) {
-  std::string text = fmt::format("nothing was merged: no two of the {} maps fit together surely enough\n{}",
-                                 options.maps.size(), unused_poses);
-  const auto out = std::back_inserter(text);
-  const auto nearest =
-      std::max_element(result.joins.begin(), result.joins.end(),
-                       [](const Join& a, const Join& b) { return a.probability < b.probability; });
-  if (nearest != result.joins.end()) {
-    const std::string fixed = escape_controls(options.maps[nearest->fixed]);
-    const std::string moving = escape_controls(options.maps[nearest->moving]);
-    fmt::format_to(out, "nearest to it: {} and {}, {} {:.4f}\n", fixed, moving, figure_name(options.search),
-                   nearest->probability);
-    fmt::format_to(out, "try: gridmerge match {} {}   (how these two may lie, and why it is not believed)\n",
-                   fixed, moving);
-  }
-  if (options.search.up_the_tree()) return text + "     a lower --accept asks for less\n";
-  return text +
-         "     a lower --accept or a higher --max-false-joins asks for less\n"
-         "     --init TABLE and --fix MAP take poses that you know; the page lays maps by hand\n";
-}
-
-/// How maps that lie apart may lie together, the most probable ways.
-std::string describe_open_ways(const std::vector<std::string>& names, const MergeResult& result) {
-  constexpr std::size_t kMaxTold = 6;
-  std::string text;
-  const auto out = std::back_inserter(text);
-  for (std::size_t i = 0; i < std::min(result.open_ways.size(), kMaxTold); ++i) {
-    const OpenWay& way = result.open_ways[i];
-    fmt::format_to(out, "perhaps: {} in the frame of {} at {} (probability {:.2f})\n",
-                   escape_controls(names[way.moving]), escape_controls(names[way.fixed]),
-                   describe_pose(way.T_fixed_moving), way.probability);
-  }
-  if (result.open_ways.size() > kMaxTold)
-    fmt::format_to(out, "and {} more such ways: see transforms.json\n", result.open_ways.size() - kMaxTold);
-  return text;
-}
-
-std::string describe(const MergeCommandOptions& options, const MergeResult& result,
-                     const std::string& unused_poses) {
-  const std::vector<std::string>& names = options.maps;
-  std::string text =
-      result.components.empty() ? describe_nothing(options, result, unused_poses) : std::string();
-  const auto out = std::back_inserter(text);
-  for (std::size_t i = 0; i < result.components.size(); ++i) {
-    const Component& component = result.components[i];
-    fmt::format_to(out, "{}: {} of {} maps\n", component_file(i), component.members.size(), names.size());
-    for (const Member& member : component.members) {
-      fmt::format_to(out, "  {}: {}\n", escape_controls(names[member.map]),
-                     describe_pose(member.T_component_map));
-    }
-  }
-  if (result.expected_false_joins && !result.components.empty())
-    fmt::format_to(out, "of these joins, {:.3f} are expected to be false\n", *result.expected_false_joins);
-  for (const LeftOut& one : result.left_out)
-    fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain_left_out(result, one));
-  text += describe_open_ways(names, result);
-  for (const Join& join : result.joins) {
-    const std::string pair =
-        fmt::format("{} and {}", escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
-    if (join.outcome == JoinOutcome::rescued)
-      fmt::format_to(out, "rescued: {}, {:.3f} by themselves, but the other maps or known poses agree\n",
-                     pair, join.probability);
-    if (join.outcome == JoinOutcome::rejected)
-      fmt::format_to(out, "rejected: {}, {:.3f} by themselves, but the others contradict\n", pair,
-                     join.probability);
-    if (join.outcome == JoinOutcome::known)
-      fmt::format_to(out, "known: {}, from their initial poses\n", pair);
-  }
-  if (!result.components.empty()) text += unused_poses;
-  return text;
-}
-
 /// Of the first maps that were left out: whether they fit the largest merged map, or where there is none
 /// another map, at another scale.
 std::string scale_hints(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
@@ -253,22 +161,6 @@ std::string scale_hints(const MergeCommandOptions& options, const std::vector<Oc
     ++asked;
     console.progress("trying other scales");
     text += scale_hint(fixed, {options.maps[map], maps[map]}, match_options(options.common, options.search));
-  }
-  return text;
-}
-
-/// How many walls lie double, and what may help: where it is asked for, or there are many.
-std::string describe_doubled(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
-                             const MergeResult& result) {
-  if (options.search.up_the_tree()) return {};
-  std::string text;
-  for (std::size_t i = 0; i < result.components.size(); ++i) {
-    const double share = measure_doubled_walls(maps, result.components[i]).share();
-    const bool may_help = !options.elastic && share >= kManyDoubled;
-    if (!may_help && !options.common.verbose) continue;
-    fmt::format_to(std::back_inserter(text), "{}: {:.1f} % of the walls that several maps saw lie double{}\n",
-                   component_file(i), 100.0 * share,
-                   may_help ? "; --elastic bends maps so that they fit better" : "");
   }
   return text;
 }
@@ -308,11 +200,12 @@ int run_merge(const MergeCommandOptions& options) {
   console.progress("writing the result");
   write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   matcher.write_trace();
-  const std::string hints =
-      scale_hints(options, inputs.maps, result, console) + describe_doubled(options, inputs.maps, result);
+  const AskedMerge asked{options.maps, options.search, options.elastic};
+  const std::string hints = scale_hints(options, inputs.maps, result, console) +
+                            describe_doubled(asked, inputs.maps, result, options.common.verbose);
   console.clear();
-  if (options.common.verbose) print(describe_joins(options, result));
-  print(describe(options, result, known_poses.describe_unused(inputs.maps, result)) + hints);
+  if (options.common.verbose) print(describe_joins(asked, result));
+  print(describe_merge(asked, result, known_poses.describe_unused(inputs.maps, result)) + hints);
   const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
   print("look at it: " + escape_controls(page.string()) + "\n");
   print(write_exports(exports, inputs.files, {options.maps, inputs.maps, result}));

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "merge_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "console.hpp"
+#include "gridmerge/merge/doubled_walls.hpp"
+#include "gridmerge/report/json.hpp"
+#include "report/wording.hpp"
+
+namespace gridmerge::cli {
+
+using namespace internal;
+
+namespace {
+
+/// What is asked of a pair.
+const char* figure_name(const SearchOptions& search) {
+  return search.random_walk() ? "acceptance index" : "probability";
+}
+
+/// The head of a result that holds no merged map. What became of known poses comes first: who gives them
+/// wants them used.
+std::string describe_nothing(const AskedMerge& asked, const MergeResult& result,
+                             const std::string& unused_poses) {
+  std::string text = fmt::format("nothing was merged: no two of the {} maps fit together surely enough\n{}",
+                                 asked.names.size(), unused_poses);
+  const auto out = std::back_inserter(text);
+  const auto nearest =
+      std::max_element(result.joins.begin(), result.joins.end(),
+                       [](const Join& a, const Join& b) { return a.probability < b.probability; });
+  if (nearest != result.joins.end()) {
+    const std::string fixed = escape_controls(asked.names[nearest->fixed]);
+    const std::string moving = escape_controls(asked.names[nearest->moving]);
+    fmt::format_to(out, "nearest to it: {} and {}, {} {:.4f}\n", fixed, moving, figure_name(asked.search),
+                   nearest->probability);
+    fmt::format_to(out, "try: gridmerge match {} {}   (how these two may lie, and why it is not believed)\n",
+                   fixed, moving);
+  }
+  if (asked.search.up_the_tree()) return text + "     a lower --accept asks for less\n";
+  return text +
+         "     a lower --accept or a higher --max-false-joins asks for less\n"
+         "     --init TABLE and --fix MAP take poses that you know; the page lays maps by hand\n";
+}
+
+/// How maps that lie apart may lie together, the most probable ways.
+std::string describe_open_ways(const std::vector<std::string>& names, const MergeResult& result) {
+  constexpr std::size_t kMaxTold = 6;
+  std::string text;
+  const auto out = std::back_inserter(text);
+  for (std::size_t i = 0; i < std::min(result.open_ways.size(), kMaxTold); ++i) {
+    const OpenWay& way = result.open_ways[i];
+    fmt::format_to(out, "perhaps: {} in the frame of {} at {} (probability {:.2f})\n",
+                   escape_controls(names[way.moving]), escape_controls(names[way.fixed]),
+                   describe_pose(way.T_fixed_moving), way.probability);
+  }
+  if (result.open_ways.size() > kMaxTold)
+    fmt::format_to(out, "and {} more such ways: see transforms.json\n", result.open_ways.size() - kMaxTold);
+  return text;
+}
+
+/// Whether any map is.
+bool is_bent(const MergeResult& result) {
+  return std::any_of(result.components.begin(), result.components.end(), [](const Component& component) {
+    return std::any_of(component.members.begin(), component.members.end(),
+                       [](const Member& member) { return !member.deformation.is_identity(); });
+  });
+}
+
+}  // namespace
+
+std::string describe_joins(const AskedMerge& asked, const MergeResult& result) {
+  const std::vector<std::string>& names = asked.names;
+  std::string text;
+  for (const Join& join : result.joins) {
+    fmt::format_to(std::back_inserter(text), "{:<8} {} {:.4f}, {:.3f} s: {} and {}\n", name_of(join.outcome),
+                   figure_name(asked.search), join.probability, join.match.seconds,
+                   escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
+  }
+  return text;
+}
+
+std::string describe_merge(const AskedMerge& asked, const MergeResult& result,
+                           const std::string& unused_poses) {
+  const std::vector<std::string>& names = asked.names;
+  std::string text =
+      result.components.empty() ? describe_nothing(asked, result, unused_poses) : std::string();
+  const auto out = std::back_inserter(text);
+  for (std::size_t i = 0; i < result.components.size(); ++i) {
+    const Component& component = result.components[i];
+    fmt::format_to(out, "{}: {} of {} maps\n", component_file(i), component.members.size(), names.size());
+    for (const Member& member : component.members) {
+      const std::string bent =
+          member.deformation.is_identity()
+              ? std::string()
+              : fmt::format(", bent by up to {:.2f} m", member.deformation.shift_bound());
+      fmt::format_to(out, "  {}: {}{}\n", escape_controls(names[member.map]),
+                     describe_pose(member.T_component_map), bent);
+    }
+  }
+  if (asked.elastic && !result.components.empty() && !is_bent(result))
+    text += "no map is bent: by what they say, bending would bring their walls no nearer\n";
+  if (result.expected_false_joins && !result.components.empty())
+    fmt::format_to(out, "of these joins, {:.3f} are expected to be false\n", *result.expected_false_joins);
+  for (const LeftOut& one : result.left_out)
+    fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain_left_out(result, one));
+  text += describe_open_ways(names, result);
+  for (const Join& join : result.joins) {
+    const std::string pair =
+        fmt::format("{} and {}", escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
+    if (join.outcome == JoinOutcome::rescued)
+      fmt::format_to(out, "rescued: {}, {:.3f} by themselves, but the other maps or known poses agree\n",
+                     pair, join.probability);
+    if (join.outcome == JoinOutcome::rejected)
+      fmt::format_to(out, "rejected: {}, {:.3f} by themselves, but the others contradict\n", pair,
+                     join.probability);
+    if (join.outcome == JoinOutcome::known)
+      fmt::format_to(out, "known: {}, from their initial poses\n", pair);
+  }
+  if (!result.components.empty()) text += unused_poses;
+  return text;
+}
+
+std::string describe_doubled(const AskedMerge& asked, const std::vector<OccupancyGrid>& maps,
+                             const MergeResult& result, bool is_asked_for) {
+  if (asked.search.up_the_tree()) return {};
+  std::string text;
+  for (std::size_t i = 0; i < result.components.size(); ++i) {
+    const double share = measure_doubled_walls(maps, result.components[i]).share();
+    const bool may_help = !asked.elastic && share >= kManyDoubled;
+    if (!may_help && !is_asked_for) continue;
+    fmt::format_to(std::back_inserter(text), "{}: {:.1f} % of the walls that several maps saw lie double{}\n",
+                   component_file(i), 100.0 * share,
+                   may_help ? "; --elastic bends maps so that they fit better" : "");
+  }
+  return text;
+}
+
+}  // namespace gridmerge::cli

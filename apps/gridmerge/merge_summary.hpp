@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gridmerge/merge/merge.hpp"
+#include "search_options.hpp"
+
+namespace gridmerge::cli {
+
+/// What was asked of a merge, as far as its summary tells of it. Not owned.
+struct AskedMerge {
+  const std::vector<std::string>& names;  ///< of the maps
+  const SearchOptions& search;
+  bool elastic = false;
+};
+
+/// What became of each comparison, a line each.
+std::string describe_joins(const AskedMerge& asked, const MergeResult& result);
+
+/// The merged maps and their members, what was left out and why, and what else a person should know.
+/// `unused_poses` tells of known poses that played no part; "" if there are none.
+std::string describe_merge(const AskedMerge& asked, const MergeResult& result,
+                           const std::string& unused_poses);
+
+/// How many walls lie double, and what may help: where it is asked for, or there are many. O(cells).
+std::string describe_doubled(const AskedMerge& asked, const std::vector<OccupancyGrid>& maps,
+                             const MergeResult& result, bool is_asked_for);
+
+}  // namespace gridmerge::cli
