@@ -4,7 +4,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arguments, _core
+from . import _arguments
+from ._core import Deformation as Core
 from ._transform import PoseLike, Transform, to_pose
 
 
@@ -16,7 +17,7 @@ class Deformation:
     """
 
     __slots__ = ("_core",)
-    _core: _core.Deformation
+    _core: Core
 
     def __init__(self, frame: PoseLike, spacing: float, shifts: ArrayLike) -> None:
         """By a lattice in a map's frame.
@@ -33,7 +34,7 @@ class Deformation:
         if given.ndim != 3 or given.shape[2] != 2:
             raise ValueError(f"shifts: must be of shape (rows, columns, 2), is {given.shape}")
         rows, columns, _ = given.shape
-        self._core = _core.Deformation(
+        self._core = Core(
             to_pose("frame", frame),
             _arguments.number("spacing", spacing),
             columns,
@@ -42,7 +43,7 @@ class Deformation:
         )
 
     @classmethod
-    def _of(cls, core: _core.Deformation) -> Deformation:
+    def _of(cls, core: Core) -> Deformation:
         made = cls.__new__(cls)
         made._core = core
         return made

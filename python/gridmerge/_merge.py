@@ -274,8 +274,8 @@ def merge(
             0.98 if None.
         max_false_joins: so many joins of the whole merge may be expected to be false, or of more than 50 maps for every
             50; those that are least sure are not made. It holds beside `accept`. "tree" does not use it.
-        max_missed: of more than 50 maps match likely pairs only: the others may hide this share of all joins, 0.25 or so.
-            Up to 0.2 all pairs are matched. "tree" does not use it.
+        max_missed: of more than 50 maps match likely pairs only: the others may hide this share of all joins, 0.25 or
+            so. Up to 0.2 all pairs are matched. "tree" does not use it.
         output_resolution: of the merged maps [m]; None = the finest of the maps'.
         elastic: whether maps are bent so that walls that several have seen come to lie on each other: for maps that
             drift has bent. See Member.deformation. Fixed maps stay straight. It changes neither which maps join nor

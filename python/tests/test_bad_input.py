@@ -285,7 +285,7 @@ def test_an_uninitialised_core_object_is_no_crash() -> None:
         _core.Grid()
     empty = _core.Grid.__new__(_core.Grid)
     with pytest.raises(TypeError):
-        _core.match(empty, empty, 0, 0.8, 10, "quick", None)
+        _core.match(empty, empty, 0, 0.8, 10, "quick", None, None)
 
 
 def test_an_array_that_is_no_map_names_the_remedy() -> None:
