@@ -205,7 +205,7 @@ int run_merge(const MergeCommandOptions& options) {
                             describe_doubled(asked, inputs.maps, result, options.common.verbose);
   console.clear();
   if (options.common.verbose) print(describe_joins(asked, result));
-  print(describe_merge(asked, result, known_poses.describe_unused(inputs.maps, result)) + hints);
+  print(describe_merge(asked, inputs.maps, result, known_poses.describe_unused(inputs.maps, result)) + hints);
   const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
   print("look at it: " + escape_controls(page.string()) + "\n");
   print(write_exports(exports, inputs.files, {options.maps, inputs.maps, result}));

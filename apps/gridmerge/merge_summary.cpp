@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "console.hpp"
@@ -62,7 +63,22 @@ std::string describe_open_ways(const std::vector<std::string>& names, const Merg
   return text;
 }
 
-/// Whether any map is.
+/// How far a map's known cells are shifted at most, by some of them [m].
+double most_bent(const OccupancyGrid& map, const Deformation& deformation) {
+  constexpr int kLookedAt = 200;  // along a side
+  const int step = std::max(1, std::max(map.width, map.height) / kLookedAt);
+  double most = 0.0;
+  for (int row = 0; row < map.height; row += step) {
+    for (int column = 0; column < map.width; column += step) {
+      if (map.at(column, row) == Cell::unknown) continue;
+      const Point2 straight = map.cell_centre(column, row), bent = deformation.bend(straight);
+      most = std::max(most, std::hypot(bent.x - straight.x, bent.y - straight.y));
+    }
+  }
+  return most;
+}
+
+/// Whether any map is bent.
 bool is_bent(const MergeResult& result) {
   return std::any_of(result.components.begin(), result.components.end(), [](const Component& component) {
     return std::any_of(component.members.begin(), component.members.end(),
@@ -83,8 +99,8 @@ std::string describe_joins(const AskedMerge& asked, const MergeResult& result) {
   return text;
 }
 
-std::string describe_merge(const AskedMerge& asked, const MergeResult& result,
-                           const std::string& unused_poses) {
+std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyGrid>& maps,
+                           const MergeResult& result, const std::string& unused_poses) {
   const std::vector<std::string>& names = asked.names;
   std::string text =
       result.components.empty() ? describe_nothing(asked, result, unused_poses) : std::string();
@@ -96,7 +112,7 @@ std::string describe_merge(const AskedMerge& asked, const MergeResult& result,
       const std::string bent =
           member.deformation.is_identity()
               ? std::string()
-              : fmt::format(", bent by up to {:.2f} m", member.deformation.shift_bound());
+              : fmt::format(", bent by up to {:.1f} m", most_bent(maps[member.map], member.deformation));
       fmt::format_to(out, "  {}: {}{}\n", escape_controls(names[member.map]),
                      describe_pose(member.T_component_map), bent);
     }

@@ -21,8 +21,8 @@ std::string describe_joins(const AskedMerge& asked, const MergeResult& result);
 
 /// The merged maps and their members, what was left out and why, and what else a person should know.
 /// `unused_poses` tells of known poses that played no part; "" if there are none.
-std::string describe_merge(const AskedMerge& asked, const MergeResult& result,
-                           const std::string& unused_poses);
+std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyGrid>& maps,
+                           const MergeResult& result, const std::string& unused_poses);
 
 /// How many walls lie double, and what may help: where it is asked for, or there are many. O(cells).
 std::string describe_doubled(const AskedMerge& asked, const std::vector<OccupancyGrid>& maps,
