@@ -96,12 +96,13 @@ Tally tally_both(const Signature& fixed, const Signature& moving, const Pose& T,
 std::vector<Proposal> most_alike(const Signature& fixed, const Signature& moving) {
   const std::size_t count = moving.descriptors.size();
   std::vector<Proposal> all;
+  if (count == 0) return all;
   all.reserve(4 * fixed.descriptors.size() * count);
   std::vector<std::int32_t> products(count);
   for (int quarters = 0; quarters < 4; ++quarters) {
     for (std::size_t i = 0; i < fixed.descriptors.size(); ++i) {
       const Descriptor turned = quarter_turned(fixed.descriptors[i], quarters);
-      dot_products(turned.data(), moving.descriptors.data()->data(), count, products.data());
+      dot_products(turned.data(), moving.descriptors.front().data(), count, products.data());
       for (std::size_t j = 0; j < count; ++j) {
         if (products[j] > 0) all.push_back({products[j], static_cast<int>(i), static_cast<int>(j), quarters});
       }
