@@ -45,8 +45,9 @@ struct ScaleRange {
   double most = 1.0;   ///< the largest one, no less
 };
 
-/// Bounds of a ScaleRange: of both ends, and of one end by the other.
-inline constexpr double kMinScale = 1e-3, kMaxScale = 1e3, kMaxScaleRatio = 20.0;
+inline constexpr double kMinScale = 1e-3;       ///< the least end of a ScaleRange
+inline constexpr double kMaxScale = 1e3;        ///< the largest one
+inline constexpr double kMaxScaleRatio = 20.0;  ///< of a range's larger end by its smaller one
 
 /// Throws std::invalid_argument, with a message that begins with "scales", for a range that makes no sense.
 GRIDMERGE_EXPORT void validate(const ScaleRange& scales);
