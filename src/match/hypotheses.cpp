@@ -251,8 +251,12 @@ std::vector<PoseFigures> compared_figures(const std::vector<Hypothesis>& hypothe
 }
 
 void weigh(std::vector<Hypothesis>& hypotheses, const ComparedMaps& maps) {
-  std::vector<PoseFigures> figures = compared_figures(hypotheses, maps);
-  const std::vector<double> probabilities = probabilities_of(figures);
+  weigh_by(rigid_model(), compared_figures(hypotheses, maps), hypotheses);
+}
+
+void weigh_by(const VerdictModel& model, const std::vector<PoseFigures>& figures,
+              std::vector<Hypothesis>& hypotheses) {
+  const std::vector<double> probabilities = probabilities_of(figures, model);
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     hypotheses[i].figures = figures[i];
     hypotheses[i].probability = probabilities[i];

@@ -91,6 +91,10 @@ std::vector<PoseFigures> compared_figures(const std::vector<Hypothesis>& hypothe
 /// Gives each its probability, and sorts by it, best first.
 void weigh(std::vector<Hypothesis>& hypotheses, const ComparedMaps& maps);
 
+/// The same by a model, with the figures of each, in which its rivals are compared.
+void weigh_by(const VerdictModel& model, const std::vector<PoseFigures>& figures,
+              std::vector<Hypothesis>& hypotheses);
+
 /// The figures of each.
 std::vector<PoseFigures> figures_of(const std::vector<Hypothesis>& hypotheses);
 

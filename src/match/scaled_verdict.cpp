@@ -17,15 +17,6 @@ using F = PoseFigures;
 /// So many levels the model was fitted to: those of 0.5:2.
 constexpr double kFittedLevels = 48.0;
 
-/// -log of what is missing to all walls that meet.
-double met_locally(const F& f) {
-  return -std::log(std::max(0.0, 1.0 - f.walls_met_locally) + 0.05);
-}
-
-double how_held(const F& f) {
-  return std::log(std::max(f.held / std::max(f.held_most, 1.0), 0.03));
-}
-
 constexpr std::array kRankTerms{
     RankTerm{"evidence", "ln(score)", [](const F& f) { return std::log(std::max(f.score, 1.0)); }},
     RankTerm{"seen", "ln(seen_walls)", [](const F& f) { return std::log(std::max(f.seen_walls, 1.0)); }},
@@ -38,7 +29,8 @@ constexpr std::array kTerms{
     VerdictTerm{"held", "ln(held / held_most)", TermKind::amount, -3.5, 0.0, how_held},
     VerdictTerm{"stands out", "stands_out", TermKind::rivals, 0.0, 6.0,
                 [](const F& f) { return f.stands_out; }},
-    VerdictTerm{"met locally", "-ln(1.05 - walls_met_locally)", TermKind::quality, 0.0, 2.5, met_locally}};
+    VerdictTerm{"met locally", "-ln(1.05 - walls_met_locally)", TermKind::quality, 0.0, 2.5,
+                [](const F& f) { return missing(f.walls_met_locally, 0.05); }}};
 static_assert(kTerms.size() == kScaledWeights.size(), "each term has its weight");
 
 }  // namespace
@@ -54,13 +46,7 @@ void weigh_scaled(std::vector<Hypothesis>& hypotheses, std::size_t levels,
   std::vector<PoseFigures> figures = figures_of(hypotheses);
   compare_rivals(
       figures, [&](std::size_t a, std::size_t b) { return are_near(hypotheses[a], hypotheses[b]); }, model);
-  const std::vector<double> probabilities = probabilities_of(figures, model);
-  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-    hypotheses[i].figures = figures[i];
-    hypotheses[i].probability = probabilities[i];
-  }
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+  weigh_by(model, figures, hypotheses);
 }
 
 }  // namespace gridmerge::internal

@@ -12,14 +12,22 @@ namespace gridmerge::internal {
 
 namespace {
 
-/// -log of what is missing to 1; `floor` is what is missing from a perfect share.
+double logarithm(double value, double least) {
+  return std::log(std::max(value, least));
+}
+
+}  // namespace
+
 double missing(double share, double floor) {
   return -std::log(std::max(0.0, 1.0 - share) + floor);
 }
 
-double logarithm(double value, double least) {
-  return std::log(std::max(value, least));
+double how_held(const PoseFigures& f) {
+  constexpr double kMin = 0.03;
+  return logarithm(std::max(f.held, 0.0) / std::max(f.held_most, 1.0), kMin);
 }
+
+namespace {
 
 /// Things are few: their share counts as that of so many metres more, of which every third meets by chance.
 double things_share(const PoseFigures& f) {
@@ -27,12 +35,7 @@ double things_share(const PoseFigures& f) {
   return (f.things_met * f.seen_things + kByChance * kMetres) / (f.seen_things + kMetres);
 }
 
-/// How well the pose is held in its weakest direction, against its strongest. A corridor slides.
-double how_held(const PoseFigures& f) {
-  constexpr double kMin = 0.03;
-  return logarithm(std::max(f.held, 0.0) / std::max(f.held_most, 1.0), kMin);
-}
-constexpr double kSlides = -2.0;  // of it: less than an eighth
+constexpr double kSlides = -2.0;  // of how_held(): less than an eighth
 
 /// Of bent maps few walls can meet, even at the right pose. There a margin of the score tells that no pose of
 /// unrelated maps has: as far as the errors are those of bent maps, since of crisp ones of a symmetric floor

@@ -46,6 +46,11 @@ struct RankTerm {
   double (*value)(const PoseFigures&);
 };
 
+/// Parts of terms: -log of what is missing to 1, of which `floor` is missing from a perfect share; and how
+/// well a pose is held in its weakest direction, against its strongest (a corridor slides).
+double missing(double share, double floor);
+double how_held(const PoseFigures& figures);
+
 /// All of them, in the order of the ranking's weights.
 GRIDMERGE_INTERNAL_EXPORT std::span<const RankTerm> rank_terms();
 
