@@ -44,6 +44,11 @@ double damping(std::size_t size_a, std::size_t size_b) {
   return std::pow(1.0 - kShownByAnother, std::min(others, kMostOthers));
 }
 
+/// Where the pair of the maps a < b stands among all pairs, in the order (0, 1), (0, 2), ...
+std::size_t place_of_pair(std::size_t a, std::size_t b, std::size_t maps) {
+  return a * maps - a * (a + 1) / 2 + (b - a - 1);
+}
+
 double sum_of(const std::vector<double>& weights) {
   double sum = 0.0;
   for (const double weight : weights) sum += weight;
@@ -51,6 +56,15 @@ double sum_of(const std::vector<double>& weights) {
 }
 
 }  // namespace
+
+double PairChoice::order_by_weight(std::vector<Weighed>& pairs) {
+  std::sort(pairs.begin(), pairs.end(), [](const Weighed& x, const Weighed& y) {
+    return std::tuple(-x.weight, x.a, x.b) < std::tuple(-y.weight, y.a, y.b);
+  });
+  double sum = 0.0;
+  for (auto one = pairs.rbegin(); one != pairs.rend(); ++one) sum += one->weight;
+  return sum;
+}
 
 PairChoice::PairChoice(double max_missed) : max_shown_(std::max(0.0, max_missed - kHiddenShare)) {}
 
@@ -60,8 +74,7 @@ void PairChoice::forget(MapId id) {
 }
 
 float PairChoice::log_odds(std::size_t a, std::size_t b) const {
-  const std::size_t count = maps_.size();
-  return log_odds_[a * count - a * (a + 1) / 2 + (b - a - 1)];
+  return log_odds_[place_of_pair(a, b, maps_.size())];
 }
 
 void PairChoice::prepare(const MapStore& store, const std::vector<MapId>& maps) {
@@ -85,7 +98,7 @@ void PairChoice::prepare(const MapStore& store, const std::vector<MapId>& maps) 
   parallel_for(count, [&](std::size_t a) {
     for (std::size_t b = a + 1; b < count; ++b) {
       const Signature &moving = **signatures[a], &fixed = **signatures[b];  // the smaller map moves
-      log_odds[a * count - a * (a + 1) / 2 + (b - a - 1)] =
+      log_odds[place_of_pair(a, b, count)] =
           static_cast<float>(log_odds_of_joining(compare(fixed, moving), fixed, moving));
     }
   });
@@ -143,11 +156,7 @@ std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore
                       static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
     }
   }
-  std::sort(open.begin(), open.end(), [](const Weighed& x, const Weighed& y) {
-    return std::tuple(-x.weight, x.a, x.b) < std::tuple(-y.weight, y.a, y.b);
-  });
-  double rest = 0.0;
-  for (auto one = open.rbegin(); one != open.rend(); ++one) rest += one->weight;
+  double rest = order_by_weight(open);
   // Signatures expect too much where all maps look alike, and too little where none do: what was found of the
   // pairs that were looked at tells.
   const double found = std::clamp((static_cast<double>(consistent_set.used.size()) + 1.0) / (expected + 1.0),
@@ -217,11 +226,7 @@ std::vector<PairChoice::Pair> PairChoice::worth_a_second_look(const std::vector<
     open.push_back({logistic(after) * damping(sizes[a], sizes[b]), static_cast<std::uint32_t>(a),
                     static_cast<std::uint32_t>(b)});
   }
-  std::sort(open.begin(), open.end(), [](const Weighed& x, const Weighed& y) {
-    return std::tuple(-x.weight, x.a, x.b) < std::tuple(-y.weight, y.a, y.b);
-  });
-  double rest = 0.0;
-  for (auto one = open.rbegin(); one != open.rend(); ++one) rest += one->weight;
+  double rest = order_by_weight(open);
   const double all = static_cast<double>(consistent_set.used.size()) + rest;
   std::vector<Pair> pairs;
   for (const Weighed& one : open) {

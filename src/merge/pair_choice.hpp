@@ -63,6 +63,8 @@ class PairChoice {
     double weight;
     std::uint32_t a, b;  // places in maps_
   };
+  /// Largest weight first. Returns the sum of the weights.
+  static double order_by_weight(std::vector<Weighed>& pairs);
 
   float log_odds(std::size_t a, std::size_t b) const;
   std::vector<std::size_t> group_sizes(const ConsistentSet& consistent_set,
