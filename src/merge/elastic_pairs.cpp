@@ -27,8 +27,11 @@ struct SeenMap {
   SE2 T_map_group;
 };
 
-SeenMap see(const ElasticMember& member) {
-  return {member.sheet.deformation(), inverse(member.sheet.T_group_map())};
+std::vector<SeenMap> see_all(const std::vector<ElasticMember>& members) {
+  std::vector<SeenMap> seen;
+  for (const ElasticMember& member : members)
+    seen.push_back({member.sheet.deformation(), inverse(member.sheet.T_group_map())});
+  return seen;
 }
 
 Point2 turned(double theta, const Point2& p) {
@@ -133,8 +136,7 @@ void add_misfit(const ElasticMember& from, const ElasticMember& to, const SeenMa
 
 std::vector<std::pair<std::size_t, std::size_t>> pairs_that_meet(const std::vector<ElasticMember>& members,
                                                                  double reach) {
-  std::vector<SeenMap> seen;
-  for (const ElasticMember& member : members) seen.push_back(see(member));
+  const std::vector<SeenMap> seen = see_all(members);
   struct Meeting {
     std::size_t first, second;
     double share;
@@ -177,8 +179,7 @@ std::vector<std::pair<std::size_t, std::size_t>> pairs_that_meet(const std::vect
 std::vector<TiedPair> tie_walls(const std::vector<ElasticMember>& members,
                                 const std::vector<std::pair<std::size_t, std::size_t>>& pairs, double reach,
                                 double cell, const WallFold& fold) {
-  std::vector<SeenMap> seen;
-  for (const ElasticMember& member : members) seen.push_back(see(member));
+  const std::vector<SeenMap> seen = see_all(members);
   std::vector<double> count(members.size(), 0.0);
   for (const auto& [first, second] : pairs) {
     count[first] += 1.0;
@@ -208,8 +209,7 @@ double misfit_of_gap(double gap, double cell) {
 std::vector<PairMisfit> misfits_of(const std::vector<ElasticMember>& members,
                                    const std::vector<std::pair<std::size_t, std::size_t>>& pairs, double cell,
                                    const WallFold& fold) {
-  std::vector<SeenMap> seen;
-  for (const ElasticMember& member : members) seen.push_back(see(member));
+  const std::vector<SeenMap> seen = see_all(members);
   std::vector<PairMisfit> misfits(pairs.size());
   parallel_for(pairs.size(), [&](std::size_t i) {
     const auto& [first, second] = pairs[i];

@@ -33,11 +33,9 @@ double squared_distance(const Point2& a, const Point2& b) {
 /// The side a wall faces, or one of the two [map frame]. None where that is not known.
 std::optional<ElasticWall> facing_wall(const LikelihoodField& map, const WallPoint& wall) {
   if (wall.facing == kNoDirection) return std::nullopt;
-  const bool has_two_sides = is_axis(wall.facing);
-  const int parts = has_two_sides ? wall.facing - kDirections : wall.facing;
-  const double angle = 2.0 * std::numbers::pi * parts / kDirections + map.T_map_grid.theta;
+  const double angle = angle_of(wall.facing) + map.T_map_grid.theta;
   const Point2 at = map.T_map_grid * Point2{wall.position.x * map.cell, wall.position.y * map.cell};
-  return ElasticWall{at, {std::cos(angle), std::sin(angle)}, has_two_sides};
+  return ElasticWall{at, {std::cos(angle), std::sin(angle)}, is_axis(wall.facing)};
 }
 
 /// The direction across the line of these points, either way; none if they are no line.
@@ -68,6 +66,18 @@ bool faces_alike(const ElasticWall& a, const ElasticWall& b) {
   return (a.has_two_sides || b.has_two_sides ? std::abs(cosine) : cosine) > kAlike;
 }
 
+template <typename Visit>
+void ElasticWalls::for_each_about(const Point2& at, double reach, Visit visit) const {
+  const int left = std::max(0, static_cast<int>(std::floor((at.x - reach - corner_.x) / side_)));
+  const int right = std::min(columns_ - 1, static_cast<int>(std::floor((at.x + reach - corner_.x) / side_)));
+  const int bottom = std::max(0, static_cast<int>(std::floor((at.y - reach - corner_.y) / side_)));
+  const int top = std::min(rows_ - 1, static_cast<int>(std::floor((at.y + reach - corner_.y) / side_)));
+  for (int row = bottom; row <= top && left <= right; ++row) {
+    for (std::size_t i = begins_[bucket_of(left, row)]; i < begins_[bucket_of(right, row) + 1]; ++i)
+      visit(walls_[i]);
+  }
+}
+
 ElasticWalls::ElasticWalls(const LikelihoodField& map) {
   for (const WallPoint& wall : map.walls) {
     if (const auto facing = facing_wall(map, wall)) walls_.push_back(*facing);
@@ -81,21 +91,10 @@ ElasticWalls::ElasticWalls(const LikelihoodField& map) {
     if (i % 256 == 0) throw_if_cancelled();
     near.clear();
     const ElasticWall& wall = walls_[i];
-    const auto range = [&](double at, double corner, int count) {
-      const auto cell = [&](double value) {
-        return std::clamp(static_cast<int>(std::floor((value - corner) / side_)), 0, count - 1);
-      };
-      return std::pair(cell(at - reach), cell(at + reach));
-    };
-    const auto [left, right] = range(wall.position.x, corner_.x, columns_);
-    const auto [bottom, top] = range(wall.position.y, corner_.y, rows_);
-    for (int row = bottom; row <= top; ++row) {
-      for (std::size_t j = begins_[bucket_of(left, row)]; j < begins_[bucket_of(right, row) + 1]; ++j) {
-        if (squared_distance(walls_[j].position, wall.position) <= reach * reach &&
-            faces_alike(walls_[j], wall))
-          near.push_back(walls_[j].position);
-      }
-    }
+    for_each_about(wall.position, reach, [&](const ElasticWall& other) {
+      if (squared_distance(other.position, wall.position) <= reach * reach && faces_alike(other, wall))
+        near.push_back(other.position);
+    });
     across.push_back(direction_across(near));
   }
   std::vector<ElasticWall> straight;
@@ -134,25 +133,17 @@ void ElasticWalls::sort_into_buckets() {
 
 const ElasticWall* ElasticWalls::nearest(const ElasticWall& wall, double reach) const {
   const double per_normal = std::max(reach, kLeastReachOfNormals);
-  const Point2& at = wall.position;
-  const int left = std::max(0, static_cast<int>(std::floor((at.x - reach - corner_.x) / side_)));
-  const int right = std::min(columns_ - 1, static_cast<int>(std::floor((at.x + reach - corner_.x) / side_)));
-  const int bottom = std::max(0, static_cast<int>(std::floor((at.y - reach - corner_.y) / side_)));
-  const int top = std::min(rows_ - 1, static_cast<int>(std::floor((at.y + reach - corner_.y) / side_)));
   const ElasticWall* best = nullptr;
   double least = std::numeric_limits<double>::infinity();
-  for (int row = bottom; row <= top && left <= right; ++row) {
-    for (std::size_t i = begins_[bucket_of(left, row)]; i < begins_[bucket_of(right, row) + 1]; ++i) {
-      const ElasticWall& other = walls_[i];
-      const double distance = squared_distance(other.position, at);
-      if (distance > reach * reach || distance >= least || !faces_alike(other, wall)) continue;
-      const double cosine = dot(other.normal, wall.normal);
-      const double difference = distance + 2.0 * per_normal * per_normal * (1.0 - std::abs(cosine));
-      if (difference >= least) continue;
-      least = difference;
-      best = &other;
-    }
-  }
+  for_each_about(wall.position, reach, [&](const ElasticWall& other) {
+    const double distance = squared_distance(other.position, wall.position);
+    if (distance > reach * reach || distance >= least || !faces_alike(other, wall)) return;
+    const double cosine = dot(other.normal, wall.normal);
+    const double difference = distance + 2.0 * per_normal * per_normal * (1.0 - std::abs(cosine));
+    if (difference >= least) return;
+    least = difference;
+    best = &other;
+  });
   return best;
 }
 

@@ -33,6 +33,9 @@ class ElasticWalls {
   const ElasticWall* nearest(const ElasticWall& wall, double reach) const;
 
  private:
+  /// Calls `visit` with the walls in all buckets that come within `reach` of a point [m], row by row.
+  template <typename Visit>
+  void for_each_about(const Point2& at, double reach, Visit visit) const;
   std::size_t bucket_of(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(column);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <tuple>
 #include <vector>
@@ -57,12 +56,7 @@ struct Tally {
 
 bool faces_alike(std::uint8_t a, std::uint8_t b) {
   if (a == kNoDirection || b == kNoDirection) return true;
-  if (is_axis(a) || is_axis(b)) {
-    const int off = std::abs(a % kAxes - b % kAxes);  // kDirections is a multiple of kAxes
-    return std::min(off, kAxes - off) <= kMaxTurned;
-  }
-  const int off = std::abs(a - b);
-  return std::min(off, kDirections - off) <= kMaxTurned;
+  return steps_between(a, b) <= kMaxTurned;
 }
 
 /// The walls of `on` where `at` has seen, every `step`-th of them, in metres of wall.

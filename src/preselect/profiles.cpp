@@ -18,10 +18,6 @@ constexpr int kMaxLength = 400;         // steps of a profile; longer maps say n
 constexpr std::size_t kPeaks = 3;       // shifts along an axis that are tried
 constexpr int kPeakSpacing = 2;         // steps between them
 
-double angle_of(std::uint8_t facing) {
-  return 2.0 * std::numbers::pi * (is_axis(facing) ? facing - kDirections : facing) / kDirections;
-}
-
 /// A shift of one profile on another [steps], and the correlation there.
 struct Shift {
   int by;

@@ -41,11 +41,6 @@ constexpr double kOpenFrom = 1.0;   // [m]
 /// Of all ways in which walls face, the share that counts as the same: nine of 32 parts of a turn.
 constexpr double kFacesAlike = 9.0 / kDirections;
 
-double angle_of(std::uint8_t facing) {
-  const int steps = is_axis(facing) ? facing - kDirections : facing;
-  return 2.0 * std::numbers::pi * steps / kDirections;
-}
-
 /// Wall points by cells, to find those nearby.
 class Nearby {
  public:

@@ -30,9 +30,7 @@ constexpr int class_of(int between) {
 constexpr int class_of_facings(std::uint8_t a, std::uint8_t b) {
   if (a == kNoDirection || b == kNoDirection) return kUnclearFacing;
   const bool axes = is_axis(a) || is_axis(b);
-  const int turn = axes ? kAxes : kDirections;
-  const int steps = (a % kDirections - b % kDirections + 2 * kDirections) % turn;
-  const int between = steps < turn - steps ? steps : turn - steps;
+  const int between = steps_between(a, b);
   const int least = axes ? 2 : 1;
   return class_of(between) < least ? least : class_of(between);
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
@@ -28,6 +29,18 @@ inline constexpr int kFacingCodes = kNoDirection + 1;
 /// Whether it is the axis of a wall with floor on both sides.
 inline constexpr bool is_axis(std::uint8_t facing) {
   return facing >= kDirections && facing < kNoDirection;
+}
+
+/// The direction of a facing, or of an axis one of the two [rad, grid frame]. Not for kNoDirection.
+inline double angle_of(std::uint8_t facing) {
+  return 2.0 * std::numbers::pi * (is_axis(facing) ? facing - kDirections : facing) / kDirections;
+}
+
+/// The parts of a turn between two facings, either way; an axis has two directions. Not for kNoDirection.
+inline constexpr int steps_between(std::uint8_t a, std::uint8_t b) {
+  const int turn = is_axis(a) || is_axis(b) ? kAxes : kDirections;
+  const int steps = (a % kDirections - b % kDirections + 2 * kDirections) % turn;
+  return steps < turn - steps ? steps : turn - steps;
 }
 
 /// The facing after a turn by `steps` parts of a turn, which must not be negative.
