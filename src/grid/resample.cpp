@@ -11,13 +11,28 @@
 #include <vector>
 
 #include "grid/box.hpp"
+#include "grid/for_each_equal.hpp"
+#include "grid/multiversion.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 
 namespace gridmerge {
 
 namespace {
+
 constexpr double kMaxCells = 268435456.0;  // 2^28
+
+/// Cells to the nearest free one of the column, up to `far`, of a row: by what is known of it, and by what is
+/// known `before` it of the row beside it.
+GRIDMERGE_MULTIVERSION
+void reach_from_row(const Cell* cells, const std::uint8_t* before, std::size_t width, std::uint8_t far,
+                    std::uint8_t* to_free) {
+  for (std::size_t x = 0; x < width; ++x) {
+    const std::uint8_t reached = std::min(static_cast<std::uint8_t>(before[x] + 1), far);
+    to_free[x] = cells[x] == Cell::free ? std::uint8_t{0} : std::min(to_free[x], reached);
+  }
 }
+
+}  // namespace
 
 OccupancyGrid crop_to_known(const OccupancyGrid& grid) {
   const auto is_known = [](std::uint8_t cell) { return cell != 0; };
@@ -74,15 +89,27 @@ OccupancyGrid quarter_turned(const OccupancyGrid& grid, int quarters) {
                              ? make_grid(grid.width, grid.height, grid.resolution, {at.x, at.y, theta})
                              : make_grid(grid.height, grid.width, grid.resolution, {at.x, at.y, theta});
   if (!grid.probability.empty()) turned.probability.resize(turned.cells.size());
-  for (int row = 0; row < turned.height; ++row) {
+  // From the cell that becomes the first one, to that of the next column, and of the next row.
+  const std::ptrdiff_t line = grid.width;
+  const std::ptrdiff_t first = turns == 1   ? (grid.height - 1) * line
+                               : turns == 2 ? grid.height * line - 1
+                                            : line - 1;
+  const std::ptrdiff_t along = turns == 1 ? -line : turns == 2 ? -1 : line;
+  const std::ptrdiff_t up = turns == 1 ? 1 : turns == 2 ? -line : -1;
+  constexpr int kTile = 32;  // cells: what a tile reads stays in the cache until it is read again
+  for (int bottom = 0; bottom < turned.height; bottom += kTile) {
     throw_if_cancelled();
-    for (int column = 0; column < turned.width; ++column) {
-      const std::size_t from = turns == 1   ? grid.index(row, grid.height - 1 - column)
-                               : turns == 2 ? grid.index(grid.width - 1 - column, grid.height - 1 - row)
-                                            : grid.index(grid.width - 1 - row, column);
-      const std::size_t to = turned.index(column, row);
-      turned.cells[to] = grid.cells[from];
-      if (!grid.probability.empty()) turned.probability[to] = grid.probability[from];
+    const int top = std::min(bottom + kTile, turned.height);
+    for (int left = 0; left < turned.width; left += kTile) {
+      const int right = std::min(left + kTile, turned.width);
+      for (int row = bottom; row < top; ++row) {
+        for (int column = left; column < right; ++column) {
+          const std::size_t from = static_cast<std::size_t>(first + column * along + row * up);
+          const std::size_t to = turned.index(column, row);
+          turned.cells[to] = grid.cells[from];
+          if (!grid.probability.empty()) turned.probability[to] = grid.probability[from];
+        }
+      }
     }
   }
   return turned;
@@ -96,12 +123,7 @@ OccupancyGrid without_painted(const OccupancyGrid& grid, double reach) {
   const auto far = static_cast<std::uint8_t>(cells + 1);
   std::vector<std::uint8_t> to_free(grid.cells.size(), far);
   const auto pass = [&](std::size_t row, const std::uint8_t* before) {
-    const Cell* ours = grid.cells.data() + row * width;
-    std::uint8_t* out = to_free.data() + row * width;
-    for (std::size_t x = 0; x < width; ++x) {  // vectorised
-      const std::uint8_t reached = static_cast<std::uint8_t>(std::min<int>(before[x] + 1, far));
-      out[x] = ours[x] == Cell::free ? std::uint8_t{0} : std::min(out[x], reached);
-    }
+    reach_from_row(grid.cells.data() + row * width, before, width, far, to_free.data() + row * width);
   };
   const std::vector<std::uint8_t> none(width, far);
   for (int row = 0; row < grid.height; ++row) {
@@ -116,17 +138,18 @@ OccupancyGrid without_painted(const OccupancyGrid& grid, double reach) {
     throw_if_cancelled();
     const std::uint8_t* line = to_free.data() + row * width;
     int nearest_until = -1;  // up to here some cell of the window ahead is known to be near a free one
-    for (int column = 0; column < grid.width; ++column) {
-      if (grid.cells[row * width + column] != Cell::occupied || line[column] < far) continue;
+    internal::for_each_equal(grid.cells.data() + row * width, width, Cell::occupied, [&](std::size_t at) {
+      const int column = static_cast<int>(at);
+      if (line[column] < far) return;
       const int first = std::max(0, column - cells), last = std::min(grid.width - 1, column + cells);
-      if (nearest_until >= first) continue;
+      if (nearest_until >= first) return;
       bool is_near = false;
       for (int x = last; x >= first && !is_near; --x) {
         is_near = line[x] < far;
         if (is_near) nearest_until = x;
       }
-      if (!is_near) painted.push_back(row * width + column);
-    }
+      if (!is_near) painted.push_back(row * width + at);
+    });
   }
   if (painted.empty()) return grid;
   OccupancyGrid seen = grid;

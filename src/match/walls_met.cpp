@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "grid/multiversion.hpp"
 #include "grid/parallel.hpp"
 #include "match/ascend.hpp"
 #include "match/refine.hpp"
@@ -70,45 +71,70 @@ constexpr auto kWorth = [] {
   return worth;
 }();
 
-/// Calls `meet(wall, place)` for every wall that falls where the map has seen, and returns how many do not.
-template <typename Meet>
-std::size_t look_up(const LikelihoodField& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls,
-                    Meet meet) {
-  const ManyPointsTransform T_points(T_map_walls);
-  std::size_t unseen = 0;
-  for (const WallPoint& wall : walls) {
-    const Place place = map.place_at(T_points * wall.position);
-    if (place.distance == kUnseen) {
-      ++unseen;
-    } else {
-      meet(wall, place);
-    }
-  }
-  return unseen;
-}
-
 Meetings count_meetings(const LikelihoodField& map, const std::vector<WallPoint>& walls,
                         const SE2& T_map_walls) {
   const auto& is_contrary = contrary_facings()[steps_of_turn(T_map_walls.theta)];
+  const ManyPointsTransform T_points(T_map_walls);
   Meetings meetings;
-  look_up(map, walls, T_map_walls, [&](const WallPoint& wall, const Place& place) {
-    const bool met = place.distance <= kMeetingDistance && !is_contrary[wall.facing][place.facing];
+  for (const WallPoint& wall : walls) {
+    const Place place = map.place_at(T_points * wall.position);
+    if (place.distance == kUnseen) continue;
     meetings.seen += 1.0;
     if (wall.stands_alone) meetings.seen_things += 1.0;
-    if (!met) return;
+    if (place.distance > kMeetingDistance || is_contrary[wall.facing][place.facing]) continue;
     meetings.met += 1.0;
     if (wall.stands_alone) meetings.things_met += 1.0;
-  });
+  }
   return meetings;
 }
 
+/// Evenly drawn walls of a patch, to be looked up many times.
+struct ClimbingWalls {
+  explicit ClimbingWalls(const std::vector<WallPoint>& all) {
+    for (const WallPoint& wall : draw_evenly(all, kClimbingWalls)) {
+      x[count] = wall.position.x;
+      y[count] = wall.position.y;
+      facing[count++] = wall.facing;
+    }
+    weight = count == 0 ? 0.0 : static_cast<double>(all.size()) / static_cast<double>(count);
+  }
+
+  std::array<double, kClimbingWalls> x, y;          // [cells]
+  std::array<std::uint8_t, kClimbingWalls> facing;  // of each
+  std::size_t count = 0;
+  double weight;  // walls that each of them stands for
+};
+
+/// Where each of `count` points falls in the places of a map of that size; 0, which is never seen, if
+/// outside. The same bits in every version: no operation is fused or reordered.
+GRIDMERGE_MULTIVERSION
+void find_places(const double* px, const double* py, std::size_t count, double c, double s, double tx,
+                 double ty, int width, int height, int* at) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = c * px[i] - s * py[i] + tx;
+    const double y = s * px[i] + c * py[i] + ty;
+    const bool is_inside = (x >= 0.0) & (y >= 0.0) & (x < width) & (y < height);
+    const int column = static_cast<int>(is_inside ? x : 0.0), row = static_cast<int>(is_inside ? y : 0.0);
+    at[i] = row * width + column;
+  }
+}
+
 /// What a patch climbs on: 1 for a wall on another one, less with their distance.
-double worth_of(const LikelihoodField& map, const std::vector<WallPoint>& walls, const SE2& T_map_walls) {
+double worth_of(const LikelihoodField& map, const ClimbingWalls& walls, const SE2& T_map_walls) {
   const auto& is_contrary = contrary_facings()[steps_of_turn(T_map_walls.theta)];
+  std::array<int, kClimbingWalls> at;
+  find_places(walls.x.data(), walls.y.data(), walls.count, std::cos(T_map_walls.theta),
+              std::sin(T_map_walls.theta), T_map_walls.x, T_map_walls.y, map.width, map.height, at.data());
   double worth = 0.0;
-  const std::size_t unseen = look_up(map, walls, T_map_walls, [&](const WallPoint& wall, const Place& place) {
-    if (!is_contrary[wall.facing][place.facing]) worth += kWorth[place.distance];
-  });
+  std::size_t unseen = 0;
+  for (std::size_t i = 0; i < walls.count; ++i) {
+    const Place place = map.places[static_cast<std::size_t>(at[i])];
+    if (place.distance == kUnseen) {
+      ++unseen;
+    } else if (!is_contrary[walls.facing[i]][place.facing]) {
+      worth += kWorth[place.distance];
+    }
+  }
   return worth + kUnseenWorth * static_cast<double>(unseen);
 }
 
@@ -155,17 +181,11 @@ class PatchMatcher {
 
   SE2 climb(const Patch& patch) const {
     constexpr int kMaxMoves = 5;
-    const std::vector<WallPoint> fixed_walls = draw_evenly(patch.fixed, kClimbingWalls);
-    const std::vector<WallPoint> moving_walls = draw_evenly(patch.moving, kClimbingWalls);
+    const ClimbingWalls fixed_walls(patch.fixed), moving_walls(patch.moving);
     const PoseMetric metric{patch.centre, 0.4 * side_};
-    const auto all_per_drawn = [](const auto& all, const auto& drawn) {
-      return drawn.empty() ? 0.0 : static_cast<double>(all.size()) / static_cast<double>(drawn.size());
-    };
-    const double fixed_weight = all_per_drawn(patch.fixed, fixed_walls);
-    const double moving_weight = all_per_drawn(patch.moving, moving_walls);
     const auto worth_at = [&](const SE2& T_fixed_moving) {
-      return moving_weight * worth_of(fixed_, moving_walls, T_fixed_moving) +
-             fixed_weight * worth_of(moving_, fixed_walls, inverse(T_fixed_moving));
+      return moving_walls.weight * worth_of(fixed_, moving_walls, T_fixed_moving) +
+             fixed_walls.weight * worth_of(moving_, fixed_walls, inverse(T_fixed_moving));
     };
     double most = worth_at(start_);
     return ascend(metric, start_, {kFirstStep / fixed_.cell, kLastStep, kMaxMoves}, [&](const SE2& pose) {

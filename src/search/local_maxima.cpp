@@ -2,8 +2,8 @@
 #include "search/local_maxima.hpp"
 
 #include <algorithm>
-#include <cstring>
 
+#include "grid/for_each_equal.hpp"
 #include "grid/multiversion.hpp"
 
 namespace gridmerge::internal {
@@ -38,14 +38,10 @@ void add_maxima(const ScoreImage& scores, int y, int first, int count, int floor
                 std::vector<std::uint8_t>& marks, std::vector<LocalMaximum>& maxima) {
   const std::int16_t* const row = scores.values.data() + static_cast<std::size_t>(y) * scores.width;
   mark_maxima(row + first - 1, scores.width, count + 2, static_cast<std::int16_t>(floor), marks.data());
-  const std::uint8_t *mark = marks.data() + 1, *const end = mark + count;
-  while (mark != end) {
-    mark = static_cast<const std::uint8_t*>(std::memchr(mark, 1, static_cast<std::size_t>(end - mark)));
-    if (mark == nullptr) break;
-    const int x = first + static_cast<int>(mark - (marks.data() + 1));
+  for_each_equal(marks.data() + 1, static_cast<std::size_t>(count), std::uint8_t{1}, [&](std::size_t i) {
+    const int x = first + static_cast<int>(i);
     maxima.push_back({x, y, row[x]});
-    ++mark;
-  }
+  });
 }
 
 /// The columns of a block that are among the first ones.

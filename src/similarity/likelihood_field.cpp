@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "grid/for_each_equal.hpp"
 #include "grid/multiversion.hpp"
 #include "grid/unaligned.hpp"
 #include "gridmerge/grid/cancellation.hpp"
@@ -168,20 +169,21 @@ class BoxSums {
   std::vector<int> sums_;
 };
 
-struct WallSum {
+/// Of the occupied cells of the grid that share a cell.
+struct CellSum {
   float x = 0.0F;
   float y = 0.0F;
   int count = 0;
 };
 
 /// The axis of the wall at (x, y), of which neither side has more free cells; kNoDirection if it has none.
-std::uint8_t find_axis(const std::vector<WallSum>& walls, const std::vector<std::uint8_t>& is_free, int width,
-                       int x, int y) {
+std::uint8_t find_axis(const std::vector<std::uint8_t>& is_wall, const std::vector<std::uint8_t>& is_free,
+                       int width, int x, int y) {
   constexpr int kReach = kFacingReach;
   double count = 0.0, sx = 0.0, sy = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
   for (int dy = -kReach; dy <= kReach; ++dy) {
     for (int dx = -kReach; dx <= kReach; ++dx) {
-      if (walls[static_cast<std::size_t>(y + dy) * width + (x + dx)].count == 0) continue;
+      if (is_wall[static_cast<std::size_t>(y + dy) * width + (x + dx)] == 0) continue;
       count += 1.0;
       sx += dx;
       sy += dy;
@@ -278,46 +280,60 @@ LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell) {
   map.T_map_grid = {corner.x, corner.y, grid.origin.theta};
 
   const std::size_t size = static_cast<std::size_t>(map.width) * map.height;
-  std::vector<WallSum> walls(size);
   std::vector<LabelledDistance> to_wall(size, kFar);
-  std::vector<std::uint8_t> is_known(size, 0);
+  std::vector<std::uint8_t> is_known(size, 0), is_wall(size, 0);
   std::vector<int> cell_x(grid.width);
   for (int column = 0; column < grid.width; ++column)
     cell_x[column] = static_cast<int>((column + 0.5) * scale) + kMargin;
+  const auto line_of = [&](int row) {
+    return static_cast<std::size_t>((row + 0.5) * scale + kMargin) * map.width;
+  };
+  const auto for_each_occupied = [&](int row, auto visit) {
+    for_each_equal(grid.cells.data() + grid.index(0, row), static_cast<std::size_t>(grid.width),
+                   Cell::occupied, visit);
+  };
   for (int row = 0; row < grid.height; ++row) {
     throw_if_cancelled();
-    const double y = (row + 0.5) * scale + kMargin;
-    const std::size_t line = static_cast<std::size_t>(y) * map.width;
-    for (int column = 0; column < grid.width; ++column) {
-      const Cell value = grid.at(column, row);
-      const std::size_t i = line + cell_x[column];
-      is_known[i] |= static_cast<std::uint8_t>(value != Cell::unknown);  // no branch: it cannot be foreseen
-      if (value != Cell::occupied) continue;
-      walls[i].x += static_cast<float>((column + 0.5) * scale + kMargin);
-      walls[i].y += static_cast<float>(y);
-      ++walls[i].count;
-    }
+    const std::size_t line = line_of(row);
+    const Cell* const cells = grid.cells.data() + grid.index(0, row);
+    for (int column = 0; column < grid.width; ++column)  // no branch: it cannot be foreseen
+      is_known[line + cell_x[column]] |= static_cast<std::uint8_t>(cells[column] != Cell::unknown);
+    for_each_occupied(row, [&](std::size_t column) { is_wall[line + cell_x[column]] = 1; });
   }
   std::vector<std::uint8_t> is_free = is_known;
-  for (std::size_t i = 0; i < size; ++i) {
-    if (walls[i].count > 0) is_free[i] = 0;  // a wall hides the free cells that share its cell
-  }
+  for (std::size_t i = 0; i < size; ++i)
+    is_free[i] &= static_cast<std::uint8_t>(is_wall[i] ^ 1);  // a wall hides the free cells in its cell
 
   std::vector<int> wall_at(size, -1);
   const BoxSums free_cells(is_free, map.width, map.height);
   for (int y = 0; y < map.height; ++y) {
     throw_if_cancelled();
-    for (int x = 0; x < map.width; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * map.width + x;
-      const WallSum& wall = walls[i];
-      if (wall.count == 0) continue;
-      std::uint8_t facing = find_side(free_cells, x, y);
-      if (facing == kNoDirection) facing = find_axis(walls, is_free, map.width, x, y);
-      to_wall[i] = facing;
-      wall_at[i] = static_cast<int>(map.walls.size());
-      map.walls.push_back(
-          {{static_cast<double>(wall.x) / wall.count, static_cast<double>(wall.y) / wall.count}, facing});
-    }
+    const std::size_t line = static_cast<std::size_t>(y) * map.width;
+    for_each_equal(is_wall.data() + line, static_cast<std::size_t>(map.width), std::uint8_t{1},
+                   [&](std::size_t x) {
+                     std::uint8_t facing = find_side(free_cells, static_cast<int>(x), y);
+                     if (facing == kNoDirection)
+                       facing = find_axis(is_wall, is_free, map.width, static_cast<int>(x), y);
+                     to_wall[line + x] = facing;
+                     wall_at[line + x] = static_cast<int>(map.walls.size());
+                     map.walls.push_back({{}, facing});
+                   });
+  }
+  std::vector<CellSum> sums(map.walls.size());
+  for (int row = 0; row < grid.height; ++row) {
+    throw_if_cancelled();
+    const std::size_t line = line_of(row);
+    const float y = static_cast<float>((row + 0.5) * scale + kMargin);
+    for_each_occupied(row, [&](std::size_t column) {
+      CellSum& sum = sums[wall_at[line + cell_x[column]]];
+      sum.x += static_cast<float>((static_cast<double>(column) + 0.5) * scale + kMargin);
+      sum.y += y;
+      ++sum.count;
+    });
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const CellSum& sum = sums[i];
+    map.walls[i].position = {static_cast<double>(sum.x) / sum.count, static_cast<double>(sum.y) / sum.count};
   }
 
   mark_things(map, wall_at);

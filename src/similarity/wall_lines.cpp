@@ -25,10 +25,13 @@ constexpr float kTakenOffset = 6.0F;  // cells
 constexpr std::size_t kMaxLines = 24;
 constexpr int kShortestLine = 6;  // points
 
+constexpr int kVotes = 2 * kVotedAngles + 1;  // of each point
+
 struct MetPoint {
   float x;
   float y;
-  int angle;  // of its facing, in kAngles
+  int angle;                        // of its facing, in kAngles
+  std::array<int, kVotes> votes{};  // where they are counted; LineTaker's
 };
 
 int turn_between(int a, int b, int full_turn) {
@@ -53,7 +56,7 @@ std::vector<MetPoint> find_met_walls(const LikelihoodField& fixed, const Likelih
     if (turn_between(facing % kDirections, place.facing % kDirections, full_turn) > kFacingTolerance)
       continue;
     const int direction = is_axis(facing) ? facing - kDirections : facing;
-    met.push_back({static_cast<float>(p.x), static_cast<float>(p.y), direction * kAnglesPerDirection});
+    met.push_back({static_cast<float>(p.x), static_cast<float>(p.y), direction * kAnglesPerDirection, {}});
   }
   return met;
 }
@@ -69,25 +72,33 @@ class LineTaker {
     }
   }
 
+  /// Says where each point's votes are counted; before the first line is taken.
+  void prepare(std::vector<MetPoint>& points) const {
+    for (MetPoint& point : points) {
+      for (int i = 0; i < kVotes; ++i) {
+        const int angle = (point.angle + i - kVotedAngles + kAngles) % kAngles;
+        const int offset = static_cast<int>(std::floor(distance(point, angle) / kOffsetBin)) + offsets_ / 2;
+        point.votes[i] = angle * offsets_ + offset;
+      }
+    }
+  }
+
   /// The number of points taken from `points`; 0 when no line is long enough.
   std::size_t take(std::vector<MetPoint>& points) {
     votes_.assign(static_cast<std::size_t>(kAngles) * offsets_, 0);
     int most = kShortestLine - 1;
-    int best_angle = -1;
-    int best_offset = 0;
+    int best = -1;
     for (const MetPoint& point : points) {
-      for (int step = -kVotedAngles; step <= kVotedAngles; ++step) {
-        const int angle = (point.angle + step + kAngles) % kAngles;
-        const int offset = static_cast<int>(std::floor(distance(point, angle) / kOffsetBin)) + offsets_ / 2;
-        const int votes = ++votes_[static_cast<std::size_t>(angle) * offsets_ + offset];
+      for (const int line : point.votes) {
+        const int votes = ++votes_[line];
         if (votes <= most) continue;
         most = votes;
-        best_angle = angle;
-        best_offset = offset;
+        best = line;
       }
     }
-    if (best_angle < 0) return 0;
-    const int from_origin = best_offset - offsets_ / 2;
+    if (best < 0) return 0;
+    const int best_angle = best / offsets_;
+    const int from_origin = best % offsets_ - offsets_ / 2;
     const float middle = (static_cast<float>(from_origin) + 0.5F) * kOffsetBin;
     return std::erase_if(points, [&](const MetPoint& point) {
       return turn_between(point.angle, best_angle, kAngles) <= kTakenAngles &&
@@ -127,6 +138,7 @@ double least_spread(const std::vector<MetPoint>& points) {
 
 double count_lines(std::vector<MetPoint> points, double diagonal) {
   LineTaker taker(diagonal);
+  taker.prepare(points);
   std::vector<std::size_t> lengths;
   double total = 0.0;
   while (lengths.size() < kMaxLines) {
