@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -10,7 +11,9 @@
 #include "gridmerge/dds/ros_node.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "interrupt.hpp"
+#include "live_page.hpp"
 #include "node_options.hpp"
+#include "page_server.hpp"
 
 namespace gridmerge::cli {
 
@@ -46,13 +49,25 @@ int run_node(const NodeCommandOptions& options) {
     throw FileError(options.init, error.what());
   }
   node_options.played = played_topics(options, node_options, console);
-  node_options.tell = [&](const std::string& line) {
+  const auto tell = [&](const std::string& line) {
     if (!options.common.quiet) print(escape_controls(line) + "\n");
   };
+  node_options.tell = tell;
   node_options.detail = [&](const std::string& line) { console.remark(escape_controls(line)); };
   node_options.warn = [&](const std::string& line) { console.warn(escape_controls(line)); };
+  LivePage page(options.common.threads);
+  std::optional<PageServer> server;
+  if (options.page) {
+    node_options.answered = [&](const std::shared_ptr<const TeamAnswer>& answer) { page.show(answer); };
+    server.emplace(options.page_address, *options.page, page.answers());
+    warn_of_visitors(*server, console);
+  }
   const Interrupt signal;  // one that comes while the node starts is not lost
   RosNode node(std::move(node_options));
+  if (server) {
+    server->start();
+    tell("page: " + server->url());
+  }
   RosNode::End end = RosNode::End::stopped;
   {
     const StopAtSignal stop(signal, node);

@@ -172,6 +172,19 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
       ->check(kPositiveRate)
       ->needs(bag)
       ->capture_default_str();
+  CLI::Option* page = command
+                          .add_option("--page", options.page,
+                                      "Serve a report page that follows along at this port; 0 = a free one")
+                          ->type_name("PORT")
+                          ->check(kPort);
+  command
+      .add_option("--page-address", options.page_address,
+                  "Address or name of this machine to serve the page at; others can reach it unless it is a "
+                  "loopback one")
+      ->type_name("ADDRESS")
+      ->check(kOneAddress)
+      ->needs(page)
+      ->capture_default_str();
   command.add_flag(
       "--once", node.once,
       "End when the maps of all robots that are there are merged; the exit code is that of 'merge'");

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct NodeCommandOptions {
   std::vector<std::string> fix;     // robots
   std::vector<std::string> bags;    // files and folders that are played
   std::string transforms = "static";
+  std::optional<int> page;  // port of the page that follows along
+  std::string page_address = "127.0.0.1";
   RosNodeOptions node;  // except for what is above and below
   SearchOptions search;
 };

@@ -12,6 +12,8 @@
 #include <system_error>
 #include <vector>
 
+#include "address.hpp"
+
 namespace gridmerge::cli {
 
 namespace {
@@ -67,6 +69,19 @@ const CLI::Validator kMetresPerCell(
       return value && *value >= kMinResolution && *value <= kMaxResolution
                  ? std::string()
                  : fmt::format("'{}' is not between {} and {} metres", text, kMinResolution, kMaxResolution);
+    },
+    "");
+
+const CLI::Validator kPort = CLI::Range(0, 65535).description("");
+
+const CLI::Validator kOneAddress(
+    [](std::string& text) {
+      const std::vector<Address> addresses = resolve(text);
+      const bool any =
+          std::any_of(addresses.begin(), addresses.end(), [](const Address& one) { return one.is_any; });
+      return text.empty() || any
+                 ? "'" + text + "' is no single address: give the one by which others reach this machine"
+                 : std::string();
     },
     "");
 

@@ -39,6 +39,13 @@ extern const CLI::Validator kNotNegative;
 /// A resolution that a map can have.
 extern const CLI::Validator kMetresPerCell;
 
+/// The port of a server; 0 for a free one.
+extern const CLI::Validator kPort;
+
+/// One address of this machine's, to serve at. Not one that stands for all: a request has to name its host,
+/// and that is no host's name.
+extern const CLI::Validator kOneAddress;
+
 /// A pose: x,y,theta in metres and radians.
 extern const CLI::Validator kPose;
 

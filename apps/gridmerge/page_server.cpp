@@ -111,12 +111,17 @@ std::optional<HttpResponse> find_fault(const HttpHead& request, const std::set<s
 
 class PageServer::State {
  public:
-  State(std::string address, int port, std::string page, Answer refine)
-      : address_(std::move(address)),
-        page_(std::make_shared<const std::string>(std::move(page))),
-        refine_(std::move(refine)) {
+  State(std::string address, int port, PageAnswers answers)
+      : address_(std::move(address)), answers_(std::move(answers)) {
     listen(port);
   }
+  ~State() {
+    if (!served_.valid()) return;
+    stop(served_);
+    listener_.join();
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
 
   std::string url() const { return fmt::format("http://{}:{}/", host_of(address_), server_->port()); }
 
@@ -125,16 +130,21 @@ class PageServer::State {
   void run(const std::function<void()>& ready) {
     const Interrupt interrupt;
     ready();  // the socket listens already; before there is another thread, as this may throw
+    start([&interrupt] { interrupt.raise(); });
+    interrupt.wait();
+    stop(served_);
+    listener_.join();
+    served_.get();
+  }
+
+  void start(const std::function<void()>& at_end) {
     std::packaged_task<void()> serve([this] { server_->run(); });
     std::future<void> served = serve.get_future();
-    std::thread listener([&] {
+    listener_ = std::thread([serve = std::move(serve), at_end]() mutable {
       serve();
-      interrupt.raise();
+      at_end();
     });
-    interrupt.wait();
-    stop(served);
-    listener.join();
-    served.get();
+    served_ = std::move(served);
   }
 
  private:
@@ -155,7 +165,7 @@ class PageServer::State {
         return;
       } catch (const boost::system::system_error& error) {
         cause = error.code().message();
-        if (error.code() == boost::system::errc::address_in_use) cause += "; choose another --port";
+        if (error.code() == boost::system::errc::address_in_use) cause += "; choose another port";
       }
     }
     throw std::runtime_error(fmt::format("cannot serve at {}:{}: {}", host_of(address_), port, cause));
@@ -174,8 +184,18 @@ class PageServer::State {
     const bool is_post = request.method() == http::verb::post;
     const std::string_view target(request.target().data(), request.target().size());
     const std::string_view path = target.substr(0, target.find('?'));
-    if (path == "/" && !is_post) return HttpResponse{Status::ok, "text/html; charset=utf-8", page_};
     if (path == "/refine" && is_post) return std::nullopt;
+    if (is_post) return plain_error(Status::not_found);
+    try {
+      if (path == "/") return HttpResponse{Status::ok, "text/html; charset=utf-8", answers_.page()};
+      if (path == "/news" && answers_.news)
+        return HttpResponse{Status::ok, "application/json",
+                            std::make_shared<const std::string>(answers_.news())};
+    } catch (const std::bad_alloc&) {
+      throw;  // the connection is closed
+    } catch (const std::exception& error) {
+      return error_response(Status::internal_server_error, error.what());
+    }
     return plain_error(Status::not_found);
   }
 
@@ -184,7 +204,7 @@ class PageServer::State {
       std::string json;
       with_cancellation(stopping_, [&] {
         throw_if_cancelled();
-        json = refine_(body);
+        json = answers_.refine(body);
       });
       return {Status::ok, "application/json", std::make_shared<const std::string>(std::move(json))};
     } catch (const Cancelled&) {
@@ -199,16 +219,17 @@ class PageServer::State {
   }
 
   std::string address_;
-  std::shared_ptr<const std::string> page_;
-  Answer refine_;
+  PageAnswers answers_;
   std::atomic<bool> stopping_ = false;
   Address bound_;
   std::set<std::string> hosts_;  // by which requests may call it
   std::unique_ptr<HttpServer> server_;
+  std::future<void> served_;  // valid from start() on, until run() has its result
+  std::thread listener_;
 };
 
-PageServer::PageServer(const std::string& address, int port, std::string page, Answer refine)
-    : state_(std::make_unique<State>(address, port, std::move(page), std::move(refine))) {}
+PageServer::PageServer(const std::string& address, int port, PageAnswers answers)
+    : state_(std::make_unique<State>(address, port, std::move(answers))) {}
 PageServer::~PageServer() = default;
 
 std::string PageServer::url() const {
@@ -219,8 +240,18 @@ void PageServer::run(const std::function<void()>& ready) {
   state_->run(ready);
 }
 
+void PageServer::start() {
+  state_->start([] {});
+}
+
 bool PageServer::is_local() const {
   return state_->is_local();
+}
+
+void warn_of_visitors(const PageServer& server, Console& console) {
+  if (!server.is_local())
+    console.warn("whoever reaches " + server.url() +
+                 " sees the maps and can have this machine work for them");
 }
 
 }  // namespace gridmerge::cli

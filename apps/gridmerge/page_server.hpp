@@ -5,21 +5,32 @@
 #include <memory>
 #include <string>
 
+#include "console.hpp"
+
 namespace gridmerge::cli {
 
-/// Answers the body of a request with JSON. Throws std::invalid_argument for a body that makes no sense.
-/// Runs under with_cancellation().
-using Answer = std::function<std::string(const std::string& body)>;
+/// What a PageServer says. Each may throw; what is asked for is then answered with an error.
+struct PageAnswers {
+  /// The page at "/". Called by the thread that serves, so that it keeps others waiting.
+  std::function<std::shared_ptr<const std::string>()> page;
+  /// JSON for whoever asks with GET at "/news", as the page does again and again. None: nothing is there.
+  /// Called by the thread that serves.
+  std::function<std::string()> news = {};
+  /// Answers the body of a POST at "/refine" with JSON. Throws std::invalid_argument for a body that makes no
+  /// sense. Runs under with_cancellation().
+  std::function<std::string(const std::string& body)> refine;
+};
 
-/// Serves one page at "/", and answers what it asks with POST at "/refine"; nothing else is there, no file
-/// above all. For this machine's user alone, as far as a server can tell: a request has to name this server
-/// as its host, so that no foreign name can be made to lead here, and where a page sent it, it has to be this
-/// one. Several requests may be served at once; answers are made one after the other.
+/// Serves one page, and answers what it asks; nothing else is there, no file above all. For this machine's
+/// user alone, as far as a server can tell: a request has to name this server as its host, so that no foreign
+/// name can be made to lead here, and where a page sent it, it has to be this one. Several requests may be
+/// served at once; answers to POST are made one after the other.
 class PageServer {
  public:
   /// Listens at `address`, a name or number of this machine's, and `port`, 0 for a free one. Throws
   /// std::runtime_error when that cannot be had.
-  PageServer(const std::string& address, int port, std::string page, Answer refine);
+  PageServer(const std::string& address, int port, PageAnswers answers);
+  /// After start(): ends as run() does.
   ~PageServer();
   PageServer(const PageServer&) = delete;
   PageServer& operator=(const PageServer&) = delete;
@@ -36,9 +47,15 @@ class PageServer {
   /// std::runtime_error for an error, and what `ready` throws.
   void run(const std::function<void()>& ready);
 
+  /// Serves in a thread of its own, for as long as this lives. An error of the network ends that silently.
+  void start();
+
  private:
   class State;
   std::unique_ptr<State> state_;
 };
+
+/// Warns of what others can do, where they can reach the server.
+void warn_of_visitors(const PageServer& server, Console& console);
 
 }  // namespace gridmerge::cli

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "address.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "grid/parallel.hpp"
-#include "merge/refine_member.hpp"
 #include "page_server.hpp"
+#include "refine_answer.hpp"
 #include "report/page.hpp"
-#include "report/refine_request.hpp"
 #include "saved_merge.hpp"
 
 namespace gridmerge::cli {
@@ -29,42 +25,23 @@ struct ViewCommandOptions {
   int port = 0;
 };
 
-std::string answer_refine(const SavedMerge& merge, int threads, const std::string& body) {
-  const RefineRequest request = parse_refine_request(body, merge.maps.size());
-  const auto placed = [&](const LaidMap& laid) { return PlacedMap{&merge.maps[laid.map], laid.T_page_map}; };
-  std::vector<PlacedMap> fixed;
-  for (const LaidMap& laid : request.fixed) fixed.push_back(placed(laid));
-  RefinedPose refined;
-  with_threads(threads, [&] { refined = refine_member(fixed, placed(request.moving)); });
-  return refined_pose_json(refined);
-}
-
 int run_view(const ViewCommandOptions& options) {
   Console console(options.common);
   const SavedMerge merge = load_saved_merge(options.merge, console);
   std::string page;
   with_threads(options.common.threads, [&] { page = live_report_page(merge.named()); });
-  PageServer server(options.address, options.port, std::move(page), [&](const std::string& body) {
-    return answer_refine(merge, options.common.threads, body);
-  });
-  if (!server.is_local())
-    console.warn("whoever reaches " + server.url() +
-                 " sees the maps and can have this machine work for them");
+  const auto shared = std::make_shared<const std::string>(std::move(page));
+  PageAnswers answers;
+  answers.page = [shared] { return shared; };
+  answers.refine = [&](const std::string& body) {
+    const auto map = [&](std::size_t i) -> const OccupancyGrid& { return merge.maps[i]; };
+    return answer_refine(body, merge.maps.size(), map, options.common.threads);
+  };
+  PageServer server(options.address, options.port, std::move(answers));
+  warn_of_visitors(server, console);
   server.run([&] { print(fmt::format("{}  (Ctrl-C ends it)\n", server.url())); });
   return kDone;
 }
-
-/// A request has to name its host, and these are no host's name.
-const CLI::Validator kOneAddress(
-    [](std::string& text) {
-      const std::vector<Address> addresses = resolve(text);
-      const bool any =
-          std::any_of(addresses.begin(), addresses.end(), [](const Address& one) { return one.is_any; });
-      return text.empty() || any
-                 ? "'" + text + "' is no single address: give the one by which others reach this machine"
-                 : std::string();
-    },
-    "");
 
 }  // namespace
 
@@ -74,7 +51,7 @@ void add_view(CLI::App& app, Action& action) {
   add_saved_merge_options(*command, options->merge);
   command->add_option("--port", options->port, "Port to serve at; 0 = a free one")
       ->type_name("N")
-      ->check(CLI::Range(0, 65535).description(""))
+      ->check(kPort)
       ->capture_default_str();
   command
       ->add_option(

@@ -272,6 +272,7 @@ void RosNode::State::publish() {
     options_.detail(fmt::format("answer {}: {:.3f} s, {} merged maps of {} robots{}", answer->number,
                                 answer->seconds, answer->components.size(), answer->robots.size(),
                                 answer->problem.empty() ? "" : "; " + answer->problem));
+    if (options_.answered) options_.answered(answer);
   }
   if (is_new || !all_sent_) {
     Stamp newest;

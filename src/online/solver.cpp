@@ -73,11 +73,13 @@ TeamAnswer TeamSolver::solve(Effort effort) {
   } catch (const std::invalid_argument& error) {  // a merged map would be too large
     answer.problem = error.what();
     answer.components = told_components_;
+    answer.merge = told_merge_;
   }
   for (const auto& [name, robot] : robots_) answer.robots.push_back(status_of(name, robot, answer));
   tell_events(answer);
   told_ = placements_.groups();
   told_components_ = answer.components;
+  told_merge_ = answer.merge;
   restarted_.clear();
   answer.number = ++answers_;
   answer.settled = is_settled();
@@ -204,34 +206,73 @@ void TeamSolver::propose(const MergeResult& result, Placements::Weight weight) {
 
 void TeamSolver::tell_components(MergeResult result, TeamAnswer& answer) const {
   const std::vector<MapId> ids = merger_.maps();
+  std::map<std::string, std::size_t> places;  // in the result
+  for (std::size_t i = 0; i < ids.size(); ++i) places[names_.at(ids[i])] = i;
+  struct Told {
+    TeamComponent component;
+    Component merged;
+  };
+  std::vector<Told> all;
   for (const RobotGroup& group : placements_.groups()) {
-    TeamComponent told;
-    if (!group.in_world_frame) told.anchor = first_heard(group.robots);
+    Told told;
+    if (!group.in_world_frame) told.component.anchor = first_heard(group.robots);
     std::vector<PlacedMap> placed;
     for (const auto& [name, placement] : group.robots) {
-      told.robots.push_back(name);
+      told.component.robots.push_back(name);
       placed.push_back({robots_.at(name).map.get(), placement.T_group_map});
+      told.merged.members.push_back({places.at(name), placement.T_group_map, placement.probability});
     }
+    std::sort(told.merged.members.begin(), told.merged.members.end(),
+              [](const Member& a, const Member& b) { return a.map < b.map; });
     // What the merger fused serves where the maps lie as it says.
     const auto same =
         std::find_if(result.components.begin(), result.components.end(), [&](const Component& one) {
-          return one.members.size() == group.robots.size() &&
-                 std::all_of(one.members.begin(), one.members.end(), [&](const Member& member) {
-                   const auto robot = group.robots.find(names_.at(ids[member.map]));
-                   return robot != group.robots.end() && robot->second.T_group_map == member.T_component_map;
-                 });
+          return std::equal(one.members.begin(), one.members.end(), told.merged.members.begin(),
+                            told.merged.members.end(), [](const Member& a, const Member& b) {
+                              return a.map == b.map && a.T_component_map == b.T_component_map;
+                            });
         });
     const double resolution = options_.merge.resolution;
-    OccupancyGrid map = same != result.components.end()
-                            ? std::move(same->fused.grid)
-                            : fuse(placed, resolution > 0.0 ? resolution : finest_resolution(placed)).grid;
-    told.map = std::make_shared<const OccupancyGrid>(std::move(map));
-    answer.components.push_back(std::move(told));
+    if (same != result.components.end()) {
+      told.merged = std::move(*same);
+    } else {
+      told.merged.fused = fuse(placed, resolution > 0.0 ? resolution : finest_resolution(placed));
+    }
+    // Another member than the first may hold the frame.
+    const std::string& first = names_.at(ids[told.merged.members.front().map]);
+    told.merged.in_world_frame = group.in_world_frame || first != told.component.anchor;
+    told.component.map = std::make_shared<const OccupancyGrid>(std::move(told.merged.fused.grid));
+    told.merged.fused.grid = {};
+    all.push_back(std::move(told));
   }
-  std::sort(answer.components.begin(), answer.components.end(),
-            [](const TeamComponent& a, const TeamComponent& b) {
-              return std::pair(b.robots.size(), a.robots) < std::pair(a.robots.size(), b.robots);
-            });
+  std::sort(all.begin(), all.end(), [](const Told& a, const Told& b) {
+    return std::pair(b.component.robots.size(), a.component.robots) <
+           std::pair(a.component.robots.size(), b.component.robots);
+  });
+  result.components.clear();
+  for (Told& told : all) {
+    answer.components.push_back(std::move(told.component));
+    result.components.push_back(std::move(told.merged));
+  }
+  answer.merge = std::make_shared<const TeamMerge>(merge_of(std::move(result)));
+}
+
+/// `result` has the answer's components.
+TeamMerge TeamSolver::merge_of(MergeResult result) const {
+  TeamMerge merge;
+  for (const MapId id : merger_.maps()) {
+    merge.names.push_back(names_.at(id));
+    merge.maps.push_back(robots_.at(merge.names.back()).map);
+  }
+  result.left_out.clear();
+  for (std::size_t i = 0; i < merge.names.size(); ++i) {
+    if (is_placed(merge.names[i])) continue;
+    const auto reason = left_out_.find(merge.names[i]);
+    // The newest comparisons place a robot that is in no component yet: that is held back.
+    result.left_out.push_back({i, reason == left_out_.end() ? Reason::several : reason->second});
+  }
+  merge.result = std::move(result);
+  return merge;
 }
 
 RobotStatus TeamSolver::status_of(const std::string& name, const Robot& robot,

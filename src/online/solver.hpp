@@ -77,6 +77,7 @@ class TeamSolver {
   void search_what_changed();
   void propose(const MergeResult& result, Placements::Weight weight);
   void tell_components(MergeResult result, TeamAnswer& answer) const;
+  TeamMerge merge_of(MergeResult result) const;
   RobotStatus status_of(const std::string& name, const Robot& robot, const TeamAnswer& answer) const;
   void tell_events(TeamAnswer& answer) const;
   const std::string& first_heard(const std::map<std::string, Placement>& robots) const;
@@ -92,6 +93,7 @@ class TeamSolver {
   std::map<std::string, Reason> left_out_;
   std::vector<RobotGroup> told_;  // by the last answer
   std::vector<TeamComponent> told_components_;
+  std::shared_ptr<const TeamMerge> told_merge_ = std::make_shared<const TeamMerge>();
   std::uint64_t answers_ = 0;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "gridmerge/report/named_merge.hpp"
@@ -18,7 +20,9 @@ namespace gridmerge::internal {
 std::string report_page(const NamedMerge& merge);
 
 /// The same for a server that answers what the page asks: its data says that it is `live`, and the policy
-/// lets it talk to where it came from. Throws as report_page().
-GRIDMERGE_INTERNAL_EXPORT std::string live_report_page(const NamedMerge& merge);
+/// lets it talk to where it came from. With the number of an `answer` the page asks the server at "/news"
+/// which one is the newest, and loads itself anew when that is another. Throws as report_page().
+GRIDMERGE_INTERNAL_EXPORT std::string live_report_page(const NamedMerge& merge,
+                                                       std::optional<std::uint64_t> answer = {});
 
 }  // namespace gridmerge::internal

@@ -273,7 +273,7 @@ TEST_F(View, WarnsOfOthersWhereOthersCanReachIt) {
 TEST_F(View, APortThatIsTakenIsAnError) {
   RunningProgram second({"view", output, "--port", std::to_string(port)});
   ASSERT_EQ(second.read_line(), "") << "it serves";
-  expect_error(second.end_with(SIGTERM), host, "already in use; choose another --port");
+  expect_error(second.end_with(SIGTERM), host, "already in use; choose another port");
 }
 
 TEST_F(View, AnAddressThatIsNotThisMachinesIsAnError) {

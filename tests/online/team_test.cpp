@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -49,6 +50,24 @@ TEST(Team, SettlesOnWhatMergeSaysHoweverFastMapsCome) {
   ASSERT_EQ(answer->components.size(), 1u);
   EXPECT_EQ(answer->components[0].robots, (std::vector<std::string>{"anna", "bert", "carl"}));
   EXPECT_EQ(merged.components[0].members.size(), 3u);
+  const TeamMerge& behind = *answer->merge;
+  ASSERT_EQ(behind.names.size(), static_cast<std::size_t>(count));
+  ASSERT_EQ(behind.result.components.size(), 1u);
+  EXPECT_EQ(behind.result.joins.size(), merged.joins.size());
+  EXPECT_EQ(behind.result.left_out.size(), static_cast<std::size_t>(count) - 3);
+  EXPECT_TRUE(behind.result.components[0].fused.grid.cells.empty());
+  EXPECT_GT(behind.result.components[0].fused.agreeing, 10000u);
+  for (const Member& member : behind.result.components[0].members) {
+    const auto robot =
+        std::find_if(answer->robots.begin(), answer->robots.end(),
+                     [&](const RobotStatus& one) { return one.name == behind.names[member.map]; });
+    ASSERT_NE(robot, answer->robots.end());
+    EXPECT_EQ(member.T_component_map, robot->T_world_map);
+    EXPECT_EQ(member.probability, robot->probability);
+    const int number =
+        static_cast<int>(std::find(kNames.begin(), kNames.end(), robot->name) - kNames.begin());
+    EXPECT_EQ(behind.maps[member.map]->cells, explorers.map(number, Explorers::kSteps).cells);
+  }
   const std::lock_guard lock(mutex);
   std::vector<std::string> told;
   for (std::size_t i = 0; i < answers.size(); ++i) {

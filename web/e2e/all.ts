@@ -7,6 +7,7 @@ import "./looking";
 import "./joins";
 import "./transforms";
 import "./by_hand";
+import "./following";
 import "./bent";
 import "./hostile";
 import "./many";

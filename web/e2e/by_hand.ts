@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
-import { type ChildProcess, spawn } from "node:child_process";
 import { rmSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
@@ -8,7 +7,7 @@ import type { Page } from "playwright-core";
 import type { InputMap } from "../src/report";
 import { type SE2, apply, compose, normalizeAngle } from "../src/se2";
 import { type Tab, cursor, drag, lastCopied, middle, open } from "./browser";
-import { elsewhere, examples, gridmerge, mergeInto, program, reportData, source, transforms } from "./reports";
+import { elsewhere, examples, gridmerge, mergeInto, reportData, source, transforms, view } from "./reports";
 
 /** Robots 1 and 3 saw little in common, so that they are refused by themselves. */
 const pair = [examples[0], examples[2]];
@@ -181,20 +180,6 @@ test("a map that is only looked at in hand is not placed", async () => {
   assert.ok(!await page.isVisible("#hand-x"), "another scene, and the hand is empty");
   await tab.close();
 });
-
-/** Starts `gridmerge view` and gives the address that it prints. */
-function view(folder: string): Promise<{ server: ChildProcess; address: string }> {
-  const server = spawn(program, ["view", folder, "--port", "0"], { cwd: source });
-  return new Promise((resolve, reject) => {
-    let text = "";
-    server.stdout.on("data", (data: Buffer) => {
-      text += data.toString();
-      const address = /http:\/\/\S+/.exec(text)?.[0];
-      if (address) resolve({ server, address });
-    });
-    server.on("exit", (code) => reject(new Error(`gridmerge view ended with ${code}: ${text}`)));
-  });
-}
 
 test("with gridmerge view the engine refines what was placed by hand", async () => {
   const { server, address } = await view(mergeInto("pair", pair, "--accept", "1"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { spawnSync } from "node:child_process";
+import { type ChildProcess, spawn, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
 import type { Report } from "../src/report";
@@ -60,3 +60,17 @@ export const eighteen = () =>
 /** Merged, they are of more than 4000 by 4000 cells. */
 export const large = () =>
   simulated("large", 3, ["--kind", "office", "--size", "80x80", "--resolution", "0.02", "--overlap", "0.5", "--seed", "3"]);
+
+/** Starts `gridmerge view` and gives the address that it prints. */
+export function view(folder: string): Promise<{ server: ChildProcess; address: string }> {
+  const server = spawn(program, ["view", folder, "--port", "0"], { cwd: source });
+  return new Promise((resolve, reject) => {
+    let text = "";
+    server.stdout.on("data", (data: Buffer) => {
+      text += data.toString();
+      const address = /http:\/\/\S+/.exec(text)?.[0];
+      if (address) resolve({ server, address });
+    });
+    server.on("exit", (code) => reject(new Error(`gridmerge view ended with ${code}: ${text}`)));
+  });
+}

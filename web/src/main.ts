@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { announce, download } from "./clipboard";
 import { h, replace } from "./dom";
+import { follow } from "./follow";
 import { type Grid, unpack } from "./grid";
 import { helpDialog } from "./help";
 import { type Icon, icon } from "./icons";
@@ -265,9 +266,14 @@ function build(report: Report): void {
     help: () => help.showModal(),
     refine: () => void hand.refine(),
   });
+  // What a new page would end: a map in hand, a pointer that is down, a field that is filled in, a dialogue. And a join, which may
+  // have another place in the next answer.
+  const isBusy = () => state.handled !== null || state.scene.id.kind === "join" || stage.canvas.classList.contains("grabbing") ||
+    document.querySelector("dialog[open], input:focus, select:focus") !== null;
+  const following = report.answer === undefined ? null : follow(report.answer, { isBusy, keepView: () => shared.keep() });
   replace(document.getElementById("app")!,
     h("header", {},
-      h("h1", {}, "Merged maps"), h("p", { id: "summary" }, summary(report)), mergedSwitch(state, toggleMerged), scenePicker(state)),
+      h("h1", {}, "Merged maps"), h("p", { id: "summary" }, summary(report)), following, mergedSwitch(state, toggleMerged), scenePicker(state)),
     h("main", {},
       h("div", { class: "stage" }, stage.canvas, stageButtons(stage, state, actions), said.element,
         h("div", { class: "readings" }, rulerReading(state), cursorReading(state))),

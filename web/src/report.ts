@@ -107,6 +107,8 @@ export interface Report {
   version: string;
   /** Served by a running gridmerge, which can refine poses. */
   live: boolean;
+  /** The number of a node's answer, whose newest one the page follows; not in other reports. */
+  answer?: number;
   maps: InputMap[];
   components: Component[];
   joins: Join[];

@@ -17,12 +17,17 @@ export class SharedState {
     this.tabs = tabs;
   }
 
-  /** Puts the view into the address, and copies that; returns whether it could be copied. */
-  async copyLink(): Promise<boolean> {
+  /** Puts the view into the address, and returns that. */
+  keep(): string {
     const hash = toHash(this.view(), this.state.report);
     const link = location.href.replace(/#.*$/, "") + `#${hash}`;
     history.replaceState(null, "", link);
-    return copy(link);
+    return link;
+  }
+
+  /** The same, and copies it; returns whether it could be copied. */
+  async copyLink(): Promise<boolean> {
+    return copy(this.keep());
   }
 
   /** Shows what a link to a view was copied of. An empty hash is as the report was opened. */

@@ -57,6 +57,7 @@ struct RosNodeOptions {
   std::function<void(const std::string&)> tell;    ///< called by run() with a line on what happened
   std::function<void(const std::string&)> warn;    ///< likewise, on what should not have
   std::function<void(const std::string&)> detail;  ///< likewise, with the figures of each answer
+  std::function<void(const std::shared_ptr<const TeamAnswer>&)> answered;  ///< likewise, with each new answer
 };
 
 /// Throws std::invalid_argument for names, topics, patterns, frames and options that cannot be, for known

@@ -13,6 +13,7 @@
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/match_result.hpp"
+#include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
 
@@ -52,6 +53,15 @@ struct TeamComponent {
   std::shared_ptr<const OccupancyGrid> map;  ///< all their maps, fused; never null
 };
 
+/// What stands behind an answer, as a merge that outputs can show (NamedMerge).
+struct TeamMerge {
+  std::vector<std::string> names;  ///< of the robots with maps, first heard here first
+  std::vector<std::shared_ptr<const OccupancyGrid>> maps;  ///< the newest of each, never null
+  /// Components, poses and their order are the answer's, comparisons the newest ones: while the answer holds
+  /// a change back, the two may differ. The fused grids are empty: TeamComponent::map has them.
+  MergeResult result;
+};
+
 /// What has changed from one answer to the next.
 struct TeamEvent {
   /// What kind of change it is.
@@ -77,6 +87,7 @@ struct TeamAnswer {
   /// The newest maps were searched as merge() does, nothing is held against them: the components and poses
   /// are those of merge() with these maps, in the order of first hearing.
   bool settled = true;
+  std::shared_ptr<const TeamMerge> merge = std::make_shared<const TeamMerge>();  ///< never null
   std::string problem;  ///< why this is the answer before, made again; empty where there is none
 };
 

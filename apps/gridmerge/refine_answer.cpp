@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refine_answer.hpp"
+
+#include <vector>
+
+#include "grid/parallel.hpp"
+#include "merge/refine_member.hpp"
+#include "report/refine_request.hpp"
+
+namespace gridmerge::cli {
+
+using namespace internal;
+
+std::string answer_refine(const std::string& body, std::size_t maps,
+                          const std::function<const OccupancyGrid&(std::size_t)>& map, int threads) {
+  const RefineRequest request = parse_refine_request(body, maps);
+  const auto placed = [&](const LaidMap& laid) { return PlacedMap{&map(laid.map), laid.T_page_map}; };
+  std::vector<PlacedMap> fixed;
+  for (const LaidMap& laid : request.fixed) fixed.push_back(placed(laid));
+  RefinedPose refined;
+  with_threads(threads, [&] { refined = refine_member(fixed, placed(request.moving)); });
+  return refined_pose_json(refined);
+}
+
+}  // namespace gridmerge::cli
