@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from gridmerge import InitialPose, Team
 
+from gridmerge_ros.ages import RobotAge, publisher_digits
 from gridmerge_ros.messages import RefusedMessage, Stamp, read_map, read_update
 
 MOST_CELLS_TOGETHER = 2**30
@@ -46,8 +48,15 @@ class HeardRobot:
     last_refusal: str = ""
     pose: str = ""
     """What became of the pose that the parameters give for it; empty where they give none."""
+    heard_first: float = 0.0
+    """Since when maps in this frame are heard, by the oldest account of all nodes: seconds since 1970; 0 before."""
     cells: int = field(default=0, repr=False)
     followed: Publisher | None = field(default=None, repr=False)
+
+    @property
+    def publisher(self) -> str:
+        """The number of who publishes the map, as diagnoses have it; empty where nobody knows."""
+        return "" if self.followed is None else publisher_digits(self.followed)
 
 
 class Robots:
@@ -125,11 +134,14 @@ class Robots:
             self._tell(f"{name}: first map: {content}")
         elif heard.frame != robot.frame or self._is_another(robot, publishers):
             self._restart(robot, content)
+        now = time.time()
         try:
             self._team.hear(name, heard.grid)
         except ValueError as error:
             self._refuse(robot, str(error))
             return
+        if robot.heard_first == 0.0:
+            self._set_age(robot, now)
         if robot.followed not in publishers:
             robot.followed = next(iter(sorted(publishers)), robot.followed)
         robot.frame = heard.frame
@@ -155,6 +167,14 @@ class Robots:
             return
         robot.parts += 1
 
+    def hear_age(self, age: RobotAge) -> None:
+        """What a node tells, this one too; of robots and frames that are not heard here it means nothing."""
+        for robot in self._robots.values():
+            if (robot.topic, robot.publisher, robot.frame) != (age.topic, age.publisher, age.frame):
+                continue
+            if robot.maps > 0 and age.heard_first < robot.heard_first:
+                self._set_age(robot, age.heard_first)
+
     def refuse(self, name: str, why: str) -> None:
         """A message of the robot that could not be decoded."""
         self.undecodable += 1
@@ -163,6 +183,10 @@ class Robots:
     @staticmethod
     def _is_another(robot: HeardRobot, publishers: Collection[Publisher]) -> bool:
         return robot.followed is not None and bool(publishers) and robot.followed not in publishers
+
+    def _set_age(self, robot: HeardRobot, heard_first: float) -> None:
+        robot.heard_first = heard_first
+        self._team.hear_age(robot.name, heard_first)
 
     def _set_pose(self, robot: HeardRobot, pose: KnownPose) -> None:
         place = (pose.x, pose.y, pose.theta)
@@ -183,6 +207,7 @@ class Robots:
         """What was known of the old map's frame says nothing of the new one, whatever its name."""
         self._tell(f"{robot.name}: started anew: {content}")
         self._team.forget(robot.name)
+        robot.heard_first = 0.0
         if self._poses.pop(robot.name, None) is not None:
             self._team.set_known_pose(robot.name, None)
             robot.pose = "holds no longer: the robot started anew"

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from gridmerge import RobotStatus, TeamAnswer, Transform
 
+from gridmerge_ros.ages import FRAME, HEARD_FIRST, PUBLISHER, TOPIC, format_time
 from gridmerge_ros.names import numbered
 from gridmerge_ros.robots import HeardRobot
 
@@ -127,7 +128,7 @@ def _diagnose_robot(
         why = status.why
     else:
         why = "no map was heard yet" if robot.maps == 0 else "its first map is being looked at"
-    values = [("state", state), ("why", why), ("topic", robot.topic), ("frame", robot.frame)]
+    values = [("state", state), ("why", why), (TOPIC, robot.topic), (FRAME, robot.frame)]
     if status is not None and status.reason is not None:
         values.append(("reason", status.reason))
     if status is not None and status.component is not None:
@@ -141,6 +142,10 @@ def _diagnose_robot(
     values += [
         ("maps", str(robot.maps)),
         ("updates", str(robot.parts)),
+    ]
+    if robot.publisher:
+        values += [(PUBLISHER, robot.publisher), (HEARD_FIRST, format_time(robot.heard_first))]
+    values += [
         ("publishers", str(robot.publishers)),
         ("refused", str(robot.refused)),
     ]

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import OccupancyGrid
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
@@ -14,6 +15,7 @@ from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+from gridmerge_ros.ages import read_ages
 from gridmerge_ros.names import Selection
 from gridmerge_ros.robots import KnownPose, Publisher, Robots
 
@@ -29,6 +31,13 @@ UPDATE_TYPE = "map_msgs/msg/OccupancyGridUpdate"
 
 _MAPS_KEPT = 1
 _UPDATES_KEPT = 64
+# Of all programs that diagnose themselves. Best effort takes what anybody offers; who tells an age tells it again.
+_DIAGNOSES = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=64,
+    reliability=ReliabilityPolicy.BEST_EFFORT,
+    durability=DurabilityPolicy.VOLATILE,
+)
 
 
 def matching_qos(publishers: Sequence[TopicEndpointInfo], depth: int) -> QoSProfile:
@@ -66,6 +75,9 @@ class MapSubscriptions:
         self._robots = robots
         self._known_pose = known_pose
         self._subscriptions: dict[str, tuple[QoSProfile, Subscription]] = {}
+        self._diagnoses = node.create_subscription(
+            DiagnosticArray, "/diagnostics", self._hear_diagnoses, _DIAGNOSES, raw=True
+        )
 
     def discover(self) -> None:
         """Subscribes to what is new, as its publishers send it."""
@@ -93,6 +105,7 @@ class MapSubscriptions:
         for _, subscription in self._subscriptions.values():
             self._node.destroy_subscription(subscription)
         self._subscriptions.clear()
+        self._node.destroy_subscription(self._diagnoses)
 
     def _follow(
         self,
@@ -124,6 +137,14 @@ class MapSubscriptions:
 
     def _numbers_of(self, topic: str) -> list[Publisher]:
         return [tuple(one.endpoint_gid) for one in self._publishers_of(topic, MAP_TYPE)]
+
+    def _hear_diagnoses(self, data: bytes) -> None:
+        try:
+            ages = read_ages(deserialize_message(data, DiagnosticArray))
+        except Exception:  # likewise; whose message it was nobody knows
+            return
+        for age in ages:
+            self._robots.hear_age(age)
 
     def _hear_map(self, name: str, topic: str, data: bytes) -> None:
         message = self._decode(name, data, OccupancyGrid)

@@ -56,9 +56,9 @@ def yaw(rotation: Any) -> float:
 class Program:
     """The node under test, running."""
 
-    def __init__(self, domain: int, arguments: Sequence[str], environment: dict[str, str]) -> None:
+    def __init__(self, domain: int, command: Sequence[str], environment: dict[str, str]) -> None:
         self._process = subprocess.Popen(
-            [sys.executable, "-W", "ignore", "-m", "gridmerge_ros.main", *arguments],
+            command,
             env={**os.environ, "ROS_DOMAIN_ID": str(domain), **environment},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -96,6 +96,7 @@ class Peer:
         self._diagnoses: dict[str, dict[str, str]] = {}
         self._levels: dict[str, int] = {}
         self.node_names: set[str] = set()
+        self.names: set[str] = set()
         self._programs: list[Program] = []
         self.environment: dict[str, str] = {}
         self.node.create_subscription(DiagnosticArray, "/diagnostics", self._on_diagnostics, 10)
@@ -111,7 +112,27 @@ class Peer:
         """The node under test, with arguments of ROS and parameters. A short `quiet`, unless told."""
         written = {"quiet": 0.5, "discovery_rate": 5.0, **parameters}
         values = [part for name, value in written.items() for part in ("-p", f"{name}:={_written(value)}")]
-        program = Program(self._domain, ["--ros-args", *values, *arguments], self.environment)
+        command = [
+            sys.executable,
+            "-W",
+            "ignore",
+            "-m",
+            "gridmerge_ros.main",
+            "--ros-args",
+            *values,
+            *arguments,
+        ]
+        return self._run(command)
+
+    def start_program(self, *arguments: str) -> Program:
+        """`gridmerge node` beside the node under test."""
+        program = os.environ.get("GRIDMERGE", "")
+        if not program:
+            pytest.skip("GRIDMERGE does not name the program: './dev test --ros' does")
+        return self._run([program, "node", *arguments])
+
+    def _run(self, command: Sequence[str]) -> Program:
+        program = Program(self._domain, command, self.environment)
         self._programs.append(program)
         return program
 
@@ -120,6 +141,7 @@ class Peer:
             _, _, robot = status.name.partition(": ")
             name = robot or "gridmerge"
             self.node_names.add(status.name.partition(": ")[0])
+            self.names.add(status.name)
             self._levels[name] = status.level[0]
             self._diagnoses[name] = {entry.key: entry.value for entry in status.values}
             self._diagnoses[name]["message"] = status.message

@@ -163,6 +163,44 @@ def test_robots_by_name(peer: Peer, explored: gridmerge.Simulation) -> None:
     assert transforms == []
 
 
+@pytest.mark.parametrize("other", ["node", "program"])
+def test_nodes_agree_on_whose_frame_is_the_worlds(
+    peer: Peer, explored: gridmerge.Simulation, other: str
+) -> None:
+    if other == "program":
+        peer.start_program("--name", "first", "--world", "first_world", "--output", "/first_map", "--quiet")
+    else:
+        peer.start("-r", "__node:=first", world_frame="first_world", merged_map_topic="first_map")
+    late = peer.publisher("tb2", VOLATILE)
+    message = map_message(at_step(explored, 2, -1), "tb2/map")
+
+    def is_heard() -> bool:
+        late.publish(message)
+        peer.spin(0.3)
+        return peer.value("tb2", "heard first") is not None
+
+    peer.wait_until(is_heard, "tb2 is heard")
+    early = peer.publisher("tb0")
+    early.publish(map_message(at_step(explored, 0, -1), "tb0/map"))
+    peer.wait_until_placed("tb0", "tb2")
+
+    # This one hears them the other way round: tb0 is latched, and tb2 sends again when tb0 is known.
+    transforms = peer.collect(TFMessage, "/tf_static")
+    peer.start("-r", "__node:=second", world_frame="second_world", merged_map_topic="second_map")
+    peer.wait_until(lambda: "second: tb0" in peer.names, "tb0 is known")
+
+    def takes_frame_of_tb2() -> bool:
+        late.publish(message)
+        peer.spin(0.3)
+        told = [
+            one for array in transforms for one in array.transforms if one.header.frame_id == "second_world"
+        ]
+        mine = {one.child_frame_id: one.transform.translation for one in told[-2:]}
+        return "tb2/map" in mine and (mine["tb2/map"].x, mine["tb2/map"].y) == (0.0, 0.0)
+
+    peer.wait_until(takes_frame_of_tb2, "the frame of tb2 is the second node's world too")
+
+
 def test_frames_that_robots_share_are_withheld(peer: Peer, explored: gridmerge.Simulation) -> None:
     peer.start()
     transforms = peer.collect(TFMessage, "/tf_static")

@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+import time
+from dataclasses import replace
 from typing import Any
 
 import pytest
 from gridmerge_ros import robots as robots_module
+from gridmerge_ros.ages import RobotAge
 from gridmerge_ros.robots import KnownPose, Robots
 from messages_like_ros import map_message, update_message
 
@@ -19,6 +22,7 @@ class Account:
 
     def __init__(self) -> None:
         self.calls: list[tuple[Any, ...]] = []
+        self.ages: list[tuple[str, float]] = []
         self.holds_parts = True
         self.is_full = False
 
@@ -30,6 +34,9 @@ class Account:
     def hear_part(self, robot: str, column: int, row: int, grid: Any) -> bool:
         self.calls.append(("hear_part", robot, column, row, grid.shape))
         return self.holds_parts
+
+    def hear_age(self, robot: str, heard_first: float) -> None:
+        self.ages.append((robot, heard_first))
 
     def forget(self, robot: str) -> None:
         self.calls.append(("forget", robot))
@@ -129,6 +136,29 @@ def test_a_publisher_more_or_one_that_is_not_known_yet_is_no_new_start(heard: He
     for publishers in ([], [SECOND], [FIRST, SECOND], [], [SECOND]):
         heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), publishers)
     assert [call[0] for call in heard.account.calls] == ["hear"] * 5
+
+
+def test_the_oldest_account_of_all_nodes_counts(heard: Heard) -> None:
+    before = time.time()
+    heard.robots.hear_age(RobotAge("/tb1/map", "", "", 7.0))  # of what is not heard yet
+    heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), [FIRST])
+    own = heard.tb1.heard_first
+    assert before <= own <= time.time()
+    assert heard.tb1.publisher == "0101"
+    told = RobotAge("/tb1/map", "0101", "tb1/map", own - 5.0)
+    for wrong in ({"topic": "/tb2/map"}, {"publisher": "0202"}, {"frame": "map"}, {"heard_first": own + 1.0}):
+        heard.robots.hear_age(replace(told, **wrong))
+    assert heard.account.ages == [("tb1", own)]
+    for _ in range(2):
+        heard.robots.hear_age(told)
+    heard.robots.hear_age(replace(told, heard_first=own - 1.0))
+    assert heard.account.ages == [("tb1", own), ("tb1", own - 5.0)]
+    assert heard.tb1.heard_first == own - 5.0
+    # What holds for one frame says nothing of the next.
+    heard.robots.hear_map("tb1", map_message(CELLS, 3, 2, "tb1/other"), [FIRST])
+    assert heard.tb1.heard_first >= own
+    heard.robots.hear_age(told)
+    assert heard.account.ages[2:] == [("tb1", heard.tb1.heard_first)]
 
 
 def test_poses_that_cannot_be(heard: Heard) -> None:

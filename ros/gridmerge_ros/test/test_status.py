@@ -64,6 +64,7 @@ def test_diagnoses() -> None:
     robots = heard("a/map", "b/map", "c/map")
     robots["tb1"].refused, robots["tb1"].last_refusal = 2, "a size of 0 x 0 cells"
     robots["tb2"].pose = "fixed"
+    robots["tb0"].followed, robots["tb0"].heard_first = (1, 255), 12.5
     given = answer(placed("tb0", 0, 1.0), left_out("tb1"))
     node, first, second, third = diagnose(given, robots, TeamTransforms((), {}), HEALTH)
     assert (node.level, node.name, node.message) == (OK, "gridmerge", "1 of 3 robots placed")
@@ -74,6 +75,9 @@ def test_diagnoses() -> None:
     assert (first.level, first.name, first.hardware) == (OK, "gridmerge: tb0", "tb0")
     assert dict(first.values)["x"] == "1"
     assert dict(first.values)["probability"] == "0.99"
+    # As other nodes read it.
+    assert (dict(first.values)["publisher"], dict(first.values)["heard first"]) == ("01ff", "12.500000000")
+    assert "heard first" not in dict(second.values)
     assert (second.level, second.message) == (WARNING, "left out: it fits in more than one way")
     assert dict(second.values)["reason"] == "ambiguous"
     assert dict(second.values)["last refusal"] == "a size of 0 x 0 cells"
