@@ -3,9 +3,10 @@
 """Where the engine works and where it breaks: families of simulated cases, each with one factor swept, and real maps where
 there are any. Writes OUTPUT/report.md with plots beside it.
 
-usage: benchmark/benchmark.py --gridmerge BINARY --output DIR [--data DIR] [--full]
+usage: benchmark/benchmark.py --gridmerge BINARY --output DIR [--data DIR] [--full] [--only PART,...]
 
-By default a quarter of an hour on two cores; --full takes eight times as many cases, and about two hours.
+By default a quarter of an hour on two cores; --full takes eight times as many cases, and about two hours. --only measures some
+of the parts alone.
 """
 
 import argparse
@@ -36,6 +37,7 @@ FAMILIES = {
                                   ("office", "hall", "warehouse", "apartment", "symmetric", "loop", "curved", "outdoor")]),
     "size": ("side of the building [m]", [({"--size": f"{v}x{v}"}, v) for v in (10, 20, 40, 80, 160, 200)]),
 }
+PARTS = (*FAMILIES, "ratio", "teams", "walk", "real")
 RATIOS = (1, 2, 3, 4, 6)          # of the two maps' cells
 TEAM_KINDS = ("office", "hall", "loop", "apartment")
 TEAM_SIZES = (2, 5, 10, 20, 30)   # robots of one floor of 100 m x 60 m
@@ -320,44 +322,64 @@ def real_maps(bench: Bench, data: pathlib.Path) -> str:
     return "\n## Real maps\n" + (table(rows, "maps") if rows else f"There are none at {data}.\n")
 
 
+def parts(text: str) -> tuple[str, ...]:
+    named = tuple(text.split(","))
+    for part in named:
+        if part not in PARTS:
+            raise argparse.ArgumentTypeError(f"no part is called '{part}': there are {', '.join(PARTS)}")
+    return named
+
+
+def report_families(bench: Bench, families: dict) -> str:
+    report = ""
+    for family, rows in families.items():
+        label = FAMILIES[family][0]
+        plot_family(rows, label, bench.output / f"{family}.png")
+        report += f"\n## {family}\n![{label}]({family}.png)\n\n{table([with_intervals(row) for row in rows], label)}"
+        if family == "size":
+            plot_cost(rows, label, bench.output / "cost.png")
+            report += "\n![Time and memory](cost.png)\n"
+        if family == "overlap":
+            report += "\n## Shared wall\nThe pairs of the overlap family.\n\n"
+            report += table(by_shared_wall([case for case in bench.cases if case["family"] == "overlap"]))
+    if bench.cases:
+        error = plot_probability(bench.cases, bench.output / "probability.png")
+        report += f"\n## The probability\n![ROC and reliability](probability.png)\n\nExpected calibration error {error:.3f} over "
+        report += f"{len(bench.cases)} cases of all families.\n"
+    return report
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--gridmerge", type=pathlib.Path, required=True)
     parser.add_argument("--output", type=pathlib.Path, required=True)
     parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared/data"))
     parser.add_argument("--full", action="store_true")
+    parser.add_argument("--only", type=parts, default=PARTS, metavar="PART,...", help=f"of {', '.join(PARTS)}")
     arguments = parser.parse_args()
     bench = Bench(arguments.gridmerge, arguments.output, 64 if arguments.full else 8)
     (arguments.output / "cases").mkdir(parents=True, exist_ok=True)
 
     # All measurements first: see pyplot().
     families = {}
-    for family, (label, values) in FAMILIES.items():
+    for family in (family for family in FAMILIES if family in arguments.only):
         print(f"{family} ...", flush=True)
-        families[family] = bench.sweep(family, values)
-    print("ratio, teams, walk, real maps ...", flush=True)
-    ratios, teams, sizes, walk = bench.ratios(), bench.teams(), bench.team_sizes(), bench.walk()
-    real = real_maps(bench, arguments.data)
+        families[family] = bench.sweep(family, FAMILIES[family][1])
+    rest = ""
+    if "ratio" in arguments.only:
+        rest += "\n## Ratio of the two maps' cells\n" + table([with_intervals(row) for row in bench.ratios()], "ratio")
+    if "teams" in arguments.only:
+        rest += "\n## Teams of six\n" + table(bench.teams())
+        sizes = bench.team_sizes()
+        rest += "\n## Size of the team\n" + (table(sizes) if sizes else "The team could not be simulated.\n")
+    if "walk" in arguments.only:
+        rest += "\n## Beside the paper's random walk\n" + table(bench.walk())
+    if "real" in arguments.only:
+        rest += real_maps(bench, arguments.data)
 
     report = "# Where the engine works, and where it breaks\n"
     report += f"Simulated maps; in each table one factor is swept, the others are {' '.join(f'{k} {v}' for k, v in BASE.items())}.\n"
-    for family, rows in families.items():
-        label = FAMILIES[family][0]
-        plot_family(rows, label, arguments.output / f"{family}.png")
-        report += f"\n## {family}\n![{label}]({family}.png)\n\n{table([with_intervals(row) for row in rows], label)}"
-        if family == "size":
-            plot_cost(rows, label, arguments.output / "cost.png")
-            report += "\n![Time and memory](cost.png)\n"
-    report += "\n## Shared wall\nThe pairs of the overlap family.\n\n"
-    report += table(by_shared_wall([case for case in bench.cases if case["family"] == "overlap"]))
-    report += "\n## Ratio of the two maps' cells\n" + table([with_intervals(row) for row in ratios], "ratio")
-    report += "\n## Teams of six\n" + table(teams)
-    report += "\n## Size of the team\n" + (table(sizes) if sizes else "The team could not be simulated.\n")
-    error = plot_probability(bench.cases, arguments.output / "probability.png")
-    report += f"\n## The probability\n![ROC and reliability](probability.png)\n\nExpected calibration error {error:.3f} over "
-    report += f"{len(bench.cases)} cases of all families.\n"
-    report += "\n## Beside the paper's random walk\n" + table(walk)
-    report += real
+    report += report_families(bench, families) + rest
     (arguments.output / "report.md").write_text(report)
     print(f"wrote {arguments.output / 'report.md'}")
 

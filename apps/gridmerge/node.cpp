@@ -73,9 +73,10 @@ int run_node(const NodeCommandOptions& options) {
     const StopAtSignal stop(signal, node);
     end = node.run();
   }
-  if (end == RosNode::End::stopped) return kDone;
-  print(node.describe());
-  return end == RosNode::End::merged ? kDone : kRefused;
+  if (end != RosNode::End::stopped) print(node.describe());
+  const int exit_code = end == RosNode::End::refused ? kRefused : kDone;
+  if (server) server->end(exit_code);
+  return exit_code;
 }
 
 }  // namespace

@@ -115,11 +115,7 @@ class PageServer::State {
       : address_(std::move(address)), answers_(std::move(answers)) {
     listen(port);
   }
-  ~State() {
-    if (!served_.valid()) return;
-    stop(served_);
-    listener_.join();
-  }
+  ~State() { end(EXIT_FAILURE); }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
@@ -132,7 +128,7 @@ class PageServer::State {
     ready();  // the socket listens already; before there is another thread, as this may throw
     start([&interrupt] { interrupt.raise(); });
     interrupt.wait();
-    stop(served_);
+    stop(EXIT_SUCCESS);
     listener_.join();
     served_.get();
   }
@@ -145,6 +141,13 @@ class PageServer::State {
       at_end();
     });
     served_ = std::move(served);
+  }
+
+  void end(int exit_code) {
+    if (!served_.valid()) return;
+    stop(exit_code);
+    listener_.join();
+    served_ = {};
   }
 
  private:
@@ -171,12 +174,12 @@ class PageServer::State {
     throw std::runtime_error(fmt::format("cannot serve at {}:{}: {}", host_of(address_), port, cause));
   }
 
-  void stop(const std::future<void>& served) {
+  void stop(int exit_code) {
     stopping_ = true;
     server_->stop();
-    if (served.wait_for(kGrace) == std::future_status::ready) return;
+    if (served_.wait_for(kGrace) == std::future_status::ready) return;
     std::fflush(nullptr);
-    std::_Exit(EXIT_SUCCESS);
+    std::_Exit(exit_code);
   }
 
   std::optional<HttpResponse> answer_head(const HttpHead& request) const {
@@ -242,6 +245,10 @@ void PageServer::run(const std::function<void()>& ready) {
 
 void PageServer::start() {
   state_->start([] {});
+}
+
+void PageServer::end(int exit_code) {
+  state_->end(exit_code);
 }
 
 bool PageServer::is_local() const {

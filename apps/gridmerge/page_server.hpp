@@ -30,7 +30,7 @@ class PageServer {
   /// Listens at `address`, a name or number of this machine's, and `port`, 0 for a free one. Throws
   /// std::runtime_error when that cannot be had.
   PageServer(const std::string& address, int port, PageAnswers answers);
-  /// After start(): ends as run() does.
+  /// As end(), with an exit code of failure, where that was not called.
   ~PageServer();
   PageServer(const PageServer&) = delete;
   PageServer& operator=(const PageServer&) = delete;
@@ -47,8 +47,11 @@ class PageServer {
   /// std::runtime_error for an error, and what `ready` throws.
   void run(const std::function<void()>& ready);
 
-  /// Serves in a thread of its own, for as long as this lives. An error of the network ends that silently.
+  /// Serves in a thread of its own until end(). An error of the network ends that silently.
   void start();
+
+  /// Ends what start() began, as run() ends: with this exit code, where a connection is too slow.
+  void end(int exit_code);
 
  private:
   class State;

@@ -49,6 +49,14 @@ double far_ahead_though_bent(const PoseFigures& f) {
   return ahead * bent;
 }
 
+/// How much better walls meet patch by patch. Few walls find others by chance when they may shift, so a bend
+/// explains little of them.
+double bend_explains(const PoseFigures& f) {
+  constexpr double kMany = 150.0;  // [m]
+  const double better = missing(f.walls_met_locally, 0.05) - missing(f.walls_met, 0.05);
+  return better * std::clamp(f.seen_walls / kMany, 0.0, 1.0);
+}
+
 /// Two maps of one empty room agree in 99 of 100 cells, whichever way they lie: more tells nothing.
 double cells_agree(double acceptance_index) {
   constexpr double kNearlyAll = 0.99;
@@ -81,8 +89,10 @@ std::span<const VerdictTerm> verdict_terms() {
                   TermKind::excuse, 0.0, 1.0, far_ahead_though_bent},
       VerdictTerm{"met locally", "-ln(1.05 - walls_met_locally)", kQuality, 0.0, 2.5,
                   [](const F& f) { return missing(f.walls_met_locally, 0.05); }},
-      VerdictTerm{"bend explains", "ln((1.05 - walls_met) / (1.05 - walls_met_locally))", kQuality, 0.0, 2.0,
-                  [](const F& f) { return missing(f.walls_met_locally, 0.05) - missing(f.walls_met, 0.05); }},
+      VerdictTerm{
+          "bend explains",
+          "ln((1.05 - walls_met) / (1.05 - walls_met_locally)), times seen_walls / 150 m within [0, 1]",
+          kQuality, 0.0, 2.0, bend_explains},
       VerdictTerm{"cells agree", "-ln(1.01 - min(acceptance_index, 0.99))", kQuality, 1.0, 3.92,
                   [](const F& f) { return cells_agree(f.acceptance_index); }},
       VerdictTerm{"agrees better", "what \"cells agree\" is more than for max(next_acceptance_index, 0.93)",

@@ -12,32 +12,32 @@ struct VerdictWeight {
   double weight;
 };
 
-inline constexpr double kVerdictBias = -14.301;
+inline constexpr double kVerdictBias = -14.435;
 
 /// In the order of verdict_terms().
 // clang-format off
 inline constexpr std::array kVerdictWeights{
     VerdictWeight{"tells apart", 3.000},
     VerdictWeight{"held", 1.000},
-    VerdictWeight{"stands out", 0.403},
-    VerdictWeight{"far ahead, bent", 11.911},
-    VerdictWeight{"met locally", 2.560},
-    VerdictWeight{"bend explains", 2.675},
-    VerdictWeight{"cells agree", 3.559},
-    VerdictWeight{"agrees better", 0.806},
-    VerdictWeight{"things met", 1.926},
+    VerdictWeight{"stands out", 0.315},
+    VerdictWeight{"far ahead, bent", 8.458},
+    VerdictWeight{"met locally", 2.635},
+    VerdictWeight{"bend explains", 5.285},
+    VerdictWeight{"cells agree", 3.544},
+    VerdictWeight{"agrees better", 0.721},
+    VerdictWeight{"things met", 1.573},
 };
 // clang-format on
 
 /// In the order of rank_terms().
 // clang-format off
 inline constexpr std::array kRankWeights{
-    VerdictWeight{"evidence", 2.770},
-    VerdictWeight{"seen", 1.448},
-    VerdictWeight{"cells", 3.268},
-    VerdictWeight{"lines", 2.620},
-    VerdictWeight{"things", 2.951},
-    VerdictWeight{"tolerance", 1.355},
+    VerdictWeight{"evidence", 3.191},
+    VerdictWeight{"seen", 1.764},
+    VerdictWeight{"cells", 3.234},
+    VerdictWeight{"lines", 2.775},
+    VerdictWeight{"things", 2.900},
+    VerdictWeight{"tolerance", 1.520},
 };
 // clang-format on
 
