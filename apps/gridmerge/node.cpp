@@ -88,8 +88,9 @@ void add_node(CLI::App& app, Action& action) {
   command->footer(
       "Hears nav_msgs/msg/OccupancyGrid of every robot, and map_msgs/msg/OccupancyGridUpdate on the same\n"
       "topic with _updates. Publishes the merged map, transforms and /diagnostics until Ctrl-C\n"
-      "(docs/node.md). ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_LOCALHOST_ONLY\n"
-      "and CYCLONEDDS_URI count as for any node.\n\n"
+      "(docs/node.md). ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_LOCALHOST_ONLY,\n"
+      "CYCLONEDDS_URI, and for DDS Security ROS_SECURITY_ENABLE, ROS_SECURITY_KEYSTORE and\n"
+      "ROS_SECURITY_ENCLAVE_OVERRIDE count as for any node.\n\n"
       "Example:\n  gridmerge node\n"
       "  gridmerge node --pattern '/fleet/*/map' --fix tb1 --world site\n"
       "  gridmerge node --robot left=/tb1/map --robot right=/tb2/map --once --wait 30\n"

@@ -133,6 +133,11 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
       ->type_name("NODE")
       ->capture_default_str();
   command
+      .add_option("--enclave", node.enclave,
+                  "The node's enclave, as /robots/merger, where ROS_SECURITY_ENABLE is true")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command
       .add_option(
           "--tf", options.transforms,
           "Transforms from the world to the robots' map frames: static on /tf_static when they change, "

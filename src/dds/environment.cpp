@@ -14,6 +14,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "dds/names.hpp"
+
 namespace gridmerge::internal {
 
 namespace {
@@ -79,6 +81,24 @@ std::vector<std::string> read_peers(const Environment& environment) {
   return peers;
 }
 
+/// Where the enclave's files are; all of them are there.
+std::filesystem::path find_enclave(const Environment& environment, const std::string& enclave) {
+  constexpr const char* kKeystore = "ROS_SECURITY_KEYSTORE";
+  const std::string keystore = value_of(environment, kKeystore);
+  if (keystore.empty()) refuse("ROS_SECURITY_ENABLE", "true", fmt::format("{} is not set", kKeystore));
+  const std::filesystem::path folder =
+      std::filesystem::absolute(keystore) / "enclaves" / std::filesystem::path(enclave).relative_path();
+  using Files = EnclaveFiles;
+  for (const char* name : {Files::kIdentityAuthority, Files::kIdentity, Files::kPrivateKey,
+                           Files::kPermissionsAuthority, Files::kGovernance, Files::kPermissions}) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(folder / name, error))
+      refuse(kKeystore, keystore,
+             fmt::format("the enclave {} has no file {}", enclave, (folder / name).string()));
+  }
+  return folder;
+}
+
 }  // namespace
 
 std::optional<std::string> process_environment(const std::string& name) {
@@ -99,11 +119,20 @@ bool has_network() {
   return found;
 }
 
-RosEnvironment read_ros_environment(const Environment& environment) {
-  const std::string security = value_of(environment, "ROS_SECURITY_ENABLE");
-  if (security == "true")
-    refuse("ROS_SECURITY_ENABLE", security, "this node has no DDS Security, and does not speak openly then");
+bool is_enclave_name(const std::string& name) {
+  return name == "/" || is_topic_name(name);
+}
+
+RosEnvironment read_ros_environment(const Environment& environment, const std::string& enclave) {
   RosEnvironment read;
+  read.enclave = enclave;
+  if (value_of(environment, "ROS_SECURITY_ENABLE") == "true") {
+    constexpr const char* kOverride = "ROS_SECURITY_ENCLAVE_OVERRIDE";
+    const std::string instead = value_of(environment, kOverride);
+    if (!instead.empty()) read.enclave = instead;
+    if (!is_enclave_name(read.enclave)) refuse(kOverride, instead, "is no enclave's name, as /robots/merger");
+    read.enclave_files = find_enclave(environment, read.enclave);
+  }
   read.domain = read_domain(environment);
   read.cyclone_uri = value_of(environment, "CYCLONEDDS_URI");
   if (is_localhost_only(environment)) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -24,14 +25,32 @@ struct RosEnvironment {
   DiscoveryRange range = DiscoveryRange::subnet;
   std::vector<std::string> static_peers;  // addresses and host names
   std::string cyclone_uri;                // Cyclone DDS's own settings, which count for more
+  std::string enclave = "/";              // whose identity and permissions the node has
+  std::filesystem::path enclave_files;    // folder of these; empty: DDS Security is off
+};
+
+/// What a folder of an enclave holds, as ROS's tools (`ros2 security`) make it.
+struct EnclaveFiles {
+  static constexpr const char* kIdentityAuthority = "identity_ca.cert.pem";
+  static constexpr const char* kIdentity = "cert.pem";
+  static constexpr const char* kPrivateKey = "key.pem";
+  static constexpr const char* kPermissionsAuthority = "permissions_ca.cert.pem";
+  static constexpr const char* kGovernance = "governance.p7s";
+  static constexpr const char* kPermissions = "permissions.p7s";
 };
 
 /// Reads ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS and
 /// CYCLONEDDS_URI as ROS does: one that is empty is not set, and ROS_LOCALHOST_ONLY=1 counts for more than
-/// the two that replace it. Throws std::runtime_error that names the variable for a value that ROS would not
-/// take; for ROS_AUTOMATIC_DISCOVERY_RANGE=OFF, with which no robot can be found; and for
-/// ROS_SECURITY_ENABLE=true, since DDS Security is not set up here.
-RosEnvironment read_ros_environment(const Environment& environment);
+/// the two that replace it. With ROS_SECURITY_ENABLE=true also ROS_SECURITY_KEYSTORE and
+/// ROS_SECURITY_ENCLAVE_OVERRIDE, which counts for more than `enclave`, a name such as "/robots/merger".
+/// Throws std::runtime_error that names the variable for a value that ROS would not take; for
+/// ROS_AUTOMATIC_DISCOVERY_RANGE=OFF, with which no robot can be found; and where a file of the enclave is
+/// missing, whatever ROS_SECURITY_STRATEGY says: a node that is to be secure does not speak openly.
+RosEnvironment read_ros_environment(const Environment& environment, const std::string& enclave = "/");
+
+/// Whether a node's enclave can be called so: "/", or levels of letters, digits and '_', each with a slash
+/// before it.
+bool is_enclave_name(const std::string& name);
 
 /// Whether this machine has an interface, up and with an address, that is not a loopback one.
 bool has_network();

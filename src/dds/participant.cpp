@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <atomic>
 #include <mutex>
 #include <stdexcept>
@@ -28,6 +29,51 @@ void ddsi_tl_handle_reply(ddsi_domaingv* /*domain*/, ddsi_serdata* /*reply*/) {}
 }
 
 namespace gridmerge::internal {
+
+namespace {
+
+/// A plugin of Cyclone DDS, by the names of its library and of two functions in it.
+struct Plugin {
+  const char* property;
+  const char* library;
+  const char* init;
+  const char* finalize;
+};
+
+constexpr std::array kPlugins{
+    Plugin{"dds.sec.auth", "dds_security_auth", "init_authentication", "finalize_authentication"},
+    Plugin{"dds.sec.access", "dds_security_ac", "init_access_control", "finalize_access_control"},
+    Plugin{"dds.sec.crypto", "dds_security_crypto", "init_crypto", "finalize_crypto"}};
+
+/// By the names of the standard (OMG DDS Security 1.1, tables 42 and 49).
+constexpr std::array kFiles{std::pair{"dds.sec.auth.identity_ca", EnclaveFiles::kIdentityAuthority},
+                            std::pair{"dds.sec.auth.identity_certificate", EnclaveFiles::kIdentity},
+                            std::pair{"dds.sec.auth.private_key", EnclaveFiles::kPrivateKey},
+                            std::pair{"dds.sec.access.permissions_ca", EnclaveFiles::kPermissionsAuthority},
+                            std::pair{"dds.sec.access.governance", EnclaveFiles::kGovernance},
+                            std::pair{"dds.sec.access.permissions", EnclaveFiles::kPermissions}};
+
+}  // namespace
+
+QosPtr participant_qos(const RosEnvironment& environment) {
+  QosPtr qos(dds_create_qos());
+  // Without it ROS takes this for no node of its own.
+  const std::string user_data = fmt::format("enclave={};", environment.enclave);
+  dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
+  if (environment.enclave_files.empty()) return qos;
+  const auto set = [&](const std::string& name, const std::string& value) {
+    dds_qset_prop(qos.get(), name.c_str(), value.c_str());
+  };
+  for (const Plugin& plugin : kPlugins) {
+    const std::string library = std::string(plugin.property) + ".library.";
+    set(library + "path", plugin.library);
+    set(library + "init", plugin.init);
+    set(library + "finalize", plugin.finalize);
+  }
+  for (const auto& [property, file] : kFiles)
+    set(property, "file:" + (environment.enclave_files / file).string());
+  return qos;
+}
 
 /// Takes what Cyclone DDS logs, from any thread.
 class Participant::Log {
@@ -72,9 +118,7 @@ Participant::Participant(const RosEnvironment& environment, std::uint64_t larges
         dds_create_domain(environment.domain,
                           cyclone_configuration(environment, largest_message, has_network()).c_str()),
         fmt::format("domain {}", environment.domain));
-    const std::unique_ptr<dds_qos_t, void (*)(dds_qos_t*)> qos(dds_create_qos(), &dds_delete_qos);
-    constexpr std::string_view kUserData = "enclave=/;";  // without it ROS takes this for no node of its own
-    dds_qset_userdata(qos.get(), kUserData.data(), kUserData.size());
+    const QosPtr qos = participant_qos(environment);
     participant_ = DdsEntity(dds_create_participant(environment.domain, qos.get(), nullptr),
                              fmt::format("a participant of domain {}", environment.domain));
     require_dds(dds_get_guid(participant_.get(), &guid_), "the participant's number");

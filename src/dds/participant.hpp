@@ -13,6 +13,15 @@
 
 namespace gridmerge::internal {
 
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using QosPtr = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+/// What makes a participant a node of ROS, in the environment's enclave. With the enclave's files it takes
+/// part in DDS Security.
+QosPtr participant_qos(const RosEnvironment& environment);
+
 /// A participant of a DDS domain, with Cyclone DDS set up for it. One at a time in a process: what Cyclone
 /// DDS logs goes to whoever set its sink last.
 class Participant {

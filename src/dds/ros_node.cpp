@@ -86,6 +86,9 @@ void validate(const RosNodeOptions& options) {
   if (options.name.find('/') != std::string::npos || !is_topic_name("/" + options.name))
     throw std::invalid_argument(
         fmt::format("'{}' is no name of a node: letters, digits and '_'", options.name));
+  if (!is_enclave_name(options.enclave))
+    throw std::invalid_argument(
+        fmt::format("'{}' is no enclave's name, as /robots/merger is", options.enclave));
   try {
     read_frame(options.world_frame);
   } catch (const RefusedMessage& error) {
@@ -106,7 +109,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   explicit State(RosNodeOptions options)
       : options_(completed(std::move(options))),
         selection_(select(options_)),
-        environment_(read_ros_environment(process_environment)),
+        environment_(read_ros_environment(process_environment, options_.enclave)),
         participant_(environment_, kMaxCells + kHeadOfMessage),
         waitset_(dds_create_waitset(participant_.get()), "a wait set"),
         wake_(dds_create_guardcondition(participant_.get()), "a guard condition"),
@@ -211,8 +214,10 @@ void RosNode::State::take_map(const std::string& robot, HeardMap map, bool resta
 RosNode::End RosNode::State::run() {
   began_ = Clock::now();
   news_at_ = began_;
-  options_.tell(fmt::format("hears {} in domain {}, and publishes {}", selection_.describe(),
-                            environment_.domain, options_.output));
+  options_.tell(fmt::format(
+      "hears {} in domain {}{}, and publishes {}", selection_.describe(), environment_.domain,
+      environment_.enclave_files.empty() ? "" : fmt::format(", secure as {}", environment_.enclave),
+      options_.output));
   while (!stopped_) {
     player_.play(seconds());
     wait();

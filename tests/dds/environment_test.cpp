@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "support/temporary_directory.hpp"
+
 namespace gridmerge::internal {
 namespace {
 
@@ -109,8 +111,28 @@ TEST(RosEnvironment, NamesRangesThatRosDoesNotHave) {
 }
 
 TEST(RosEnvironment, DoesNotSpeakOpenlyWhereSecurityIsAskedFor) {
-  EXPECT_TRUE(has(refusal({{"ROS_SECURITY_ENABLE", "true"}}), "ROS_SECURITY_ENABLE='true'"));
-  EXPECT_EQ(refusal({{"ROS_SECURITY_ENABLE", "false"}}), "taken");
+  Variables variables{{"ROS_SECURITY_ENABLE", "true"}, {"ROS_SECURITY_STRATEGY", "Permissive"}};
+  EXPECT_TRUE(has(refusal(variables), "ROS_SECURITY_ENABLE='true': ROS_SECURITY_KEYSTORE is not set"));
+  const test::TemporaryDirectory keystore;
+  variables["ROS_SECURITY_KEYSTORE"] = keystore.path().string();
+  for (const char* name : {"identity_ca.cert.pem", "cert.pem", "key.pem", "permissions_ca.cert.pem",
+                           "governance.p7s", "permissions.p7s"}) {
+    const std::string file = std::string("enclaves/") + name;
+    EXPECT_TRUE(has(refusal(variables), "the enclave / has no file " + keystore.file(file)))
+        << refusal(variables);
+    keystore.write(file, "");
+    keystore.write(std::string("enclaves/a/b/") + name, "");
+  }
+  EXPECT_EQ(read(variables).enclave_files, keystore.path() / "enclaves" / "");
+  variables["ROS_SECURITY_ENCLAVE_OVERRIDE"] = "/a/b";
+  EXPECT_EQ(read(variables).enclave, "/a/b");
+  EXPECT_EQ(read(variables).enclave_files, keystore.path() / "enclaves/a/b");
+  for (const char* name : {"a/b", "/a//b", "/../a", "/a b"}) {
+    variables["ROS_SECURITY_ENCLAVE_OVERRIDE"] = name;
+    EXPECT_TRUE(has(refusal(variables), "ROS_SECURITY_ENCLAVE_OVERRIDE")) << name;
+  }
+  variables["ROS_SECURITY_ENABLE"] = "false";
+  EXPECT_TRUE(read(variables).enclave_files.empty());
 }
 
 TEST(RosEnvironment, CyclonesOwnSettingsComeLast) {

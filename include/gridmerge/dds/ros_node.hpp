@@ -44,6 +44,7 @@ struct RosNodeOptions {
   std::map<std::string, KnownPose> known_poses;  ///< what is known of robots' map frames, by their names
   std::string world_frame = "world";             ///< the frame of the largest merged map
   std::string name = "gridmerge";                ///< of the node
+  std::string enclave = "/";                     ///< of DDS Security, where ROS_SECURITY_ENABLE is true
   std::string output = "/merged_map";  ///< topic of the largest merged map; further ones get `_2`, ...
   TransformTopic transforms = TransformTopic::tf_static;  ///< where the robots' transforms go
   TeamOptions team;                                       ///< how maps are merged
@@ -80,10 +81,11 @@ class GRIDMERGE_EXPORT RosNode {
     refused,  ///< `once`: not all maps could be merged into one
   };
 
-  /// Reads the variables by which ROS is set up (ROS_DOMAIN_ID and so on). Throws std::invalid_argument for
-  /// names, topics, patterns, frames and options that cannot be, and for known poses of robots that cannot be
-  /// heard; std::runtime_error for a variable that ROS would not take, and when the network does not let the
-  /// node in.
+  /// Reads the variables by which ROS is set up (ROS_DOMAIN_ID and so on; for DDS Security
+  /// ROS_SECURITY_ENABLE, ROS_SECURITY_KEYSTORE, ROS_SECURITY_ENCLAVE_OVERRIDE). Throws std::invalid_argument
+  /// for names, topics, patterns, frames and options that cannot be, and for known poses of robots that
+  /// cannot be heard; std::runtime_error for a variable that ROS would not take, a file of the enclave that
+  /// is missing, and when the network does not let the node in.
   explicit RosNode(RosNodeOptions options);
   ~RosNode();
   RosNode(const RosNode&) = delete;
