@@ -27,10 +27,7 @@ std::string page_of(const TeamAnswer& answer) {
   if (merge.maps.empty()) return kWaitingPage;
   std::vector<OccupancyGrid> maps;
   for (const auto& map : merge.maps) maps.push_back(*map);
-  MergeResult result = merge.result;
-  for (std::size_t i = 0; i < result.components.size(); ++i)
-    result.components[i].fused.grid = *answer.components.at(i).map;
-  return live_report_page({merge.names, maps, result}, answer.number);
+  return live_report_page({merge.names, maps, merge_result(answer)}, answer.number);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map
 from ._known_poses import InitialPose, to_core
 from ._match import Reason
-from ._merge import to_output_resolution
+from ._merge import MergeResult, to_merge_result, to_output_resolution
 from ._repr import count, short_pose
 from ._transform import PoseLike, Transform
 
@@ -194,6 +194,15 @@ class Team:
     def answer(self) -> TeamAnswer:
         """The newest."""
         return _to_answer(self._core.answer())
+
+    def merge_result(self) -> MergeResult:
+        """The newest answer as merge() would give it: to plot, save and export, with the figures behind each join.
+
+        Names are the robots', of those with maps, first heard first. While the answer holds a change back, its joins
+        can already say otherwise.
+        """
+        merged, names = self._core.merged()
+        return to_merge_result(merged, [OccupancyGrid._of(grid) for grid in merged.maps], names, ())
 
     def take_events(self) -> tuple[TeamEvent, ...]:
         """What has changed since this was called last, oldest first: the events of every answer, those too that nobody

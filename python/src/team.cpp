@@ -63,6 +63,15 @@ class PythonTeam {
 
   Answer answer() const { return team_.answer(); }
 
+  std::pair<Merged, std::vector<std::string>> merged() const {
+    const OthersRun meanwhile;
+    const Answer answer = team_.answer();
+    Merged merged;
+    for (const auto& map : answer->merge->maps) merged.maps.push_back({map, {}, {}});
+    merged.result = std::make_shared<const MergeResult>(merge_result(*answer));
+    return {std::move(merged), answer->merge->names};
+  }
+
   bool wait_until_settled(double seconds) const {
     const OthersRun meanwhile;
     return team_.wait_until_settled(std::chrono::milliseconds(static_cast<int>(1000.0 * seconds)));
@@ -153,6 +162,7 @@ void bind_team(nb::module_& module) {
       .def("forget", &PythonTeam::forget, nb::arg("robot"))
       .def("set_known_pose", &PythonTeam::set_known_pose, nb::arg("robot"), nb::arg("known").none())
       .def("answer", [](const PythonTeam& team) { return HeldAnswer{team.answer()}; })
+      .def("merged", &PythonTeam::merged)
       .def("take_events", &PythonTeam::take_events)
       .def("wait_until_settled", &PythonTeam::wait_until_settled, nb::arg("seconds"));
 }

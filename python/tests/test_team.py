@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+import json
+import pickle
 import threading
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import gridmerge
 import numpy as np
@@ -56,6 +59,28 @@ def test_the_end_is_that_of_merge(explored: gridmerge.Simulation, team: gridmerg
         assert placed[member.name].probability == member.probability
     assert answer.components[0].anchor == "tb0"
     assert "TeamAnswer" in repr(answer) and "placed" in repr(answer.robots[0])
+
+
+def test_an_answer_is_saved_as_a_merge(
+    explored: gridmerge.Simulation, team: gridmerge.Team, tmp_path: Path
+) -> None:
+    assert team.merge_result().names == ()
+    for number, grid in enumerate(grids_at(explored, 3)):
+        team.hear(f"tb{2 - number}", grid)
+    assert team.wait_until_settled(600.0)
+    result = team.merge_result()
+    assert result.names == ("tb2", "tb1", "tb0")
+    answer = team.answer()
+    assert len(result.components) == len(answer.components) == 1
+    assert np.array_equal(result.components[0].grid.cells, answer.components[0].grid.cells)
+    placed = {robot.name: robot.transform for robot in answer.robots}
+    assert {member.name: member.transform for member in result.components[0].members} == placed
+    assert len(result.joins) == 3 and any(join.used for join in result.joins)
+    assert pickle.loads(pickle.dumps(result)).components[0].members == result.components[0].members
+    result.save(tmp_path)
+    saved = json.loads((tmp_path / "transforms.json").read_text())
+    assert [member["source"] for member in saved["components"][0]["members"]] == ["tb2", "tb1", "tb0"]
+    assert (tmp_path / "report.html").stat().st_size > 10000
 
 
 def test_parts(explored: gridmerge.Simulation, team: gridmerge.Team) -> None:

@@ -45,6 +45,13 @@ const char* name_of(RobotState state) {
   return "";
 }
 
+MergeResult merge_result(const TeamAnswer& answer) {
+  MergeResult result = answer.merge->result;
+  for (std::size_t i = 0; i < result.components.size(); ++i)
+    result.components[i].fused.grid = *answer.components.at(i).map;
+  return result;
+}
+
 class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as public as Team
  public:
   Worker(TeamOptions options, OnAnswer on_answer)

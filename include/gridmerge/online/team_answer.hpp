@@ -91,4 +91,8 @@ struct TeamAnswer {
   std::string problem;  ///< why this is the answer before, made again; empty where there is none
 };
 
+/// TeamAnswer::merge with the fused grids: as merge() would give it, for outputs. O(cells of the merged
+/// maps).
+GRIDMERGE_EXPORT MergeResult merge_result(const TeamAnswer& answer);
+
 }  // namespace gridmerge
