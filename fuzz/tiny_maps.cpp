@@ -125,22 +125,24 @@ void require_sound(const MatchResult& result, const OccupancyGrid& fixed, const 
     require(hypothesis.probability <= before);
     before = hypothesis.probability;
     for (const PoseFigure& figure : pose_figures()) require(std::isfinite(hypothesis.figures.*figure.value));
-    const Point2 middle = T * around_moving.middle;
+    const double scale = hypothesis.scale;
+    require(std::isfinite(scale) && scale > 0.0);
+    const Point2 middle = T * Point2{scale * around_moving.middle.x, scale * around_moving.middle.y};
     const double distance = std::hypot(middle.x - around_fixed.middle.x, middle.y - around_fixed.middle.y);
-    require(distance <= around_fixed.radius + around_moving.radius + slack);
+    require(distance <= around_fixed.radius + scale * around_moving.radius + std::max(1.0, scale) * slack);
   }
 }
 
 bool are_same(const MatchResult& a, const MatchResult& b) {
   const auto same_hypothesis = [](const Hypothesis& one, const Hypothesis& other) {
-    return one.T_fixed_moving == other.T_fixed_moving && one.score == other.score &&
-           one.probability == other.probability &&
+    return one.T_fixed_moving == other.T_fixed_moving && one.scale == other.scale &&
+           one.score == other.score && one.probability == other.probability &&
            std::ranges::all_of(pose_figures(), [&](const PoseFigure& figure) {
              return one.figures.*figure.value == other.figures.*figure.value;
            });
   };
   return a.verdict == b.verdict && a.reason == b.reason && a.T_fixed_moving == b.T_fixed_moving &&
-         a.probability == b.probability && a.acceptance_index == b.acceptance_index &&
+         a.scale == b.scale && a.probability == b.probability && a.acceptance_index == b.acceptance_index &&
          a.agreement == b.agreement && a.disagreement == b.disagreement && a.overlap == b.overlap &&
          std::ranges::equal(a.hypotheses, b.hypotheses, same_hypothesis);
 }
