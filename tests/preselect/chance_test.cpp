@@ -104,6 +104,36 @@ TEST(Chance, EachFigureSpeaksForOrAgainst) {
             log_odds_of_joining(usual_match(), larger, larger));
 }
 
+TEST(Chance, MediansOfJoinsAndOfStrangersAreFarApart) {
+  // Medians over a campus of 80 simulated maps to which nothing was fitted (benchmark/fleet.py --campus
+  // reported).
+  Signature map;
+  SignatureMatch joined, strangers;
+  joined.seen = 109.0;
+  joined.met = 79.0;
+  joined.open = 4.5;
+  joined.chance = 17.2;
+  joined.votes = 3.7;
+  joined.next_votes = 2.0;
+  joined.likeness = 0.78;
+  map.wall_length = 177.0;
+  const double of_joined = log_odds_of_joining(joined, map, map);
+  strangers.seen = 62.6;
+  strangers.met = 27.7;
+  strangers.open = 8.7;
+  strangers.chance = 8.5;
+  strangers.votes = 0.86;
+  strangers.next_votes = 1.14;
+  strangers.likeness = 0.55;
+  map.wall_length = 105.0;
+  const double of_strangers = log_odds_of_joining(strangers, map, map);
+  // Two or three in a thousand pairs are joined: log-odds of -6. The former are likelier than that, by far.
+  EXPECT_GT(of_joined, -2.0);
+  EXPECT_LT(of_joined, 1.0);
+  EXPECT_LT(of_strangers, -9.0);
+  EXPECT_GT(of_strangers, -12.0);
+}
+
 TEST(Chance, TheShiftIsTheOneOfTheShareThatItImplies) {
   // Log-odds of the mean probability differ from the shift by the same amount in each set: those of the fit.
   std::vector<double> fitted;
