@@ -132,12 +132,10 @@ TEST(Explore, ScansEverySoFarAndLooksWhereItGoes) {
   errand.scan_every = 0.5;
   const Exploration found = explore(floor.plan, floor.caster, errand);
   ASSERT_GT(found.poses.size(), 5U);
-  int sharp = 0;
   for (std::size_t i = 1; i < found.poses.size(); ++i) {
     const SE2 &a = found.poses[i - 1], &b = found.poses[i];
     const double step = std::hypot(b.x - a.x, b.y - a.y);
     const bool turns = std::abs(normalize_angle(b.theta - a.theta)) > 1.0;
-    sharp += turns ? 1 : 0;
     EXPECT_LT(step, 0.5 + 0.15) << i;
     if (!turns) {
       EXPECT_GT(step, 0.25) << i;
