@@ -136,6 +136,24 @@ TEST(Compare, PrefersNeitherMap) {
   EXPECT_NEAR(one.seen, other.seen, 0.1 * one.seen);
 }
 
+TEST(Compare, RoomsThatLookAlikeVoteForARival) {
+  // Two rooms of 7 m x 6 m that are the same, and what stands in each of them.
+  OccupancyGrid twins = make_grid(300, 140, 0.05);
+  for (int row = 10; row < 130; ++row) {
+    for (int column = 10; column < 290; ++column) {
+      const int u = (column - 10) % 140, v = row - 10;
+      const bool is_wall = u < 3 || u >= 137 || v < 3 || v >= 117;
+      const bool stands = (u > 30 && u < 50 && v > 20 && v < 60) || (u > 90 && u < 97 && v > 70 && v < 117);
+      twins.at(column, row) = is_wall || stands ? Cell::occupied : Cell::free;
+    }
+  }
+  const Signature map = make_signature(twins);
+  const SignatureMatch match = compare(map, map);
+  EXPECT_NEAR(match.T_fixed_moving.x, 0.0, 1e-9);
+  EXPECT_GT(match.next_votes, 0.15 * match.votes);
+  EXPECT_LT(match.next_votes, match.votes);
+}
+
 TEST(Compare, RefinesToLessThanACell) {
   const OccupancyGrid building = draw_building(1);
   double sum = 0.0;

@@ -87,6 +87,18 @@ RC_GTEST_PROP(Profiles, FindHowFarWallsWereMovedWhateverTheExtentsOfTheMaps, ())
   for (std::size_t i = 1; i < poses.size(); ++i) RC_ASSERT(poses[i - 1].likeness >= poses[i].likeness);
 }
 
+TEST(Profiles, OfOneStepLieOnEachOtherInOneWay) {
+  // The least that there can be: each side has one wall, and no shift but one lays any on another.
+  const std::vector<Wall> walls{{0, 4, 10}, {1, 4, 20}, {2, 4, 30}, {3, 4, 40}};
+  const WallProfiles profiles = drawn(walls, 0.0, 4, 1);
+  const std::vector<ProfilePose> poses = align_profiles(profiles, profiles, 20);
+  ASSERT_EQ(poses.size(), 4U);  // a quarter each
+  EXPECT_EQ(poses.front().likeness, 10.0 * 10.0 + 20.0 * 20.0 + 30.0 * 30.0 + 40.0 * 40.0);
+  EXPECT_EQ(poses.front().T_fixed_moving, SE2{});
+  EXPECT_EQ(align_profiles(profiles, profiles, 1).size(), 1U);
+  EXPECT_TRUE(align_profiles(profiles, profiles, 0).empty());
+}
+
 /// A room of 8 m x 5 m, turned: walls of one cell, floor inside, unknown outside.
 OccupancyGrid turned_room(double theta) {
   OccupancyGrid map = make_grid(240, 240, 0.05);

@@ -216,7 +216,8 @@ TEST(Signature, SumsAreThoseOfTheMap) {
   const Signature signature = make_signature(map);
   EXPECT_NEAR(signature.known_area, map.resolution * map.resolution * static_cast<double>(known), 1e-6);
   EXPECT_EQ(signature.cell, 0.2);
-  EXPECT_LE(signature.walls.size(), 240U);
+  EXPECT_EQ(signature.walls.size(), 240U);  // of more
+  EXPECT_GT(signature.wall_length, 240.0 * 0.2);
   EXPECT_EQ(signature.places.size(), static_cast<std::size_t>(signature.width) * signature.height);
   // Samples are spread over all walls, and each lies on one.
   double lowest = 1e9, highest = -1e9;
