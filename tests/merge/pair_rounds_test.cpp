@@ -7,6 +7,7 @@
 #include <memory>
 #include <random>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "gridmerge/merge/merge.hpp"
@@ -149,19 +150,27 @@ TEST(PairRounds, MapsThatAnAnswerLaysOnEachOtherAreLookedAtInTheEnd) {
 }
 
 TEST(MergeResult, HasItsLargestComponentFirst) {
-  // Copies are joined without a match; of two of one floor and three of another, the three come first.
   const OccupancyGrid one = test::map_part(test::draw_building(1), {0, 0, 6, 6}, {});
   const OccupancyGrid other = test::map_part(test::draw_building(2), {0, 0, 6, 6}, {});
-  const MergeResult result = merge({one, other, one, other, other});
-  ASSERT_EQ(result.components.size(), 2U);
-  EXPECT_EQ(result.components[0].members.size(), 3U);
-  EXPECT_EQ(result.components[0].members.front().map, 1U);
-  EXPECT_EQ(result.components[1].members.size(), 2U);
-  // And of two that are as large, the one with the first map.
-  const MergeResult even = merge({other, one, one, other});
-  ASSERT_EQ(even.components.size(), 2U);
-  EXPECT_EQ(even.components[0].members.front().map, 0U);
-  EXPECT_EQ(even.components[1].members.front().map, 1U);
+  // Copies are joined without a match. Whichever of two floors is there more often comes first, and of two
+  // that are there as often the one with the first map.
+  using Floors = std::vector<const OccupancyGrid*>;
+  for (const auto& [a, b] : {std::pair(&one, &other), std::pair(&other, &one)}) {
+    const auto merged = [](const Floors& floors) {
+      std::vector<OccupancyGrid> maps;
+      for (const OccupancyGrid* floor : floors) maps.push_back(*floor);
+      return merge(maps);
+    };
+    const MergeResult more = merged({a, b, a, b, b});
+    ASSERT_EQ(more.components.size(), 2U);
+    EXPECT_EQ(more.components[0].members.size(), 3U);
+    EXPECT_EQ(more.components[0].members.front().map, 1U);
+    EXPECT_EQ(more.components[1].members.size(), 2U);
+    const MergeResult even = merged({a, b, b, a});
+    ASSERT_EQ(even.components.size(), 2U);
+    EXPECT_EQ(even.components[0].members.front().map, 0U);
+    EXPECT_EQ(even.components[1].members.front().map, 1U);
+  }
 }
 
 }  // namespace
