@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <random>
+#include <vector>
 
 #include "report/font_characters.hpp"
 
@@ -87,6 +88,22 @@ TEST(Font, ALetterBeginsWhereTheTextBeginsAndEndsByItsWidth) {
       EXPECT_LE(first, line_height(size) / 4) << text;
       EXPECT_GE(last, text_width(text, size) - 1 - line_height(size) / 4) << text;
     }
+  }
+}
+
+TEST(Font, InkLiesAtTheSamePlaceInEverySize) {
+  for (const std::string_view text : {"H", "l", "robot_1.yaml"}) {
+    std::vector<double> middles;  // in pixels of the font's picture
+    for (const TextSize size : kSizes) {
+      double sum = 0.0, all = 0.0;
+      for (const auto& [column, covered] : ink_by_column(text, size)) {
+        sum += (column + 0.5) * static_cast<int>(size) * covered;
+        all += covered;
+      }
+      middles.push_back(sum / all);
+    }
+    EXPECT_NEAR(middles[0], middles[1], 0.5) << text;
+    EXPECT_NEAR(middles[0], middles[2], 0.5) << text;
   }
 }
 
