@@ -166,9 +166,11 @@ TEST(PoseJudge, SettlesCellOnCellWhereCellsCanLieSo) {
 
 TEST(PoseJudge, SettlesAPartOfAMapOnItsCells) {
   const OccupancyGrid building = test::draw_building(1);
-  // Without its first columns and rows, and turned by quarters in a frame of its own.
+  // Cut on all four sides, in frames of its own: whichever corner cells are counted from, the two differ
+  // there.
   constexpr int kColumns = 17, kRows = 6;
-  OccupancyGrid part = make_grid(building.width - kColumns, building.height - kRows, building.resolution);
+  OccupancyGrid part =
+      make_grid(building.width - kColumns - 8, building.height - kRows - 11, building.resolution);
   for (int row = 0; row < part.height; ++row) {
     for (int column = 0; column < part.width; ++column)
       part.at(column, row) = building.at(column + kColumns, row + kRows);
