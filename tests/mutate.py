@@ -12,6 +12,7 @@ import argparse
 import collections
 import dataclasses
 import json
+import math
 import os
 import pathlib
 import random
@@ -99,7 +100,7 @@ def changes_of(path, source):
 class Room:
     """A copy of the project, built, in which a room is changed."""
 
-    def __init__(self, name, folder, jobs):
+    def __init__(self, name, folder, jobs, longest):
         self.name = name
         self.copy = folder / "source"
         self.build = folder / "build"
@@ -127,7 +128,7 @@ class Room:
         ]  # a changed program may never end
         subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
         self.ninja(self.target, check=True)
-        self.time_tests()
+        self.time_tests(longest)
 
     def ninja(self, *arguments, check=False):
         done = subprocess.run(
@@ -138,37 +139,38 @@ class Room:
         return done.returncode == 0
 
     def run(self, *arguments, limit=None):
-        """Whether the tests pass. Those that run away are ended, with what they started."""
+        """ "passed", "failed" or "ran away": then they are ended, with what they started."""
         command = [self.build / "bin" / self.target, *arguments]
         nowhere = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         with subprocess.Popen(command, cwd=self.copy, start_new_session=True, **nowhere) as tests:
             try:
-                return tests.wait(limit) == 0
+                return "passed" if tests.wait(limit) == 0 else "failed"
             except subprocess.TimeoutExpired:
                 os.killpg(tests.pid, signal.SIGKILL)
-                return False
+                return "ran away"
 
-    def time_tests(self):
-        """Quick tests are to run first: one of them mostly notices a change."""
-        told = self.build / "tests.json"
+    def time_tests(self, longest):
+        """Quick tests are to run first: one of them mostly notices a change. Slow ones may be left out."""
+        told, kept = self.build / "tests.json", self.build / f"times-{self.name}.json"
+        times = json.loads(kept.read_text()) if kept.exists() else {}
+        slow = ":".join(name for name, seconds in times.items() if seconds > longest)
         start = time.monotonic()
-        if not self.run(f"--gtest_output=json:{told}"):
+        if self.run(f"--gtest_output=json:{told}", f"--gtest_filter=-{slow}") != "passed":
             sys.exit(f"{self.target} fails without a change")
         self.limit = 30 + 5 * (time.monotonic() - start)
-        suites = json.loads(told.read_text())["testsuites"]
-        tests = [
-            (f"{suite['name']}.{test['name']}", test["time"])
-            for suite in suites
-            for test in suite["testsuite"]
-        ]
-        self.quick = ":".join(name for name, seconds in tests if float(seconds.rstrip("s")) < 0.5)
+        for suite in json.loads(told.read_text())["testsuites"]:
+            for test in suite["testsuite"]:
+                times[f"{suite['name']}.{test['name']}"] = float(test["time"].rstrip("s"))
+        kept.write_text(json.dumps(times))
+        self.quick = ":".join(name for name, seconds in times.items() if seconds < min(0.5, longest))
+        self.slow = ":".join(name for name, seconds in times.items() if seconds > longest)
 
     def object_of(self, path):
         (found,) = self.build.glob(f"src/CMakeFiles/*/{pathlib.Path(path).relative_to('src')}.o")
         return found
 
     def try_change(self, change):
-        """ "no change", "noticed" or "survived"."""
+        """ "no change", "failed" or "ran away" (noticed both), or "passed"."""
         file = self.copy / change.path
         source = file.read_text()
         compiled = self.object_of(change.path)
@@ -179,14 +181,20 @@ class Room:
                 return "no change"
             if not self.ninja(self.target):
                 return "no change"
-            passes = self.run("--gtest_fail_fast", f"--gtest_filter={self.quick}", limit=self.limit)
-            passes = passes and self.run(
-                "--gtest_fail_fast", f"--gtest_filter=-{self.quick}", limit=self.limit
-            )
-            return "survived" if passes else "noticed"
+            for tests in (self.quick, f"-{self.quick}:{self.slow}"):
+                result = self.run("--gtest_fail_fast", f"--gtest_filter={tests}", limit=self.limit)
+                if result != "passed":
+                    return result
+            return "passed"
         finally:
             file.write_text(source)
             self.ninja(str(compiled.relative_to(self.build)), check=True)
+
+    def check_unchanged(self):
+        """What fails at the end without a change, too, would have counted as noticing each change."""
+        self.ninja(self.target, check=True)
+        if self.run(f"--gtest_filter=-{self.slow}", limit=self.limit) != "passed":
+            sys.exit(f"{self.target} fails without a change at the end: the share above is worth nothing")
 
     def changes(self, seed):
         found = []
@@ -218,12 +226,17 @@ def measure(room, seconds, seed):
             break
         result = room.try_change(change)
         counts[result] += 1
-        if result == "survived":
+        if result == "passed":
             print(f"  not noticed: {room.describe(change)}", flush=True)
-    tried = counts["noticed"] + counts["survived"]
-    share = f"{100 * counts['noticed'] / tried:.0f} %" if tried else "none tried"
-    print(f"{room.name}: noticed {counts['noticed']} of {tried} ({share})", flush=True)
+        if result == "ran away":
+            print(f"  ran away: {room.describe(change)}", flush=True)
+    noticed = counts["failed"] + counts["ran away"]
+    tried = noticed + counts["passed"]
+    share = f"{100 * noticed / tried:.0f} %" if tried else "none tried"
+    print(f"{room.name}: noticed {noticed} of {tried} ({share})", flush=True)
+    print(f"  {counts['ran away']} of them because the tests did not end", flush=True)
     print(f"  and {counts['no change']} that did not compile or changed nothing", flush=True)
+    room.check_unchanged()
 
 
 def main():
@@ -237,6 +250,13 @@ def main():
     )
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="of the build (default: one a core)")
     parser.add_argument(
+        "--longest",
+        metavar="SECONDS",
+        type=float,
+        default=math.inf,
+        help="leave out tests that took longer in an earlier run here: the share is a lower bound then",
+    )
+    parser.add_argument(
         "--folder",
         type=pathlib.Path,
         default=PROJECT / "build/mutate",
@@ -248,7 +268,8 @@ def main():
         if name not in known:
             parser.error(f"there is no room '{name}' with tests, but: {' '.join(known)}")
     for name in arguments.rooms or known:
-        measure(Room(name, arguments.folder.resolve(), arguments.jobs), arguments.seconds, arguments.seed)
+        room = Room(name, arguments.folder.resolve(), arguments.jobs, arguments.longest)
+        measure(room, arguments.seconds, arguments.seed)
 
 
 if __name__ == "__main__":

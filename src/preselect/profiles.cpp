@@ -39,12 +39,13 @@ std::vector<std::int32_t> correlate_all(const std::vector<std::int16_t>& fixed,
   return sums;
 }
 
-/// The best shifts along a side, by the walls that face it and those that face away.
+/// The best shifts along a side, by the walls that face it and those that face away. Both begin with the
+/// shift by -`zero` steps. What shifts the former by n steps shifts the latter by `mirror` - n.
 std::vector<Shift> best_shifts(const std::vector<std::int32_t>& facing, const std::vector<std::int32_t>& away,
-                               int zero_facing, int zero_away) {
+                               int zero, int mirror) {
   std::vector<Shift> all;
   for (int i = 0; i < std::ssize(facing); ++i) {
-    const int by = i - zero_facing, mirrored = zero_away - by;
+    const int by = i - zero, mirrored = zero + mirror - by;
     double sum = facing[i];
     if (mirrored >= 0 && mirrored < std::ssize(away)) sum += away[mirrored];
     if (sum > 0.0) all.push_back({by, sum});
@@ -76,8 +77,10 @@ WallProfiles make_profiles(const LikelihoodField& field) {
   }
   if (count == 0 || std::hypot(c, s) < kMinCoherence * static_cast<double>(count)) return profiles;
   profiles.theta = std::atan2(s, c) / 4.0;
-  const double reach = std::hypot(field.width, field.height) * field.cell;
-  const int length = static_cast<int>(std::ceil(2.0 * reach / kProfileStep)) + 1;
+  // Whole steps, so that profiles of two maps begin whole steps apart.
+  const int reach =
+      static_cast<int>(std::ceil(std::hypot(field.width, field.height) * field.cell / kProfileStep));
+  const int length = 2 * reach + 1;
   if (length > 2 * kMaxLength) return profiles;
   std::array<std::vector<double>, 4> sums;
   for (std::vector<double>& side : sums) side.assign(static_cast<std::size_t>(length), 0.0);
@@ -92,7 +95,7 @@ WallProfiles make_profiles(const LikelihoodField& field) {
       const double angle = profiles.theta + side * kQuarterTurn;
       const double along =
           field.cell * (wall.position.x * std::cos(angle) + wall.position.y * std::sin(angle));
-      const double at = (along + reach) / kProfileStep;
+      const double at = along / kProfileStep + reach;
       const int low = static_cast<int>(at);
       const double part = at - low;
       sums[side][low] += 1.0 - part;
@@ -102,7 +105,7 @@ WallProfiles make_profiles(const LikelihoodField& field) {
     }
   }
   if (highest < lowest) return profiles;
-  profiles.first = lowest * kProfileStep - reach;
+  profiles.first = (lowest - reach) * kProfileStep;
   for (int side = 0; side < 4; ++side) {
     std::vector<double> lengths;  // square roots: one long wall is not worth many short ones
     for (int i = lowest; i <= highest; ++i) lengths.push_back(std::sqrt(sums[side][i] * field.cell));
@@ -123,13 +126,15 @@ std::vector<ProfilePose> align_profiles(const WallProfiles& fixed, const WallPro
   std::vector<ProfilePose> poses;
   if (fixed.sides[0].empty() || moving.sides[0].empty()) return poses;
   const int zero = static_cast<int>(moving.sides[0].size()) - 1;
+  // Opposite sides are measured in opposite directions, from beginnings that are not the same in both maps.
+  const int mirror = static_cast<int>(std::lround(2.0 * (moving.first - fixed.first) / kProfileStep));
   for (int quarters = 0; quarters < 4; ++quarters) {
     // Side `a` of the moving map faces the fixed map's side `a + quarters`.
     const auto of_side = [&](int side) {
       return correlate_all(fixed.sides[side], moving.sides[(side - quarters + 4) % 4]);
     };
-    const std::vector<Shift> along = best_shifts(of_side(0), of_side(2), zero, zero);
-    const std::vector<Shift> across = best_shifts(of_side(1), of_side(3), zero, zero);
+    const std::vector<Shift> along = best_shifts(of_side(0), of_side(2), zero, mirror);
+    const std::vector<Shift> across = best_shifts(of_side(1), of_side(3), zero, mirror);
     const double turn = fixed.theta + quarters * kQuarterTurn - moving.theta;
     for (const Shift& u : along) {
       for (const Shift& v : across) {

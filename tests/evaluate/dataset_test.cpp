@@ -108,6 +108,25 @@ TEST(Dataset, HoldsMapsAndTruthThatBelongTogether) {
   EXPECT_EQ(strangers.back().moving.name, "elsewhere_1.yaml");
 }
 
+TEST(Dataset, TolerancesGrowWithHowMuchMapsBend) {
+  const test::TemporaryDirectory directory;
+  Simulation simulation = simulate(quick(3));
+  simulation.maps[0].bend = 0.25;
+  simulation.maps[1].bend = 0.5;
+  simulation.maps[2].bend = 0.02;
+  write_dataset(directory.path(), simulation, {});
+  // On the building by twice the map's own bend and 0.3 m, half a metre at least.
+  const std::vector<TruePair> on_building = read_pairs(directory.path() / "building.tsv");
+  EXPECT_NEAR(on_building.at(0).tolerance, 0.8, 1e-9);
+  EXPECT_NEAR(on_building.at(1).tolerance, 1.3, 1e-9);
+  EXPECT_NEAR(on_building.at(2).tolerance, 0.5, 1e-9);
+  // In a set the first map's bend comes on top.
+  const std::vector<TrueSet> sets = read_sets(directory.path() / "sets.tsv");
+  EXPECT_NEAR(sets.at(0).members.at(0).tolerance, 1.3, 1e-9);
+  EXPECT_NEAR(sets.at(0).members.at(1).tolerance, 1.8, 1e-9);
+  EXPECT_NEAR(sets.at(0).members.at(2).tolerance, 0.84, 1e-9);
+}
+
 TEST(Dataset, HoldsEachMapAtEarlierMoments) {
   const test::TemporaryDirectory directory;
   SimulateOptions options = quick(2);

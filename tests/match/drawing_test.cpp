@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <utility>
+
 #include "support/building.hpp"
 
 namespace gridmerge {
@@ -38,6 +40,49 @@ TEST(Drawing, IsTold) {
   OccupancyGrid map = outline(Cell::unknown, 0);
   map.at(50, 40) = Cell::free;
   EXPECT_FALSE(is_drawing(map));
+}
+
+TEST(Drawing, HasPaperAlongItsWholeRim) {
+  const OccupancyGrid sheet = outline(Cell::free, 0);
+  for (const Cell ink : {Cell::occupied, Cell::unknown}) {
+    for (const auto& [column, row] :
+         {std::pair(0, 0), {99, 0}, {0, 79}, {99, 79}, {50, 0}, {50, 79}, {0, 40}, {99, 40}}) {
+      OccupancyGrid map = sheet;
+      map.at(column, row) = ink;
+      EXPECT_FALSE(is_drawing(map)) << column << ' ' << row;
+    }
+    for (const auto& [column, row] : {std::pair(1, 1), {98, 78}, {50, 1}, {50, 78}, {1, 40}, {98, 40}}) {
+      OccupancyGrid map = sheet;
+      map.at(column, row) = ink;
+      EXPECT_TRUE(is_drawing(map)) << column << ' ' << row;
+    }
+  }
+  // A hundredth of it may be unknown: 80 of 8,000 cells.
+  OccupancyGrid map = sheet;
+  for (int column = 1; column <= 80; ++column) map.at(column, 70) = Cell::unknown;
+  EXPECT_TRUE(is_drawing(map));
+  map.at(81, 70) = Cell::unknown;
+  EXPECT_FALSE(is_drawing(map));
+}
+
+TEST(Drawing, ClosesGapsUpToAShareOfItsLongerSide) {
+  // The outline is 61 cells long: 8 % of that are four cells. Whichever wall has the gap.
+  for (const bool is_turned : {false, true}) {
+    for (int gap = 0; gap <= 7; ++gap) {
+      OccupancyGrid sheet = outline(Cell::unknown, gap);
+      if (is_turned) {
+        OccupancyGrid turned = make_grid(sheet.height, sheet.width, sheet.resolution);
+        for (int row = 0; row < sheet.height; ++row) {
+          for (int column = 0; column < sheet.width; ++column) turned.at(row, column) = sheet.at(column, row);
+        }
+        sheet = turned;
+      }
+      const CellCounts counts = count_cells(with_enclosed_free(sheet));
+      // All of the inside, 59 x 39 cells, or none of it; and of a gap that is closed at most its own cells.
+      EXPECT_GE(counts.free, gap <= 4 ? 59U * 39U : 0U) << gap;
+      EXPECT_LE(counts.free, gap <= 4 ? 59U * 39U + static_cast<unsigned>(gap) : 59U * 39U / 2U) << gap;
+    }
+  }
 }
 
 TEST(Drawing, WhatItEnclosesIsFree) {

@@ -164,6 +164,35 @@ TEST(PoseJudge, SettlesCellOnCellWhereCellsCanLieSo) {
   }
 }
 
+TEST(PoseJudge, SettlesAPartOfAMapOnItsCells) {
+  const OccupancyGrid building = test::draw_building(1);
+  // Cut on all four sides, in frames of its own: whichever corner cells are counted from, the two differ
+  // there.
+  constexpr int kColumns = 17, kRows = 6;
+  OccupancyGrid part =
+      make_grid(building.width - kColumns - 8, building.height - kRows - 11, building.resolution);
+  for (int row = 0; row < part.height; ++row) {
+    for (int column = 0; column < part.width; ++column)
+      part.at(column, row) = building.at(column + kColumns, row + kRows);
+  }
+  const SE2 T_grids{kColumns * building.resolution, kRows * building.resolution, 0.0};
+  for (const SE2& origin : {SE2{}, SE2{3.0, -1.0, 0.0}, SE2{-2.0, 0.5, 0.5 * std::numbers::pi}}) {
+    part.origin = origin;
+    const PreparedMap a(building), b(part);
+    const ComparedMaps maps(a, b);
+    const PoseJudge judge(maps);
+    const SE2 truth = building.origin * T_grids * inverse(origin);
+    for (const SE2& off : {SE2{0.04, -0.03, 0.0}, SE2{-0.03, 0.05, 0.003}}) {
+      const SE2 T_cells = to_cells(truth * off, maps.fixed_walls, maps.moving_walls);
+      const Hypothesis settled = judge.settle(judge.judge(T_cells)).hypothesis;
+      EXPECT_NEAR(settled.T_fixed_moving.x, truth.x, 1e-9);
+      EXPECT_NEAR(settled.T_fixed_moving.y, truth.y, 1e-9);
+      EXPECT_NEAR(normalize_angle(settled.T_fixed_moving.theta - truth.theta), 0.0, 1e-12);
+      EXPECT_EQ(settled.figures.acceptance_index, 1.0);
+    }
+  }
+}
+
 TEST(Weigh, PutsTheMostProbableFirstAndSaysByHowMuch) {
   const PreparedMap map(test::draw_building(1));
   const ComparedMaps maps(map, map);

@@ -85,6 +85,20 @@ TEST(MatchBytes, RefuseWhatNoMatchHas) {
   EXPECT_THROW(match_from_bytes(bytes), std::invalid_argument);
 }
 
+TEST(MatchBytes, RefuseScalesThatNoMatchHas) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double scale : {0.0, -1.0, kInfinity, -kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
+    MatchResult match;
+    match.scale = scale;
+    EXPECT_THROW(match_from_bytes(to_bytes(match)), std::invalid_argument) << scale;
+    match.scale = 1.0;
+    EXPECT_NO_THROW(match_from_bytes(to_bytes(match)));
+    match.hypotheses.resize(2);
+    match.hypotheses[1].scale = scale;
+    EXPECT_THROW(match_from_bytes(to_bytes(match)), std::invalid_argument) << scale;
+  }
+}
+
 TEST(MatchKey, TellsApartWhatMayDiffer) {
   const OccupancyGrid map = test::draw_building(1);
   const std::string content = content_id(map);

@@ -169,6 +169,35 @@ TEST(WallError, ItsDerivativesAreThoseOfItsResiduals) {
   }
 }
 
+TEST(WallError, IsTheFlattenedDistanceBetweenTheMiddlesOfCellsToo) {
+  for (const bool is_upright : {false, true}) {
+    OccupancyGrid map = make_grid(100, 100, 0.1, {}, Cell::free);
+    for (int i = 10; i < 90; ++i) (is_upright ? map.at(50, i) : map.at(i, 50)) = Cell::occupied;
+    const LikelihoodField field = make_likelihood_field(map, 0.1);
+    const WallError error(field, {}, field, {}, 2.0);
+    std::vector<double> residuals(static_cast<std::size_t>(error.num_residuals()));
+    ASSERT_GT(residuals.size(), 50U);
+    const auto residual_at = [&](double cells) {
+      const double fixed[3] = {0.0, 0.0, 0.0};
+      const double moving[3] = {is_upright ? 0.1 * cells : 0.0, is_upright ? 0.0 : 0.1 * cells, 0.0};
+      const double* both[2] = {fixed, moving};
+      EXPECT_TRUE(error.Evaluate(both, residuals.data(), nullptr));
+      const auto [least, most] = std::minmax_element(residuals.begin(), residuals.end());
+      EXPECT_NEAR(*least, *most, 1e-9) << cells;  // the wall is straight
+      return *most;
+    };
+    EXPECT_NEAR(residual_at(0.0), 0.0, 1e-9);
+    // r = k d / sqrt(d^2 + c^2): then 1 / r^2 is linear in 1 / d^2.
+    const auto inverse_square = [&](double cells) { return 1.0 / (residual_at(cells) * residual_at(cells)); };
+    const double slope = (inverse_square(1.0) - inverse_square(2.0)) / (1.0 - 0.25);
+    EXPECT_GT(slope, 0.0);
+    for (const double cells : {0.25, 0.5, 1.5, -0.5, -1.0, 3.0}) {
+      const double expected = inverse_square(1.0) + slope * (1.0 / (cells * cells) - 1.0);
+      EXPECT_NEAR(inverse_square(cells), expected, 1e-6 * expected) << cells;
+    }
+  }
+}
+
 TEST(Coverage, SharesAreThoseOfTheSmallerMap) {
   const OccupancyGrid building = test::draw_building(1);  // 18 m x 13 m
   const Coverage whole(building);

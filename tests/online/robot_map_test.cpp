@@ -2,7 +2,9 @@
 #include "online/robot_map.hpp"
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "explorers.hpp"
@@ -42,6 +44,40 @@ TEST(RobotMap, AnotherFrameIsSeen) {
         << T.x << " " << T.theta;
   EXPECT_TRUE(change_between(map, explorers.map(3, 5)).other_frame);
   EXPECT_TRUE(change_between(map, explorers.map(0, 1)).other_frame);  // it has lost most of what it knew
+}
+
+RC_GTEST_PROP(RobotMap, ChangesAreThoseOfACountCellByCell, ()) {
+  const auto drawn = [](int width, int height, const SE2& origin) {
+    OccupancyGrid map = make_grid(width, height, 1.0, origin);
+    for (Cell& cell : map.cells)
+      cell = *rc::gen::element(Cell::unknown, Cell::free, Cell::free, Cell::occupied);
+    return map;
+  };
+  const OccupancyGrid before = drawn(*rc::gen::inRange(1, 4), *rc::gen::inRange(1, 4), {});
+  OccupancyGrid after = drawn(*rc::gen::inRange(1, 4), *rc::gen::inRange(1, 4), {});
+  if (*rc::gen::inRange(0, 2) == 0) {  // it goes on from the one before
+    for (int row = 0; row < std::min(before.height, after.height); ++row) {
+      for (int column = 0; column < std::min(before.width, after.width); ++column)
+        after.at(column, row) = before.at(column, row);
+    }
+  }
+  double both = 0.0, equal = 0.0;
+  for (int row = 0; row < std::min(before.height, after.height); ++row) {
+    for (int column = 0; column < std::min(before.width, after.width); ++column) {
+      const Cell a = before.at(column, row), b = after.at(column, row);
+      both += a != Cell::unknown && b != Cell::unknown ? 1.0 : 0.0;
+      equal += a != Cell::unknown && a == b ? 1.0 : 0.0;
+    }
+  }
+  const double known_before = static_cast<double>(count_cells(before).known());
+  const double known_after = static_cast<double>(count_cells(after).known());
+  const MapChange change = change_between(before, after);
+  const double most = std::max(known_before, known_after);
+  RC_ASSERT(std::abs(change.share - (most == 0.0 ? 0.0 : 1.0 - equal / most)) < 1e-12);
+  // It has kept half of what it knew, and nine tenths of what both know is the same.
+  const bool goes_on =
+      known_after == 0.0 ? known_before == 0.0 : both >= 0.5 * known_before && equal >= 0.9 * both;
+  RC_ASSERT(change.other_frame == !goes_on);
 }
 
 TEST(RobotMap, BlankMapsBeginAnything) {

@@ -69,6 +69,98 @@ TEST(Chance, MoreWallsThatMeetAreMoreLikelyOfOnePlace) {
   EXPECT_GT(log_odds_of_joining(match, map, map), last);
 }
 
+/// A pair as half of them look, more or less.
+SignatureMatch usual_match() {
+  SignatureMatch match;
+  match.seen = 60.0;
+  match.met = 30.0;
+  match.open = 10.0;
+  match.chance = 8.0;
+  match.votes = 4.0;
+  match.next_votes = 1.0;
+  match.likeness = 0.6;
+  return match;
+}
+
+TEST(Chance, EachFigureSpeaksForOrAgainst) {
+  Signature map, larger;
+  map.wall_length = 100.0;
+  larger.wall_length = 300.0;
+  const auto gain = [&](double SignatureMatch::*figure, double more) {
+    SignatureMatch match = usual_match();
+    match.*figure += more;
+    return log_odds_of_joining(match, map, map) - log_odds_of_joining(usual_match(), map, map);
+  };
+  EXPECT_GT(gain(&SignatureMatch::met, 5.0), 0.1);
+  EXPECT_LT(gain(&SignatureMatch::chance, 5.0), -0.1);
+  EXPECT_LE(gain(&SignatureMatch::open, 5.0), 0.0);
+  EXPECT_GT(gain(&SignatureMatch::votes, 2.0), 0.1);
+  EXPECT_LT(gain(&SignatureMatch::next_votes, 2.0), -0.1);
+  EXPECT_GT(gain(&SignatureMatch::likeness, 0.3), 0.05);
+  // The smaller map counts, whichever of the two it is.
+  EXPECT_EQ(log_odds_of_joining(usual_match(), map, larger), log_odds_of_joining(usual_match(), larger, map));
+  EXPECT_EQ(log_odds_of_joining(usual_match(), map, larger), log_odds_of_joining(usual_match(), map, map));
+  EXPECT_NE(log_odds_of_joining(usual_match(), map, larger),
+            log_odds_of_joining(usual_match(), larger, larger));
+}
+
+TEST(Chance, MediansOfJoinsAndOfStrangersAreFarApart) {
+  // Medians over a campus of 80 simulated maps to which nothing was fitted (benchmark/fleet.py --campus
+  // reported).
+  Signature map;
+  SignatureMatch joined, strangers;
+  joined.seen = 109.0;
+  joined.met = 79.0;
+  joined.open = 4.5;
+  joined.chance = 17.2;
+  joined.votes = 3.7;
+  joined.next_votes = 2.0;
+  joined.likeness = 0.78;
+  map.wall_length = 177.0;
+  const double of_joined = log_odds_of_joining(joined, map, map);
+  strangers.seen = 62.6;
+  strangers.met = 27.7;
+  strangers.open = 8.7;
+  strangers.chance = 8.5;
+  strangers.votes = 0.86;
+  strangers.next_votes = 1.14;
+  strangers.likeness = 0.55;
+  map.wall_length = 105.0;
+  const double of_strangers = log_odds_of_joining(strangers, map, map);
+  // Two or three in a thousand pairs are joined: log-odds of -6. The former are likelier than that, by far.
+  EXPECT_GT(of_joined, -2.0);
+  EXPECT_LT(of_joined, 1.0);
+  EXPECT_LT(of_strangers, -9.0);
+  EXPECT_GT(of_strangers, -12.0);
+}
+
+TEST(Chance, TheShiftIsTheOneOfTheShareThatItImplies) {
+  // Log-odds of the mean probability differ from the shift by the same amount in each set: those of the fit.
+  std::vector<double> fitted;
+  for (const std::size_t unrelated : {300, 3000, 30000}) {
+    const std::vector<float> log_odds = drawn(100, unrelated);
+    const double shift = shift_to_this_set(log_odds);
+    double mean = 0.0;
+    for (const float one : log_odds) mean += logistic(one + shift) / static_cast<double>(log_odds.size());
+    fitted.push_back(std::log(mean / (1.0 - mean)) - shift);
+  }
+  EXPECT_NEAR(fitted[0], fitted[1], 1e-4);
+  EXPECT_NEAR(fitted[0], fitted[2], 1e-4);
+  // A few in a thousand pairs are joined in the sets of the fit.
+  EXPECT_LT(fitted[0], std::log(0.01));
+  EXPECT_GT(fitted[0], std::log(0.001));
+}
+
+TEST(Chance, AShareIsNeverNothingAndNeverAll) {
+  // However the pairs look, a tenth of one may be joined, and a tenth of all may not.
+  const auto mean_of = [](const std::vector<float>& log_odds) {
+    const double shift = shift_to_this_set(log_odds);
+    return logistic(shift + std::log(0.002372 / (1.0 - 0.002372)));
+  };
+  EXPECT_NEAR(mean_of(std::vector<float>(100, -40.0F)), 0.001, 1e-6);
+  EXPECT_NEAR(mean_of(std::vector<float>(100, 40.0F)), 0.9, 1e-6);
+}
+
 TEST(Chance, AFirstLookThatThinksMorePromisesMore) {
   EXPECT_GT(log_odds_after_a_look(0.0, 0.9), log_odds_after_a_look(0.0, 0.1));
   EXPECT_GT(log_odds_after_a_look(2.0, 0.1), log_odds_after_a_look(-2.0, 0.1));

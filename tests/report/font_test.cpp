@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <random>
+#include <vector>
 
 #include "report/font_characters.hpp"
 
@@ -56,6 +58,52 @@ TEST(Font, SizesAreTheSameLettersReduced) {
       EXPECT_NEAR(text_width(text, size) * factor, text_width(text, TextSize::large) * 2, factor + 2);
       EXPECT_LT(baseline(size), line_height(size));
     }
+  }
+}
+
+/// The ink of each column of pixels, from where the text begins.
+std::map<int, double> ink_by_column(std::string_view text, TextSize size) {
+  const TextCoverage drawn = draw_text(text, size);
+  std::map<int, double> columns;
+  for (std::size_t i = 0; i < drawn.values.size(); ++i) {
+    const int column = drawn.left + static_cast<int>(i) % drawn.width;
+    columns[column] += static_cast<unsigned char>(drawn.values[i]) / 255.0;
+  }
+  return columns;
+}
+
+TEST(Font, ALetterBeginsWhereTheTextBeginsAndEndsByItsWidth) {
+  for (const TextSize size : kSizes) {
+    for (const std::string_view text : {"H", "M", "HH", "HHHHHHHHHHHH"}) {
+      double inside = 0.0, all = 0.0, first = 1e9, last = -1e9;
+      for (const auto& [column, covered] : ink_by_column(text, size)) {
+        all += covered;
+        if (column >= -1 && column <= text_width(text, size)) inside += covered;
+        if (covered < 1.0) continue;
+        first = std::min<double>(first, column);
+        last = std::max<double>(last, column);
+      }
+      EXPECT_NEAR(inside, all, 1e-9) << text;
+      // A stem is at most a quarter of a line from either end.
+      EXPECT_LE(first, line_height(size) / 4) << text;
+      EXPECT_GE(last, text_width(text, size) - 1 - line_height(size) / 4) << text;
+    }
+  }
+}
+
+TEST(Font, InkLiesAtTheSamePlaceInEverySize) {
+  for (const std::string_view text : {"H", "l", "robot_1.yaml"}) {
+    std::vector<double> middles;  // in pixels of the font's picture
+    for (const TextSize size : kSizes) {
+      double sum = 0.0, all = 0.0;
+      for (const auto& [column, covered] : ink_by_column(text, size)) {
+        sum += (column + 0.5) * static_cast<int>(size) * covered;
+        all += covered;
+      }
+      middles.push_back(sum / all);
+    }
+    EXPECT_NEAR(middles[0], middles[1], 0.5) << text;
+    EXPECT_NEAR(middles[0], middles[2], 0.5) << text;
   }
 }
 

@@ -76,6 +76,19 @@ TEST(MergeRecord, HoldsWhatWasWritten) {
   EXPECT_TRUE(read.result.components[0].fused.grid.cells.empty());
 }
 
+TEST(MergeRecord, ProbabilitiesGoFromNothingToCertainty) {
+  MergeResult result = any_result();
+  for (const double probability : {0.0, 1.0}) {
+    for (Join& join : result.joins) join.probability = join.match.probability = probability;
+    const std::string text = transforms_json(kNames, result);
+    EXPECT_EQ(transforms_json(kNames, parse(text).result), text) << probability;
+  }
+  for (const double probability : {-0.001, 1.001}) {
+    result.joins[0].probability = probability;
+    EXPECT_ANY_THROW(parse(transforms_json(kNames, result))) << probability;
+  }
+}
+
 TEST(MergeRecord, KeepsOfARefusedJoinOnlyWhatMayBeTrue) {
   MergeResult result = any_result();
   Join& refused = result.joins[2];

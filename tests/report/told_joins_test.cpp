@@ -70,6 +70,36 @@ TEST(ToldJoins, OfManyMapsAreThoseThatMatter) {
   EXPECT_EQ(counted, others);
 }
 
+TEST(ToldJoins, TellTheHypothesesThatMayBeTrueAndTheOneThatWasUsed) {
+  Join join;
+  const auto places = [](const std::vector<Hypothesis>& told) {
+    std::vector<double> xs;
+    for (const Hypothesis& one : told) xs.push_back(one.T_fixed_moving.x);
+    return xs;
+  };
+  using Places = std::vector<double>;
+  for (const double probability : {0.5, 0.2, 0.1, 0.05, 0.001, 0.0001}) {
+    Hypothesis one;
+    one.T_fixed_moving.x = static_cast<double>(join.match.hypotheses.size());
+    one.probability = probability;
+    join.match.hypotheses.push_back(one);
+  }
+  join.T_fixed_moving.x = 4.0;
+  for (const JoinOutcome outcome : {JoinOutcome::refused, JoinOutcome::rejected, JoinOutcome::accepted}) {
+    join.outcome = outcome;
+    EXPECT_EQ(places(told_hypotheses(join, true)),
+              outcome == JoinOutcome::refused ? (Places{0, 1, 2}) : (Places{0, 1, 2, 3, 4, 5}));
+    EXPECT_EQ(places(told_hypotheses(join, false)),
+              outcome == JoinOutcome::accepted ? (Places{0, 1, 2, 4}) : (Places{0, 1, 2}));
+  }
+  // The best is told, however unlikely.
+  join.outcome = JoinOutcome::refused;
+  for (Hypothesis& one : join.match.hypotheses) one.probability *= 0.001;
+  EXPECT_EQ(places(told_hypotheses(join, false)), Places{0});
+  join.match.hypotheses.clear();
+  EXPECT_TRUE(told_hypotheses(join, false).empty());
+}
+
 TEST(ToldJoins, HaveRowsForTheMostProbableAlone) {
   MergeResult result = fleet(150, 1);
   for (Join& join : result.joins) {

@@ -268,7 +268,15 @@ TEST(RandomWalk, TemperatureAcceptsWorseSamplesAndCoolingEndsIt) {
       worse += result.trace[i].step > from_step && result.trace[i].delta >= result.trace[i - 1].delta ? 1 : 0;
     return worse;
   };
-  EXPECT_GT(count_worse(0), 10);
+  const int hot = count_worse(0);
+  EXPECT_GT(hot, 10);
+  // The colder it is, the fewer are accepted.
+  options.temperature = 0.5;
+  const int cold = count_worse(0);
+  EXPECT_GT(cold, 3);
+  options.temperature = 1e-6;
+  EXPECT_LT(count_worse(0), cold);
+  options.temperature = 2.0;
   options.cooling = 0.9;
   EXPECT_EQ(count_worse(200), 0);  // 2 * 0.9^200 is nothing
 }

@@ -61,6 +61,25 @@ TEST(Agreement, AStrideEstimatesTheCounts) {
   EXPECT_EQ(found.disagreement, 50 * 200);
 }
 
+RC_GTEST_PROP(Agreement, AStrideLooksAtTheMiddleOfEachSquare, (unsigned seed)) {
+  const OccupancyGrid fixed = test::random_grid(seed, 30, 20, 0.1, {1.0, 2.0, 0.3});
+  const OccupancyGrid moving = test::random_grid(seed + 1, 23, 31, 0.07, {-1.0, 0.5, -1.2});
+  const int stride = *rc::gen::inRange(1, 8);
+  OccupancyGrid middles = make_grid(moving.width, moving.height, moving.resolution, moving.origin);
+  for (int row = 0; row < moving.height; ++row) {
+    for (int column = 0; column < moving.width; ++column) {
+      if (row % stride == stride / 2 && column % stride == stride / 2)
+        middles.at(column, row) = moving.at(column, row);
+    }
+  }
+  const SE2 T{*rc::gen::inRange(-300, 300) / 100.0 + 0.003, *rc::gen::inRange(-300, 300) / 100.0 + 0.007,
+              *rc::gen::inRange(-314, 314) / 100.0};
+  const AgreementCounts found = AgreementCounter(fixed, moving, stride).count(T);
+  const AgreementCounts expected = brute_force(fixed, middles, T);
+  RC_ASSERT(found.agreement == expected.agreement * stride * stride);
+  RC_ASSERT(found.disagreement == expected.disagreement * stride * stride);
+}
+
 TEST(Agreement, OfMapsApartIsNothing) {
   const OccupancyGrid map = test::random_grid(2, 30, 20);
   const AgreementCounts found = count_agreement(map, map, {100.0, 0.0, 0.0});

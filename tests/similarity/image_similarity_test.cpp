@@ -291,6 +291,13 @@ TEST(ImageSimilarity, RefusesWhatItCannotMeasure) {
   const OccupancyGrid long_map = make_grid(kMaxDistanceMapSides, 1, 0.1, {}, Cell::free);
   EXPECT_THROW(measure_similarity(map, long_map, {}), std::invalid_argument);
   EXPECT_THROW(count_equal_cells(map, map, {0.0, 0.0, std::nan("")}), std::invalid_argument);
+  // A map that is none, whichever of the two it is.
+  OccupancyGrid broken = map;
+  broken.cells.pop_back();
+  EXPECT_THROW(measure_similarity(map, broken, {}), std::invalid_argument);
+  EXPECT_THROW(measure_similarity(broken, map, {}), std::invalid_argument);
+  EXPECT_THROW(SimilarityMeter(map, broken), std::invalid_argument);
+  EXPECT_THROW(SimilarityMeter(broken, map), std::invalid_argument);
 }
 
 TEST(Omega, CountsEqualValues) {

@@ -75,5 +75,56 @@ TEST(Walkers, AreSeenOnlyAheadAndWithinRange) {
   }
 }
 
+TEST(Walkers, AreAsManyAndAsThickAsTheySay) {
+  const FloorPlan plan(room(), 0.2);
+  Random random(11);
+  int met = 0;
+  constexpr int kTries = 40, kBeamsEach = 500;
+  for (int i = 0; i < kTries; ++i) {
+    const Walkers walkers(plan, 15.0, random.fork());
+    for (int k = 0; k < kBeamsEach; ++k) {
+      const double x = random.uniform(2.0, 18.0);
+      const double y = random.uniform(2.0, 18.0);
+      const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+      met += std::isinf(walkers.distance_to({x, y}, {std::cos(angle), std::sin(angle)}, 1.0)) ? 0 : 1;
+    }
+  }
+  // A beam of 1 m meets a disc of 0.2 m whose middle is in 0.4 m^2 about it: 15 of them on every 150 m^2.
+  EXPECT_NEAR(met / static_cast<double>(kTries * kBeamsEach), 0.4 * 15.0 / 150.0, 0.006);
+}
+
+TEST(Visit, ScattersAsMuchAsItSays) {
+  const FloorPlan plan(room(), 0.2);
+  const int start = plan.cell_at({10.05, 10.05});
+  // A chair is three feet of four edges, a pillar has eight, a box four: of four pieces two are boxes.
+  for (const double clutter : {0.5, 1.0, 2.0}) {
+    double edges = 0.0;
+    constexpr int kVisits = 40;
+    Random random(13);
+    for (int i = 0; i < kVisits; ++i) {
+      const Visit visit = make_visit(room(), plan, 0.2, start, clutter, random);
+      edges += static_cast<double>(visit.caster.edges().size() - 4) / kVisits;
+      EXPECT_TRUE(visit.plan.is_free(start));
+      EXPECT_GT(visit.plan.count_free(), 0.85 * plan.count_free());
+      EXPECT_EQ(visit.plan.cells(), plan.cells());
+    }
+    const double pieces = clutter * 19.6 * 19.6 / 25.0;
+    EXPECT_NEAR(edges, 7.0 * pieces, 0.12 * 7.0 * pieces) << clutter;
+  }
+}
+
+TEST(Visit, LeavesAFloorThatIsTooNarrowAlone) {
+  // A corridor of 1.2 m: whatever stands in it is in somebody's way.
+  const std::vector<Edge> corridor{{{0.0, 0.0}, {20.0, 0.0}, 1.0},
+                                   {{20.0, 0.0}, {20.0, 1.2}, 1.0},
+                                   {{20.0, 1.2}, {0.0, 1.2}, 1.0},
+                                   {{0.0, 1.2}, {0.0, 0.0}, 1.0}};
+  const FloorPlan plan(corridor, 0.2);
+  Random random(17);
+  const Visit visit = make_visit(corridor, plan, 0.2, plan.free_cells().front(), 5.0, random);
+  EXPECT_EQ(visit.caster.edges().size(), corridor.size());
+  EXPECT_EQ(visit.plan.count_free(), plan.count_free());
+}
+
 }  // namespace
 }  // namespace gridmerge
