@@ -97,7 +97,7 @@ Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
     inputs.files.insert(inputs.files.end(), map.files.begin(), map.files.end());
   }
   if (!options.plan.file.empty()) {
-    inputs.plan.emplace(options.plan, options.maps, reader);
+    inputs.plan.emplace(options.plan, options.maps, inputs.maps, reader);
     inputs.files.insert(inputs.files.end(), inputs.plan->files().begin(), inputs.plan->files().end());
   }
   reader.tell_warnings();
@@ -205,8 +205,7 @@ int run_merge(const MergeCommandOptions& options) {
   MergeResult result =
       merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
   if (inputs.plan)
-    result =
-        inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
+    result = inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
   console.progress("writing the result");
   write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   matcher.write_trace();

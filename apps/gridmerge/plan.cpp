@@ -34,18 +34,22 @@ void add_plan_options(CLI::App& command, PlanCommandOptions& options) {
       ->needs(plan);
 }
 
-Plan::Plan(const PlanCommandOptions& options, const std::vector<std::string>& maps, MapReader& reader)
+Plan::Plan(const PlanCommandOptions& options, const std::vector<std::string>& names,
+           const std::vector<OccupancyGrid>& maps, MapReader& reader)
     : options_(options), plan_(reader.read(options.file)) {
-  for (const std::string& map : maps) {
-    if (is_same_map(options.file, map))
+  for (const std::string& name : names) {
+    if (is_same_map(options.file, name))
       throw std::runtime_error(options.file + ": is one of the maps, and cannot be their plan too");
   }
-  if (count_cells(plan_.grid).occupied == 0)
-    throw std::runtime_error(options.file + ": has no walls to hang maps on");
+  try {
+    validate_plan(maps, plan_.grid);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(options.file + ": " + error.what());
+  }
 }
 
-MergeResult Plan::place(const std::vector<OccupancyGrid>& maps, MergeResult merged, const MergeOptions& engine,
-                        Console& console) const {
+MergeResult Plan::place(const std::vector<OccupancyGrid>& maps, MergeResult merged,
+                        const MergeOptions& engine, Console& console) const {
   PlanOptions options;
   if (!options_.scales.empty()) options.scales = to_scales(options_.scales);
   options.name = options_.file;

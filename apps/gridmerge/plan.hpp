@@ -23,9 +23,10 @@ void add_plan_options(CLI::App& command, PlanCommandOptions& options);
 /// The plan of a merge.
 class Plan {
  public:
-  /// Reads it, and its warnings beside those of the maps. Throws FileError for a file that is no map, and
-  /// std::runtime_error for a plan without walls and one that is among the maps.
-  Plan(const PlanCommandOptions& options, const std::vector<std::string>& maps, MapReader& reader);
+  /// Reads it, and its warnings beside those of the maps, which are called so. Throws FileError for a file
+  /// that is no map, and std::runtime_error for a plan without walls and one that is among the maps.
+  Plan(const PlanCommandOptions& options, const std::vector<std::string>& names,
+       const std::vector<OccupancyGrid>& maps, MapReader& reader);
 
   /// That it was read from.
   const std::vector<std::filesystem::path>& files() const { return plan_.files; }

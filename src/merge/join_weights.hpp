@@ -67,7 +67,8 @@ class JoinWeights {
   /// The ways to join two groups that some candidate proposes, most is said for the first.
   std::vector<WeighedJoin> ways_to_join(const NodeGroup& a, const NodeGroup& b) const;
 
-  /// The same in no order, and with two single maps weighed as groups are: by what their candidate says alone.
+  /// The same in no order, and with two single maps weighed as groups are: by what their candidate says
+  /// alone.
   std::vector<WeighedJoin> ways_by_worth(const NodeGroup& a, const NodeGroup& b) const;
 
   /// The first of them; none if no candidate proposes any.

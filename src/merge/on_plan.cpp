@@ -56,9 +56,8 @@ void tell_ways_anew(const Component& component, std::vector<OpenWay>& ways) {
   for (const Member& member : component.members) places[member.map] = member.T_component_map;
   const std::size_t first = component.members.front().map;
   const SE2 T_first_plan = inverse(component.members.front().T_component_map);
-  std::erase_if(ways, [&](const OpenWay& way) {
-    return places.contains(way.fixed) && places.contains(way.moving);
-  });
+  std::erase_if(
+      ways, [&](const OpenWay& way) { return places.contains(way.fixed) && places.contains(way.moving); });
   for (OpenWay& way : ways) {
     if (places.contains(way.fixed)) {
       way.T_fixed_moving = T_first_plan * places.at(way.fixed) * way.T_fixed_moving;

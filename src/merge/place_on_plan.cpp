@@ -4,12 +4,12 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "grid/parallel.hpp"
 #include "gridmerge/merge/plan.hpp"
 #include "match/drawing.hpp"
-#include "merge/candidates.hpp"
 #include "merge/joins.hpp"
 #include "merge/on_plan.hpp"
 #include "merge/pair_choice.hpp"
@@ -21,19 +21,20 @@ using namespace internal;
 
 namespace {
 
-/// The range in which parts are looked at again when one of them has decided the scale.
-ScaleRange around(double scale, const ScaleRange& all) {
-  return {std::max(all.least, scale * std::exp(-kSameScale)),
-          std::min(all.most, scale * std::exp(kSameScale))};
-}
+/// All that match() judges: poses of the scale that is known in the end may be none of the first.
+constexpr std::size_t kJudgedPoses = 16;
 
 MatchOptions plan_match_options(const MergeOptions& options, const ScaleRange& scales) {
   MatchOptions match = options.match;
   match.progress = nullptr;
-  match.max_hypotheses = std::max(match.max_hypotheses, kKeptHypotheses);
+  match.max_hypotheses = std::max(match.max_hypotheses, kJudgedPoses);
   match.scales = scales;
   validate(match);
   return match;
+}
+
+bool has_equal_cells(const OccupancyGrid& a, const OccupancyGrid& b) {
+  return a.width == b.width && a.resolution == b.resolution && a.cells == b.cells;
 }
 
 void check(const std::vector<OccupancyGrid>& maps, const MergeResult& merged) {
@@ -61,22 +62,20 @@ class Hanger {
     // As a merge of so many maps has it.
     std::size_t maps = 0;
     for (const MergePart& part : parts) maps += part.members.size();
-    budget_ = options.max_false_joins *
-                  std::max(1.0, static_cast<double>(maps) / static_cast<double>(kFewMaps)) -
-              merged.expected_false_joins.value_or(0.0);
+    budget_ =
+        options.max_false_joins * std::max(1.0, static_cast<double>(maps) / static_cast<double>(kFewMaps)) -
+        merged.expected_false_joins.value_or(0.0);
   }
 
   /// By part; none of those that nothing is said of.
   std::vector<std::optional<PlanWay>> find() {
-    std::vector<MergePart*> all;
-    for (MergePart& part : parts_) all.push_back(&part);
-    hear(all, plan_, plan_match_options(options_, plan_options_.scales), plan_options_.progress);
+    hear(parts_, plan_, plan_match_options(options_, plan_options_.scales), plan_options_.progress);
     ways_.resize(parts_.size());
     parallel_for(parts_.size(), [&](std::size_t i) { ways_[i] = best_way(parts_[i], plan_); });
     hung_.assign(parts_.size(), false);
     const std::optional<std::size_t> surest = find_surest();
     if (!surest || !hang(*surest)) return std::move(ways_);
-    hang_others(*surest);
+    hang_others(ways_[*surest]->scale);
     return std::move(ways_);
   }
 
@@ -88,28 +87,31 @@ class Hanger {
     std::optional<std::size_t> surest;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (hung_[i] || !ways_[i]) continue;
-      if (!surest || ways_[i]->probability > ways_[*surest]->probability) surest = i;
+      if (!surest || is_surer(i, *surest)) surest = i;
     }
     return surest;
+  }
+
+  /// Of equally sure ones it is the one that knows more, whatever the order of the maps.
+  bool is_surer(std::size_t part, std::size_t other) const {
+    const double a = ways_[part]->probability, b = ways_[other]->probability;
+    if (a != b) return a > b;
+    return is_smaller(*parts_[other].voices.front().prepared, *parts_[part].voices.front().prepared);
   }
 
   /// If it is sure enough.
   bool hang(std::size_t part) {
     const double doubt = 1.0 - ways_[part]->probability;
-    if (ways_[part]->probability < options_.match.accept_probability || doubt_ + doubt > budget_) return false;
+    if (ways_[part]->probability < options_.match.accept_probability || doubt_ + doubt > budget_)
+      return false;
     doubt_ += doubt;
     hung_[part] = true;
     return true;
   }
 
-  void hang_others(std::size_t surest) {
-    const double scale = ways_[surest]->scale;
-    std::vector<MergePart*> others;
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      if (i != surest) others.push_back(&parts_[i]);
-    }
-    hear(others, plan_, plan_match_options(options_, around(scale, plan_options_.scales)),
-         plan_options_.progress);
+  /// One after another: what hangs already has a say.
+  void hang_others(double scale) {
+    for (MergePart& part : parts_) know_scale(part, scale, plan_options_.scales);
     while (true) {
       std::vector<HungPart> hung;
       for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -144,14 +146,22 @@ Reason reason_of(const MergePart& part, const std::optional<PlanWay>& way) {
 
 }  // namespace
 
+void validate_plan(const std::vector<OccupancyGrid>& maps, const OccupancyGrid& plan) {
+  validate(plan);
+  if (count_cells(plan).occupied == 0) throw std::invalid_argument("has no walls to hang maps on");
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    if (has_equal_cells(maps[i], plan))
+      throw std::invalid_argument("is the same as map " + std::to_string(i) + ", and cannot be its plan");
+  }
+}
+
 MergeResult place_on_plan(const std::vector<OccupancyGrid>& maps, const OccupancyGrid& plan,
                           MergeResult merged, const MergeOptions& options, const PlanOptions& plan_options) {
   validate_merge(maps, options.resolution);
+  validate_plan(maps, plan);
   check(maps, merged);
-  validate(plan);
-  const PreparedMap drawn(with_enclosed_free(plan));
-  if (drawn.counts().occupied == 0) throw std::invalid_argument("the plan has no walls to hang maps on");
   plan_match_options(options, plan_options.scales);
+  const PreparedMap drawn(with_enclosed_free(plan));
   with_threads(options.match.threads, [&] {
     std::vector<std::unique_ptr<const MapStore::Input>> owned;
     std::vector<const MapStore::Input*> inputs;

@@ -48,7 +48,8 @@ std::vector<MergePart> parts_of(const MergeResult& merged,
   std::vector<MergePart> parts;
   for (std::size_t i = 0; i < merged.components.size(); ++i)
     parts.push_back({i, merged.components[i].members, {}});
-  for (const LeftOut& one : merged.left_out) parts.push_back({std::nullopt, {{one.map, {}, 1.0, {}, {}}}, {}});
+  for (const LeftOut& one : merged.left_out)
+    parts.push_back({std::nullopt, {{one.map, {}, 1.0, {}, {}}}, {}});
   std::sort(parts.begin(), parts.end(), [](const MergePart& a, const MergePart& b) {
     return a.members.front().map < b.members.front().map;
   });
@@ -66,11 +67,11 @@ std::vector<MergePart> parts_of(const MergeResult& merged,
   return parts;
 }
 
-void hear(const std::vector<MergePart*>& parts, const PreparedMap& plan, const MatchOptions& options,
+void hear(std::vector<MergePart>& parts, const PreparedMap& plan, const MatchOptions& options,
           const std::function<void(std::size_t, std::size_t)>& progress) {
   std::vector<PlanVoice*> voices;
-  for (MergePart* part : parts) {
-    for (PlanVoice& voice : part->voices) voices.push_back(&voice);
+  for (MergePart& part : parts) {
+    for (PlanVoice& voice : part.voices) voices.push_back(&voice);
   }
   std::mutex telling;
   std::size_t done = 0;

@@ -37,7 +37,7 @@ struct MergePart {
 std::vector<MergePart> parts_of(const MergeResult& merged, const std::vector<const MapStore::Input*>& inputs);
 
 /// Matches the voices of these parts with the plan. Runs in the calling TBB arena.
-void hear(const std::vector<MergePart*>& parts, const PreparedMap& plan, const MatchOptions& options,
+void hear(std::vector<MergePart>& parts, const PreparedMap& plan, const MatchOptions& options,
           const std::function<void(std::size_t, std::size_t)>& progress);
 
 }  // namespace gridmerge::internal

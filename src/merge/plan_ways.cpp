@@ -24,6 +24,10 @@ SE2 at_scale(const Hypothesis& hypothesis, double scale, const Point2& middle) {
   return {middle.x - ratio * (middle.x - T.x), middle.y - ratio * (middle.y - T.y), T.theta};
 }
 
+bool is_same_scale(double a, double b) {
+  return std::abs(std::log(a / b)) <= kSameScale;
+}
+
 /// The distinct scales that voices propose, the most probable ones.
 std::vector<double> scales_of(const MergePart& part) {
   std::vector<const Hypothesis*> all;
@@ -32,14 +36,12 @@ std::vector<double> scales_of(const MergePart& part) {
       if (one.probability >= kMinCandidateProbability) all.push_back(&one);
     }
   }
-  std::stable_sort(all.begin(), all.end(), [](const Hypothesis* a, const Hypothesis* b) {
-    return a->probability > b->probability;
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Hypothesis* a, const Hypothesis* b) { return a->probability > b->probability; });
   std::vector<double> scales;
   for (const Hypothesis* one : all) {
-    const bool is_new = std::none_of(scales.begin(), scales.end(), [&](double scale) {
-      return std::abs(std::log(one->scale / scale)) <= kSameScale;
-    });
+    const bool is_new = std::none_of(scales.begin(), scales.end(),
+                                     [&](double scale) { return is_same_scale(one->scale, scale); });
     if (is_new && scales.size() < kMostScales) scales.push_back(one->scale);
   }
   return scales;
@@ -91,8 +93,7 @@ class PlanProblem {
       if (part_of.at(join.fixed) == part_of.at(join.moving)) continue;
       const bool in_order = fixed->second < moving->second;
       const auto [first, second] = std::minmax(fixed->second, moving->second);
-      problem_.pairs.push_back(
-          {first, second, candidate_joins(in_order ? join.match : inverse(join.match))});
+      problem_.pairs.push_back({first, second, candidate_joins(in_order ? join.match : inverse(join.match))});
     }
   }
 
@@ -113,8 +114,8 @@ class PlanProblem {
       const double sureness = voice->map ? said.probability : 2.0;
       if (sureness <= most) continue;
       most = sureness;
-      const SE2 T_plan_voice = at_own_scale ? inverse(said.T_fixed_moving)
-                                            : pair.candidates[used.candidate].T_fixed_moving;
+      const SE2 T_plan_voice =
+          at_own_scale ? inverse(said.T_fixed_moving) : pair.candidates[used.candidate].T_fixed_moving;
       settled.T_plan_part = T_plan_voice * inverse(voice->T_part_voice);
       settled.scale = at_own_scale ? said.scale : scale_;
       settled.sd = pair.candidates[used.candidate].sd;
@@ -170,6 +171,20 @@ std::optional<PlanWay> best_way(const MergePart& part, const PreparedMap& plan) 
   PlanProblem problem(plan, scale_of_way[static_cast<std::size_t>(best - ways.cbegin())]);
   const NodeGroup group = add_at(scale_of_way[static_cast<std::size_t>(best - ways.cbegin())], problem);
   return problem.settled(*best, JoinWeights(problem.problem()), group, true);
+}
+
+void know_scale(MergePart& part, double scale, const ScaleRange& scales) {
+  const double range = std::log(scales.most / scales.least);
+  const double left = std::min(1.0, 2.0 * kSameScale / std::max(range, 2.0 * kSameScale));
+  for (PlanVoice& voice : part.voices) {
+    std::vector<Hypothesis>& hypotheses = voice.match.hypotheses;
+    double none = 1.0;
+    for (const Hypothesis& one : hypotheses) none -= one.probability;
+    std::erase_if(hypotheses, [&](const Hypothesis& one) { return !is_same_scale(one.scale, scale); });
+    double sum = left * std::max(none, 0.0);
+    for (const Hypothesis& one : hypotheses) sum += one.probability;
+    for (Hypothesis& one : hypotheses) one.probability /= std::max(sum, kMinCandidateProbability);
+  }
 }
 
 std::optional<PlanWay> best_way_beside(const MergePart& part, const std::vector<HungPart>& hung, double scale,

@@ -261,7 +261,7 @@ class RecordReader {
 
   static PairPose read_pair_pose(const JsonReader& json) {
     return {json.at("transform").transform(kFarthest), read_share(json.at("probability")),
-            read_share(json.at("acceptance_index")),        json.at("agreement").count(),
+            read_share(json.at("acceptance_index")),   json.at("agreement").count(),
             json.at("disagreement").count(),           read_share(json.at("overlap"))};
   }
 

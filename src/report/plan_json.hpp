@@ -13,7 +13,8 @@ namespace gridmerge::internal {
 
 /// What transforms.json says of a plan. `names[i]` is what to call map i, `component` the file of the maps on
 /// the plan, "" if they are no component.
-Json plan_json(const std::vector<std::string>& names, const PlanPlacement& plan, const std::string& component);
+Json plan_json(const std::vector<std::string>& names, const PlanPlacement& plan,
+               const std::string& component);
 
 /// The file of the component on the plan, by component_file(); "" if there is none.
 GRIDMERGE_INTERNAL_EXPORT std::string component_on_plan(const MergeResult& result);

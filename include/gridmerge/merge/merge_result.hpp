@@ -113,7 +113,8 @@ struct RefusedCount {
   friend bool operator==(const RefusedCount&, const RefusedCount&) = default;
 };
 
-/// What a merge made of some maps before it knew of a plan, a component or a map alone, and how it lies there.
+/// What a merge made of some maps before it knew of a plan, a component or a map alone, and how it lies
+/// there.
 struct PlanPart {
   std::vector<std::size_t> maps;  ///< indices of input maps, ascending
   /// Takes the frame of the first of them to the plan's, in metres of the maps: the best way that there is,
