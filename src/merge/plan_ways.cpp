@@ -99,18 +99,28 @@ class PlanProblem {
 
   const JoinProblem& problem() const { return problem_; }
 
-  /// A way, put as the surest voice says that speaks for it: that of all maps as one, if it does.
-  PlanWay settled(const WeighedJoin& way, const JoinWeights& weights, const NodeGroup& part,
+  /// A way, put as the surest voice says that speaks for it: that of all maps as one, if it does. It is as
+  /// probable as the surest of them says at most, unless maps of `hung`, which has the plan first, speak for
+  /// it too: how often members of one part agree by chance on a plan that is small beside them is not known.
+  PlanWay settled(const WeighedJoin& way, const NodeGroup& hung, const NodeGroup& part,
                   bool at_own_scale) const {
+    const JoinWeights weights(problem_);
     PlanWay settled{way.T_a_b, scale_, way.probability, 0.0};
-    NodeGroup together = plan();
+    NodeGroup together = hung;
     for (const PlacedNode& node : part) together.push_back({node.map, way.T_a_b * node.T_group_map});
-    double most = -1.0;
+    const auto is_of_part = [&](std::size_t map) {
+      return std::any_of(part.begin(), part.end(), [&](const PlacedNode& node) { return node.map == map; });
+    };
+    double most = -1.0, surest = 0.0;
+    bool others_agree = false;
     for (const UsedCandidate& used : weights.used_in(together)) {
       const PairCandidates& pair = problem_.pairs[used.pair];
+      if (!is_of_part(pair.fixed) && !is_of_part(pair.moving)) continue;
+      if (pair.fixed != 0) others_agree = true;
       if (pair.fixed != 0) continue;
       const auto& [voice, hypotheses] = said_[pair.moving - 1];
       const Hypothesis& said = hypotheses[used.candidate];
+      surest = std::max(surest, said.probability);
       const double sureness = voice->map ? said.probability : 2.0;
       if (sureness <= most) continue;
       most = sureness;
@@ -120,6 +130,7 @@ class PlanProblem {
       settled.scale = at_own_scale ? said.scale : scale_;
       settled.sd = pair.candidates[used.candidate].sd;
     }
+    if (!others_agree) settled.probability = std::min(settled.probability, surest);
     return settled;
   }
 
@@ -170,7 +181,7 @@ std::optional<PlanWay> best_way(const MergePart& part, const PreparedMap& plan) 
   const auto best = most_probable(ways);
   PlanProblem problem(plan, scale_of_way[static_cast<std::size_t>(best - ways.cbegin())]);
   const NodeGroup group = add_at(scale_of_way[static_cast<std::size_t>(best - ways.cbegin())], problem);
-  return problem.settled(*best, JoinWeights(problem.problem()), group, true);
+  return problem.settled(*best, PlanProblem::plan(), group, true);
 }
 
 void know_scale(MergePart& part, double scale, const ScaleRange& scales) {
@@ -204,7 +215,7 @@ std::optional<PlanWay> best_way_beside(const MergePart& part, const std::vector<
   const JoinWeights weights(problem.problem());
   const std::vector<WeighedJoin> ways = weights.ways_by_worth(together, group);
   if (ways.empty()) return std::nullopt;
-  return problem.settled(*most_probable(ways), weights, group, false);
+  return problem.settled(*most_probable(ways), together, group, false);
 }
 
 }  // namespace gridmerge::internal

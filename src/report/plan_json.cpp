@@ -2,6 +2,7 @@
 #include "report/plan_json.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -69,7 +70,7 @@ Json plan_json(const std::vector<std::string>& names, const PlanPlacement& plan,
                      {"probability", number_json(part.probability)},
                      {"reason", reason_json(part.reason)}});
   }
-  const bool any = plan.probability() > 0.0;
+  const bool any = !maps.empty();
   return {{"source", plan.name},
           {"scale", any ? number_json(plan.scale) : Json()},
           {"probability", any ? number_json(plan.probability()) : Json()},
@@ -78,7 +79,34 @@ Json plan_json(const std::vector<std::string>& names, const PlanPlacement& plan,
           {"parts", std::move(parts)}};
 }
 
-PlanPlacement read_plan(const JsonReader& json, const std::vector<std::string>& names) {
+namespace {
+
+/// What is told twice has to be the same.
+void check_plan(const JsonReader& json, const std::vector<std::string>& names, const MergeResult& result) {
+  const PlanPlacement& plan = *result.plan;
+  std::vector<std::string> on_plan;
+  for (const PlanPart& part : plan.parts) {
+    for (const std::size_t map : part.maps) {
+      if (part.on_plan()) on_plan.push_back(names[map]);
+    }
+  }
+  const JsonReader maps = json.at("maps");
+  bool is_same = maps.size() == on_plan.size();
+  for (std::size_t i = 0; is_same && i < on_plan.size(); ++i) is_same = maps.at(i).text() == on_plan[i];
+  if (!is_same) maps.fail("does not go with the parts");
+  for (const char* key : {"scale", "probability"}) {
+    if (json.at(key).is_null() != on_plan.empty()) json.at(key).fail("does not go with the parts");
+  }
+  if (!on_plan.empty() && std::abs(read_share(json.at("probability")) - plan.probability()) > 1e-9)
+    json.at("probability").fail("is not that of the surest part");
+  const JsonReader component = json.at("component");
+  if ((component.is_null() ? std::string() : component.text()) != component_on_plan(result))
+    component.fail("does not hold the maps on the plan");
+}
+
+}  // namespace
+
+void read_plan(const JsonReader& json, const std::vector<std::string>& names, MergeResult& result) {
   PlanPlacement plan;
   plan.name = json.at("source").text();
   if (!json.at("scale").is_null()) plan.scale = json.at("scale").number_in(kMinScale, kMaxScale);
@@ -86,9 +114,8 @@ PlanPlacement read_plan(const JsonReader& json, const std::vector<std::string>& 
   const JsonReader parts = json.at("parts");
   for (std::size_t i = 0; i < parts.size(); ++i)
     plan.parts.push_back(read_part(parts.at(i), names, is_taken));
-  if (json.at("scale").is_null() != (plan.probability() == 0.0))
-    json.at("scale").fail("does not go with the parts");
-  return plan;
+  result.plan = std::move(plan);
+  check_plan(json, names, result);
 }
 
 }  // namespace gridmerge::internal

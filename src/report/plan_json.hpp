@@ -19,7 +19,8 @@ Json plan_json(const std::vector<std::string>& names, const PlanPlacement& plan,
 /// The file of the component on the plan, by component_file(); "" if there is none.
 GRIDMERGE_INTERNAL_EXPORT std::string component_on_plan(const MergeResult& result);
 
-/// The same read again. Of maps with one name the first that is in no part yet. Throws JsonError.
-PlanPlacement read_plan(const JsonReader& json, const std::vector<std::string>& names);
+/// The same read again, into the result, whose components have been read. Of maps with one name it is the
+/// first that is in no part yet. Throws JsonError.
+void read_plan(const JsonReader& json, const std::vector<std::string>& names, MergeResult& result);
 
 }  // namespace gridmerge::internal

@@ -53,7 +53,11 @@ double probability(const std::vector<std::vector<Hypothesis>>& sayings) {
 TEST(BestWay, MembersThatAgreeDoNoHarm) {
   const std::vector<Hypothesis> here{said(kHere, 1.0, 0.97)};
   EXPECT_NEAR(probability({here}), 0.97, 1e-3);
-  EXPECT_GE(probability({here, here, here}), 0.97 - 1e-3);
+  EXPECT_NEAR(probability({here, here, here}), 0.97, 1e-3);
+  // No surer than the surest of them says: their agreement may be chance.
+  const std::vector<Hypothesis> perhaps{said(kHere, 1.0, 0.5)};
+  EXPECT_LE(probability({perhaps, perhaps, perhaps}), 0.5);
+  EXPECT_NEAR(probability({perhaps, here, perhaps}), 0.97, 1e-3);
 }
 
 TEST(BestWay, MembersThatSayOtherwiseCountAgainstIt) {
