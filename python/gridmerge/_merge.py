@@ -14,10 +14,10 @@ from . import _arguments, _core, _executor, _html
 from ._arguments import Progress
 from ._deformation import Deformation
 from ._grid import MapLike, OccupancyGrid
-from ._inputs import to_map, to_maps_and_files
+from ._inputs import to_maps_and_files
 from ._known_poses import InitialPoses, MapKey, NamedMaps, to_known_poses
 from ._match import MatchResult, PairPose, Reason, pair_pose, to_match_result
-from ._plan import PlanPlacement, to_plan_placement
+from ._plan import PlanPlacement, choose_plan, to_plan_placement
 from ._repr import count, listed, probability, short_pose, shortened
 from ._transform import Transform
 
@@ -317,7 +317,7 @@ def merge(
         raise ValueError("strategy: elastic needs 'joint'")
     if _executor.check(executor) is not None and up_the_tree:
         raise ValueError("executor: needs the strategy 'joint': a tree's matches wait for each other")
-    chosen = _chosen_plan(grids, plan, plan_scale, up_the_tree, fix is not None, search)
+    chosen = choose_plan(grids, plan, plan_scale, up_the_tree, fix is not None, search)
     # The program may go to another directory before it saves.
     more_inputs = (os.fsencode(os.path.abspath(init)),) if isinstance(init, (str, os.PathLike)) else ()
     known = to_known_poses(NamedMaps(called, grids), init, fix)
@@ -371,31 +371,6 @@ def merge(
         )
         more_inputs += tuple(drawing._core.files)
     return to_merge_result(merged, grids, called, more_inputs)
-
-
-def _chosen_plan(
-    grids: Sequence[OccupancyGrid],
-    plan: MapLike | None,
-    scale: object,
-    up_the_tree: bool,
-    is_fixed: bool,
-    search: str,
-) -> tuple[OccupancyGrid, tuple[float, float]] | None:
-    if plan is None:
-        if scale is not None:
-            raise ValueError("plan_scale: there is no plan")
-        return None
-    if up_the_tree:
-        raise ValueError("strategy: plan needs 'joint'")
-    if is_fixed:
-        raise ValueError("plan: excludes fix: a merged map has one frame")
-    scales = _core.DEFAULT_PLAN_SCALE if scale is None else _arguments.scales("plan_scale", scale, search)
-    drawing = to_map("plan", plan)
-    try:
-        _core.validate_plan([grid._core for grid in grids], drawing._core)
-    except ValueError as error:
-        raise ValueError(f"plan: {error}") from None
-    return drawing, scales
 
 
 def _unpickle(

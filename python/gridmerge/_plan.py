@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import cast
 
-from . import _core
+from . import _arguments, _core
+from ._grid import MapLike, OccupancyGrid
+from ._inputs import to_map
 from ._match import Reason
 from ._repr import count, listed, probability, shortened
 from ._transform import Transform
@@ -74,3 +76,29 @@ def to_plan_placement(plan: _core.PlanPlacement, names: Sequence[str]) -> PlanPl
             for part in plan.parts
         ),
     )
+
+
+def choose_plan(
+    grids: Sequence[OccupancyGrid],
+    plan: MapLike | None,
+    scale: object,
+    up_the_tree: bool,
+    is_fixed: bool,
+    search: str,
+) -> tuple[OccupancyGrid, tuple[float, float]] | None:
+    """The plan and its range of scales, as merge() takes them; none if there is none."""
+    if plan is None:
+        if scale is not None:
+            raise ValueError("plan_scale: there is no plan")
+        return None
+    if up_the_tree:
+        raise ValueError("strategy: plan needs 'joint'")
+    if is_fixed:
+        raise ValueError("plan: excludes fix: a merged map has one frame")
+    scales = _core.DEFAULT_PLAN_SCALE if scale is None else _arguments.scales("plan_scale", scale, search)
+    drawing = to_map("plan", plan)
+    try:
+        _core.validate_plan([grid._core for grid in grids], drawing._core)
+    except ValueError as error:
+        raise ValueError(f"plan: {error}") from None
+    return drawing, scales

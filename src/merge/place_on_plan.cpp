@@ -137,11 +137,13 @@ class Hanger {
 };
 
 /// Why a part is not on the plan.
-Reason reason_of(const MergePart& part, const std::optional<PlanWay>& way) {
+Reason reason_of(const MergePart& part, const std::optional<PlanWay>& way, double accept_probability) {
   if (part.voices.empty()) return Reason::nothing_to_compare;
   const Reason own = part.voices.front().match.reason;
-  // Believed by itself, but not with what its members say, or so is another way to lie.
-  return own == Reason::none ? (way ? Reason::contradicts_others : Reason::ambiguous) : own;
+  if (own != Reason::none) return own;
+  // Believed by itself, but not with what its members, or other parts, say; or the budget has no room for it.
+  const bool is_sure = way && way->probability >= accept_probability;
+  return is_sure ? Reason::several : Reason::contradicts_others;
 }
 
 }  // namespace
@@ -180,7 +182,8 @@ MergeResult place_on_plan(const std::vector<OccupancyGrid>& maps, const Occupanc
         told.T_plan_first = ways[i]->T_plan_part * parts[i].members.front().T_component_map;
         told.probability = ways[i]->probability;
       }
-      told.reason = hanger.is_hung(i) ? Reason::none : reason_of(parts[i], ways[i]);
+      told.reason =
+          hanger.is_hung(i) ? Reason::none : reason_of(parts[i], ways[i], options.match.accept_probability);
       if (told.on_plan()) placement.scale = ways[i]->scale;
       placement.parts.push_back(std::move(told));
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // merge --plan, end to end.
 #include <filesystem>
+#include <fstream>
 
 #include "fixture.hpp"
 
@@ -119,7 +120,7 @@ TEST_F(MergePlan, APlanThatIsNoneIsAnError) {
       write_map(directory, "copy", map_part(draw_building(1), {5, 0, 18, 13}, {1.0, -7.0, -1.1}));
   expect_error(asked(copy), copy, "the same as map 1");
   expect_error(asked(directory.file("absent.yaml")), "absent.yaml", "");
-  expect_error(asked(directory.file("plan.pgm")), "plan.pgm", "--resolution");
+  expect_error(asked(directory.file("plan.pgm")), "plan.pgm", "needs a resolution");
   EXPECT_FALSE(std::filesystem::exists(output));
 }
 
@@ -128,9 +129,9 @@ TEST_F(MergePlan, APlanInTheOutputDirectoryIsKept) {
   std::filesystem::create_directory(output);
   std::filesystem::rename(directory.file("plan.pgm"), output + "/merged.pgm");
   std::filesystem::rename(plan, output + "/merged.yaml");
-  write_file(output + "/merged.yaml",
-             "image: merged.pgm\nresolution: 0.08\norigin: [0, 0, 0]\nnegate: 0\n"
-             "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  std::ofstream(output + "/merged.yaml")
+      << "image: merged.pgm\nresolution: 0.08\norigin: [0, 0, 0]\nnegate: 0\n"
+         "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
   const std::string before = read_file(output + "/merged.pgm");
   expect_error(run({"merge", west, east, "--plan", output + "/merged.yaml", "-o", output}), "merged.yaml",
                "would be replaced");
