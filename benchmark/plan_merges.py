@@ -91,8 +91,10 @@ def simulated_teams(gridmerge: pathlib.Path, folder: pathlib.Path) -> list[Team]
             how = "far apart" if overlap is not None else "anywhere"
             teams.append(Team(f"simulated, {how}", path, [pathlib.Path(one) for one in places], places))
     for number, team in enumerate(teams):
-        other = teams[(number + len(OVERLAPS) + 1) % len(teams)]
+        other = teams[(number + len(OVERLAPS)) % len(teams)]  # of the same overlap
         strangers.append(Team("simulated, plan of another building", other.plan, team.maps, {}))
+        both = team.maps + other.maps
+        strangers.append(Team("simulated, two buildings at once", team.plan, both, team.truth))
     return teams + strangers
 
 
