@@ -319,7 +319,9 @@ def merge(
         raise ValueError("executor: needs the strategy 'joint': a tree's matches wait for each other")
     chosen = choose_plan(grids, plan, plan_scale, up_the_tree, fix is not None, search)
     # The program may go to another directory before it saves.
-    more_inputs = (os.fsencode(os.path.abspath(init)),) if isinstance(init, (str, os.PathLike)) else ()
+    more_inputs: tuple[bytes, ...] = (
+        (os.fsencode(os.path.abspath(init)),) if isinstance(init, (str, os.PathLike)) else ()
+    )
     known = to_known_poses(NamedMaps(called, grids), init, fix)
     checked_accept = None if accept is None else _arguments.share("accept", accept)
     max_false_joins = _arguments.not_negative("max_false_joins", max_false_joins)

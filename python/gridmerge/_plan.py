@@ -95,7 +95,9 @@ def choose_plan(
         raise ValueError("strategy: plan needs 'joint'")
     if is_fixed:
         raise ValueError("plan: excludes fix: a merged map has one frame")
-    scales = _core.DEFAULT_PLAN_SCALE if scale is None else _arguments.scales("plan_scale", scale, search)
+    scales = _core.DEFAULT_LEAST_PLAN_SCALE, _core.DEFAULT_MOST_PLAN_SCALE
+    if scale is not None:
+        scales = _arguments.scales("plan_scale", scale, search)
     drawing = to_map("plan", plan)
     try:
         _core.validate_plan([grid._core for grid in grids], drawing._core)

@@ -40,7 +40,8 @@ Merged place(const Merged& merged, const Map& plan, const nb::bytes& name, std::
 }  // namespace
 
 void bind_plan(nb::module_& module) {
-  module.attr("DEFAULT_PLAN_SCALE") = std::pair(PlanOptions{}.scales.least, PlanOptions{}.scales.most);
+  module.attr("DEFAULT_LEAST_PLAN_SCALE") = PlanOptions{}.scales.least;
+  module.attr("DEFAULT_MOST_PLAN_SCALE") = PlanOptions{}.scales.most;
   nb::class_<PlanPart>(module, "PlanPart")
       .def_ro("maps", &PlanPart::maps)
       .def_prop_ro("transform", [](const PlanPart& part) { return to_pose(part.T_plan_first); })

@@ -6,6 +6,7 @@ import pickle
 from pathlib import Path
 
 import gridmerge
+import numpy as np
 import pytest
 from conftest import Cli
 
@@ -81,7 +82,7 @@ def test_a_strangers_plan_changes_nothing(robots: list[gridmerge.OccupancyGrid],
 
 
 def test_says_what_is_wrong(robots: list[gridmerge.OccupancyGrid], plan: Path) -> None:
-    bare = gridmerge.OccupancyGrid([[0] * 5] * 4, 0.1)
+    bare = gridmerge.OccupancyGrid(np.zeros((4, 5), np.int8), 0.1)
     for wrong, message in [
         ({"plan": bare}, "plan: has no walls"),
         ({"plan": robots[1]}, "plan: is the same as map 1"),
