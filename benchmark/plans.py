@@ -22,6 +22,7 @@ import pathlib
 import statistics
 import subprocess
 import tempfile
+from collections.abc import Sequence
 
 import numpy as np
 from peer_maps import FREE, OCCUPIED, UNKNOWN, Map, read_map, transformed, write_map
@@ -154,39 +155,47 @@ def known_points(map_: Map, most: int = 2000) -> np.ndarray:
     return map_.points(np.column_stack([columns, rows])[::step])
 
 
+def simulate(
+    gridmerge: pathlib.Path,
+    folder: pathlib.Path,
+    kind: str,
+    size: str,
+    drift: float,
+    seed: int,
+    robots: int,
+    more: Sequence[str] = (),
+) -> tuple[Map, dict[str, Pose]]:
+    """A building's plan, and where each robot's map lies on it, by file."""
+    arguments = [
+        "--kind",
+        kind,
+        "--size",
+        size,
+        "--drift",
+        str(drift),
+        "--robots",
+        str(robots),
+        "--others",
+        "0",
+    ]
+    subprocess.run(
+        [gridmerge, "simulate", *arguments, "--seed", str(seed), *more, "--quiet", "-o", folder],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
+    with (folder / "building.tsv").open(newline="") as file:
+        truth = {
+            row["moving"]: (float(row["x"]), float(row["y"]), float(row["theta"]))
+            for row in csv.DictReader(file, delimiter="\t")
+        }
+    return without_furniture(read_map(folder / "building.yaml")), truth
+
+
 def simulated_cases(gridmerge: pathlib.Path, folder: pathlib.Path, most_unrelated: int) -> list[Case]:
     cases, unrelated, plans = [], [], []
     for number, (kind, size, drift, scale) in enumerate(SIMULATED):
         made = folder / str(number)
-        subprocess.run(
-            [
-                gridmerge,
-                "simulate",
-                "--kind",
-                kind,
-                "--size",
-                size,
-                "--drift",
-                str(drift),
-                "--robots",
-                "2",
-                "--others",
-                "0",
-                "--seed",
-                str(SEED + number),
-                "--quiet",
-                "-o",
-                made,
-            ],
-            check=True,
-            stdout=subprocess.DEVNULL,
-        )
-        plan = without_furniture(read_map(made / "building.yaml"))
-        with (made / "building.tsv").open(newline="") as file:
-            truth = {
-                row["moving"]: (float(row["x"]), float(row["y"]), float(row["theta"]))
-                for row in csv.DictReader(file, delimiter="\t")
-            }
+        plan, truth = simulate(gridmerge, made, kind, size, drift, SEED + number, 2)
         for name, paper in PAPERS.items():
             path = made / f"plan_{name.replace(' ', '_')}.yaml"
             write_map(path, on_paper(plan, scale, paper))

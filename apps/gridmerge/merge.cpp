@@ -24,6 +24,7 @@
 #include "gridmerge/report/merge_output.hpp"
 #include "known_poses.hpp"
 #include "merge_summary.hpp"
+#include "plan.hpp"
 #include "scale_hint.hpp"
 #include "search_options.hpp"
 
@@ -46,10 +47,12 @@ struct MergeCommandOptions {
   KnownPoseOptions known;
   CacheOptions cache;
   ExportOptions exports;
+  PlanCommandOptions plan;
 };
 
 struct Inputs {
   std::vector<OccupancyGrid> maps;
+  std::optional<Plan> plan;
   std::vector<std::filesystem::path> files;  // that all of it was read from
 };
 
@@ -92,6 +95,10 @@ Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
     LoadedMap map = reader.read(path);
     inputs.maps.push_back(std::move(map.grid));
     inputs.files.insert(inputs.files.end(), map.files.begin(), map.files.end());
+  }
+  if (!options.plan.file.empty()) {
+    inputs.plan.emplace(options.plan, options.maps, inputs.maps, reader);
+    inputs.files.insert(inputs.files.end(), inputs.plan->files().begin(), inputs.plan->files().end());
   }
   reader.tell_warnings();
   tell_of_copies(options, inputs.maps, console);
@@ -195,8 +202,10 @@ int run_merge(const MergeCommandOptions& options) {
   if (!options.search.trace.empty()) try_result_file(options.search.trace, options.output, inputs.files);
   const std::vector<Export> exports = exports_of(options.exports, options.output);
   try_exports(exports, options.output, inputs.files);
-  const MergeResult result =
+  MergeResult result =
       merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
+  if (inputs.plan)
+    result = inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
   console.progress("writing the result");
   write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   matcher.write_trace();
@@ -205,11 +214,14 @@ int run_merge(const MergeCommandOptions& options) {
                             describe_doubled(asked, inputs.maps, result, options.common.verbose);
   console.clear();
   if (options.common.verbose) print(describe_joins(asked, result));
-  print(describe_merge(asked, inputs.maps, result, known_poses.describe_unused(inputs.maps, result)) + hints);
+  print(describe_merge(asked, inputs.maps, result, known_poses.describe_unused(inputs.maps, result)) +
+        describe_plan(options.maps, result) + hints);
   const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
   print("look at it: " + escape_controls(page.string()) + "\n");
   print(write_exports(exports, inputs.files, {options.maps, inputs.maps, result}));
-  return result.components.size() == 1 && result.left_out.empty() ? kDone : kRefused;
+  const bool all_on_plan = !result.plan || std::all_of(result.plan->parts.begin(), result.plan->parts.end(),
+                                                       [](const PlanPart& part) { return part.on_plan(); });
+  return result.components.size() == 1 && result.left_out.empty() && all_on_plan ? kDone : kRefused;
 }
 
 }  // namespace
@@ -228,6 +240,7 @@ void add_merge(CLI::App& app, Action& action) {
                    "Metres per cell of the merged map; if not given, those of the finest map")
       ->type_name("METRES")
       ->check(kMetresPerCell);
+  add_plan_options(*command, options->plan);
   add_known_pose_options(*command, options->known);
   add_search_options(*command, options->search);
   add_strategy_option(*command, options->search);
@@ -284,6 +297,7 @@ void add_merge(CLI::App& app, Action& action) {
       "Example:\n  gridmerge merge robot1.yaml robot2.yaml robot3.yaml -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml -o merged --export g2o --export open-rmf=fleet.yaml\n"
       "  gridmerge merge robot1.mcap team.mcap#/tb2/map team.mcap#/tb3/map -o merged\n"
+      "  gridmerge merge robot1.yaml robot2.yaml --plan layout.yaml -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml --fix robot2.yaml -o "
       "merged");
@@ -301,7 +315,13 @@ void add_merge(CLI::App& app, Action& action) {
       throw CLI::ValidationError(options->known.init.empty() ? "--fix" : "--init", "needs --strategy joint");
     if (options->cache.is_used() && options->search.up_the_tree())
       throw CLI::ValidationError("--cache", "needs --strategy joint");
+    if (!options->plan.file.empty() && options->search.up_the_tree())
+      throw CLI::ValidationError("--plan", "needs --strategy joint");
+    if (!options->plan.file.empty() && !options->known.fix.empty())
+      throw CLI::ValidationError("--plan", "excludes --fix: the merged map has one frame");
     const bool is_shard = !options->cache.shard.empty();
+    if (is_shard && !options->plan.file.empty())
+      throw CLI::ValidationError("--plan", "excludes --shard, which merges nothing");
     if (is_shard && !options->cache.is_used()) throw CLI::ValidationError("--shard", "needs --cache");
     if (is_shard && !options->output.empty())
       throw CLI::ValidationError("--shard", "merges nothing: leave -o out");

@@ -72,19 +72,6 @@ std::optional<ScaleRange> parse_scales(const std::string& text) {
   return scales;
 }
 
-const CLI::Validator kScales(
-    [](std::string& text) {
-      const std::optional<ScaleRange> scales = parse_scales(text);
-      if (!scales) return "'" + text + "' is not LO:HI, as 0.5:2";
-      try {
-        validate(*scales);
-      } catch (const std::invalid_argument& error) {
-        return "'" + text + "': " + error.what();
-      }
-      return std::string();
-    },
-    "");
-
 /// The options that only the random walk has.
 std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& options) {
   RandomWalkMatchOptions& match = options.walk;
@@ -161,6 +148,23 @@ void check_walk(const SearchOptions& options) {
 }
 
 }  // namespace
+
+const CLI::Validator kScales(
+    [](std::string& text) {
+      const std::optional<ScaleRange> scales = parse_scales(text);
+      if (!scales) return "'" + text + "' is not LO:HI, as 0.5:2";
+      try {
+        validate(*scales);
+      } catch (const std::invalid_argument& error) {
+        return "'" + text + "': " + error.what();
+      }
+      return std::string();
+    },
+    "");
+
+ScaleRange to_scales(const std::string& text) {
+  return parse_scales(text).value();
+}
 
 void add_search_options(CLI::App& command, SearchOptions& options) {
   std::vector<std::string> names;
@@ -242,7 +246,7 @@ MatchOptions match_options(const CommonOptions& common, const SearchOptions& opt
   engine.accept_probability = options.accept_from();
   if (options.lists_all) engine.max_hypotheses = std::numeric_limits<std::size_t>::max();
   engine.search = search_method(options.method).value();
-  if (!options.scales.empty()) engine.scales = parse_scales(options.scales);
+  if (!options.scales.empty()) engine.scales = to_scales(options.scales);
   return engine;
 }
 

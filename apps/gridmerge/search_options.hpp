@@ -14,6 +14,12 @@
 
 namespace gridmerge::cli {
 
+/// A range of scales, LO:HI.
+extern const CLI::Validator kScales;
+
+/// What a text that kScales lets pass says.
+ScaleRange to_scales(const std::string& text);
+
 /// How pairs of maps are matched, and what is accepted.
 struct SearchOptions {
   std::string method = name_of(SearchMethod::exhaustive);

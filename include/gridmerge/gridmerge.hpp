@@ -10,6 +10,7 @@
 #if __has_include("gridmerge/merge/merge.hpp")
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merger.hpp"
+#include "gridmerge/merge/plan.hpp"
 #endif
 #if __has_include("gridmerge/online/team.hpp")
 #include "gridmerge/online/team.hpp"

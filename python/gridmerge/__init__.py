@@ -60,6 +60,7 @@ from ._merge import (
 )
 from ._merger import Merger
 from ._message import OccupancyGridMessage
+from ._plan import PlanPart, PlanPlacement
 from ._random_walk import RandomWalkMatch, Trace, Walk, match_by_random_walk, plot_walk
 from ._simulate import BUILDING_KINDS, SimulatedMap, SimulatedPair, Simulation, simulate
 from ._team import RobotState, RobotStatus, Team, TeamAnswer, TeamComponent, TeamEvent, TeamEventKind
@@ -96,6 +97,8 @@ __all__ = [
     "OccupancyGrid",
     "OccupancyGridMessage",
     "OpenWay",
+    "PlanPart",
+    "PlanPlacement",
     "PairCounts",
     "PairPose",
     "PoseLike",

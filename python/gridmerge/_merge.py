@@ -17,6 +17,7 @@ from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_maps_and_files
 from ._known_poses import InitialPoses, MapKey, NamedMaps, to_known_poses
 from ._match import MatchResult, PairPose, Reason, pair_pose, to_match_result
+from ._plan import PlanPlacement, choose_plan, to_plan_placement
 from ._repr import count, listed, probability, short_pose, shortened
 from ._transform import Transform
 
@@ -86,7 +87,7 @@ class Component:
     """Cells at which all inputs have the same value, unknown included (Birk & Carpin 2006); None where the inputs'
     cells differ in size from the merged map's by more than 100 times."""
     in_world_frame: bool
-    """Whether the frame is that of the initial poses, because a member's pose is fixed."""
+    """Whether the frame is that of the initial poses, because a member's pose is fixed, or that of the plan."""
 
     def __repr__(self) -> str:
         return (
@@ -183,13 +184,16 @@ class MergeResult:
     """How maps that lie apart may lie together, most probable first. Empty for the strategy "tree"."""
     expected_false_joins: float | None
     """How many of all joins are expected to be false. None for the strategy "tree", which does not know."""
+    plan: PlanPlacement | None
+    """Which maps hang on the plan, and how; None if none was given."""
     _core: _core.Merged = field(repr=False, compare=False)
     _more_inputs: tuple[bytes, ...] = field(repr=False, compare=False)
 
     @property
     def complete(self) -> bool:
-        """Whether all maps are in one component."""
-        return len(self.components) == 1 and not self.left_out
+        """Whether all maps are in one component, and on the plan if one was given."""
+        on_plan = self.plan is None or all(part.on_plan for part in self.plan.parts)
+        return len(self.components) == 1 and not self.left_out and on_plan
 
     def __repr__(self) -> str:
         joined = sum(len(component.members) for component in self.components)
@@ -254,6 +258,8 @@ def merge(
     max_missed: float = _core.DEFAULT_MAX_MISSED,
     output_resolution: float | None = None,
     elastic: bool = False,
+    plan: MapLike | None = None,
+    plan_scale: tuple[float, float] | None = None,
     search: str = "exhaustive",
     executor: Executor | None = None,
     progress: Progress | None = None,
@@ -280,12 +286,17 @@ def merge(
         elastic: whether maps are bent so that walls that several have seen come to lie on each other: for maps that
             drift has bent. See Member.deformation. Fixed maps stay straight. It changes neither which maps join nor
             how sure that is, and needs the strategy "joint".
+        plan: an architect's plan of unknown scale, a line drawing or a map, that the maps are hung on: see
+            MergeResult.plan. Maps that nothing else joins are joined by it. The component on the plan is in the plan's
+            frame, in the maps' metres, and holds the maps alone. Not for "tree", and not together with `fix`.
+        plan_scale: the smallest and the largest factor by which the plan may be too small; (0.5, 2.0) if None.
         search: as of match(). With "exhaustive" the thorough look is for pairs whose maps the quick one leaves apart.
             "random-walk" needs the strategy "tree".
         executor: makes the matches: any concurrent.futures.Executor, of processes, threads, Dask or MPI. The result is
             the same, bit by bit. Maps that are given as paths are read by the workers, under the same paths; others are
             sent to them. Each task takes one thread, and is tried again when its worker dies. "tree" takes none.
-        progress: called now and then, in the calling thread, with the share of the pairs that are matched.
+        progress: called now and then, in the calling thread, with the share of the pairs that are matched. The plan
+            comes after them.
 
     The frame of a component is that of its first member, unless a member is fixed. Other Python threads run meanwhile,
     and Ctrl-C ends the work, also what an executor has not begun. Raises FileError for a file that is no map, or that
@@ -306,8 +317,11 @@ def merge(
         raise ValueError("strategy: elastic needs 'joint'")
     if _executor.check(executor) is not None and up_the_tree:
         raise ValueError("executor: needs the strategy 'joint': a tree's matches wait for each other")
+    chosen = choose_plan(grids, plan, plan_scale, up_the_tree, fix is not None, search)
     # The program may go to another directory before it saves.
-    more_inputs = (os.fsencode(os.path.abspath(init)),) if isinstance(init, (str, os.PathLike)) else ()
+    more_inputs: tuple[bytes, ...] = (
+        (os.fsencode(os.path.abspath(init)),) if isinstance(init, (str, os.PathLike)) else ()
+    )
     known = to_known_poses(NamedMaps(called, grids), init, fix)
     checked_accept = None if accept is None else _arguments.share("accept", accept)
     max_false_joins = _arguments.not_negative("max_false_joins", max_false_joins)
@@ -344,6 +358,20 @@ def merge(
         matching = _executor.MatchingExecutor(executor, *merger.match_options())
         _executor.match_due(matching, [(merger, shared)], told)
         merged = merger.solve(None)
+    if chosen is not None:
+        drawing, scales = chosen
+        merged = _core.place_on_plan(
+            merged,
+            drawing._core,
+            _arguments.to_bytes(drawing.source or drawing.frame_id or "plan"),
+            scales,
+            _arguments.threads(threads),
+            checked_accept,
+            max_false_joins,
+            resolution,
+            search,
+        )
+        more_inputs += tuple(drawing._core.files)
     return to_merge_result(merged, grids, called, more_inputs)
 
 
@@ -398,6 +426,7 @@ def to_merge_result(
         names=tuple(names),
         open_ways=tuple(_to_open_way(way) for way in merged.open_ways),
         expected_false_joins=merged.expected_false_joins,
+        plan=None if merged.plan is None else to_plan_placement(merged.plan, names),
         _core=merged,
         _more_inputs=more_inputs,
     )

@@ -154,6 +154,7 @@ void bind_results(nb::module_& module) {
       .def_prop_ro("open_ways", [](const Merged& merged) { return merged.result->open_ways; })
       .def_prop_ro("expected_false_joins",
                    [](const Merged& merged) { return merged.result->expected_false_joins; })
+      .def_prop_ro("plan", [](const Merged& merged) { return merged.result->plan; })
       .def_prop_ro("left_out",
                    [](const Merged& merged) {
                      std::vector<std::tuple<std::size_t, std::string, std::string>> left_out;

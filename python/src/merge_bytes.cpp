@@ -144,6 +144,34 @@ Join read_join(ByteReader& reader) {
   return join;
 }
 
+void write(const PlanPlacement& plan, ByteWriter& writer) {
+  writer.text(plan.name);
+  writer.number(plan.scale);
+  writer.whole(plan.parts.size());
+  for (const PlanPart& part : plan.parts) {
+    writer.whole(part.maps.size());
+    for (const std::size_t map : part.maps) writer.whole(map);
+    writer.pose(part.T_plan_first);
+    writer.number(part.probability);
+    writer.byte(static_cast<std::uint8_t>(part.reason));
+  }
+}
+
+PlanPlacement read_plan(ByteReader& reader) {
+  PlanPlacement plan;
+  plan.name = reader.text();
+  plan.scale = reader.number();
+  plan.parts.resize(reader.count(kNumber));
+  for (PlanPart& part : plan.parts) {
+    part.maps.resize(reader.count(kNumber));
+    for (std::size_t& map : part.maps) map = reader.whole();
+    part.T_plan_first = reader.pose();
+    part.probability = reader.number();
+    part.reason = static_cast<Reason>(reader.byte());
+  }
+  return plan;
+}
+
 }  // namespace
 
 std::string to_bytes(const MergeResult& result) {
@@ -170,6 +198,8 @@ std::string to_bytes(const MergeResult& result) {
     writer.byte(static_cast<std::uint8_t>(refused.reason));
     writer.whole(refused.count);
   }
+  writer.byte(result.plan ? 1 : 0);
+  if (result.plan) write(*result.plan, writer);
   return writer.take();
 }
 
@@ -198,6 +228,7 @@ MergeResult merge_from_bytes(std::string_view bytes) {
     refused.reason = static_cast<Reason>(reader.byte());
     refused.count = reader.whole();
   }
+  if (reader.byte() != 0) result.plan = read_plan(reader);
   if (!reader.is_at_end()) throw std::invalid_argument("holds more than a merge");
   return result;
 }

@@ -16,6 +16,7 @@ NB_MODULE(_core, module) {
   bind_deformation(module);
   bind_merge(module);
   bind_merger(module);
+  bind_plan(module);
   bind_random_walk(module);
   bind_simulate(module);
   bind_evaluate(module);

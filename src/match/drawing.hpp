@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -12,6 +13,6 @@ bool is_drawing(const OccupancyGrid& grid);
 /// A drawing as a map: what its walls enclose is free, and what lies outside is unknown. Gaps of the outline
 /// are closed for that, the least that encloses half of the walls' bounding box: up to 8 % of its longer
 /// side. If none does, what the widest closing encloses. Any other grid as it is. O(cells).
-OccupancyGrid with_enclosed_free(const OccupancyGrid& grid);
+GRIDMERGE_INTERNAL_EXPORT OccupancyGrid with_enclosed_free(const OccupancyGrid& grid);
 
 }  // namespace gridmerge::internal

@@ -3,6 +3,7 @@
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/grid/se2.hpp"
+#include "internal_export.hpp"
 #include "match/refine.hpp"
 #include "similarity/evidence.hpp"
 
@@ -28,7 +29,7 @@ Point2 operator*(const ScaledPose& S_a_b, const Point2& p_b);
 double displacement(const Point2& centre, double radius, const ScaledPose& a, const ScaledPose& b);
 
 /// The map drawn `factor` times as large: its resolution and origin are multiplied. O(cells).
-OccupancyGrid scaled(OccupancyGrid map, double factor);
+GRIDMERGE_INTERNAL_EXPORT OccupancyGrid scaled(OccupancyGrid map, double factor);
 
 /// A scaled pose between grid frames [cells] and what speaks for it.
 struct ScoredScaledPose {

@@ -8,7 +8,6 @@ namespace gridmerge::internal {
 
 namespace {
 
-constexpr double kMinProbability = 1e-3;
 constexpr double kMinDoubt = 1e-5;  // the model is not surer of anything
 
 }  // namespace
@@ -16,7 +15,7 @@ constexpr double kMinDoubt = 1e-5;  // the model is not surer of anything
 std::vector<CandidateJoin> candidate_joins(const MatchResult& match) {
   std::vector<CandidateJoin> candidates;
   for (const Hypothesis& hypothesis : match.hypotheses) {
-    if (hypothesis.probability < kMinProbability) continue;
+    if (hypothesis.probability < kMinCandidateProbability) continue;
     const double doubt = std::max(1.0 - hypothesis.probability, kMinDoubt);
     candidates.push_back({hypothesis.T_fixed_moving, std::log(hypothesis.probability / doubt),
                           kDeviationsOfWalls * hypothesis.figures.sigma});

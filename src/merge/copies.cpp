@@ -69,6 +69,14 @@ SE2 between_copies(const PreparedMap& a, const PreparedMap& b) {
   return a.known().origin == b.known().origin ? SE2{} : a.known().origin * inverse(b.known().origin);
 }
 
+bool is_placed(const PlacedMap& one, const std::vector<PlacedMap>& placed) {
+  return std::any_of(placed.begin(), placed.end(), [&](const PlacedMap& other) {
+    const OccupancyGrid &a = *one.map, &b = *other.map;
+    return one.T_output_map == other.T_output_map && a.origin == b.origin && a.width == b.width &&
+           a.resolution == b.resolution && a.cells == b.cells;
+  });
+}
+
 void add_copies(const std::vector<Copy>& copies, const std::vector<const OccupancyGrid*>& grids,
                 double resolution, MergeResult& result) {
   if (copies.empty()) return;

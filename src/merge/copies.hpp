@@ -7,6 +7,7 @@
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/prepared_map.hpp"
 #include "gridmerge/merge/merge_result.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -22,6 +23,9 @@ bool is_copy(const PreparedMap& a, const PreparedMap& b);
 
 /// From b's frame to a's, where the two hold the same cells.
 SE2 between_copies(const PreparedMap& a, const PreparedMap& b);
+
+/// Whether an equal map lies there: merge() counts equal maps once.
+GRIDMERGE_INTERNAL_EXPORT bool is_placed(const PlacedMap& one, const std::vector<PlacedMap>& placed);
 
 /// Gives every copy its place beside its original: in the original's component, or in one of the two, and in
 /// a join with every other map that the original has one with. `grids` are all inputs; `resolution` is that

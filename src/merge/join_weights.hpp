@@ -67,6 +67,10 @@ class JoinWeights {
   /// The ways to join two groups that some candidate proposes, most is said for the first.
   std::vector<WeighedJoin> ways_to_join(const NodeGroup& a, const NodeGroup& b) const;
 
+  /// The same in no order, and with two single maps weighed as groups are: by what their candidate says
+  /// alone.
+  std::vector<WeighedJoin> ways_by_worth(const NodeGroup& a, const NodeGroup& b) const;
+
   /// The first of them; none if no candidate proposes any.
   std::optional<WeighedJoin> best_join(const NodeGroup& a, const NodeGroup& b) const;
 
@@ -134,6 +138,10 @@ class JoinWeights {
   std::vector<std::vector<Mark>> marks_;        // by pair, one a candidate
   std::vector<std::vector<Partner>> partners_;  // by map, ascending
 };
+
+/// How probable each of several ways is against the others, and against being apart, which is worth 0.
+/// O(ways).
+void weigh_against_each_other(std::vector<WeighedJoin>& ways);
 
 /// A group without one of its maps, and that map, both in the group's frame.
 std::pair<NodeGroup, NodeGroup> taken_out(const NodeGroup& group, std::size_t place);

@@ -64,6 +64,8 @@ void add_components(const MergeInputs& inputs, const Solution& solution, const M
             [](const LeftOut& a, const LeftOut& b) { return a.map < b.map; });
 }
 
+}  // namespace
+
 void sort_components(MergeResult& result) {
   std::sort(result.components.begin(), result.components.end(), [](const Component& a, const Component& b) {
     const auto key = [](const Component& c) {
@@ -72,8 +74,6 @@ void sort_components(MergeResult& result) {
     return key(a) < key(b);
   });
 }
-
-}  // namespace
 
 JoinProblem make_problem(const MapStore& store, const std::vector<MapId>& maps,
                          const std::vector<Pair>& chosen, const PairLooks& looks,

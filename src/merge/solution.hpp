@@ -32,6 +32,9 @@ std::vector<PairLooks::Pair> pairs_apart(const std::vector<PairLooks::Pair>& cho
                                          const std::vector<MapStore::MapId>& maps,
                                          const ConsistentSet& consistent_set);
 
+/// Most members first.
+void sort_components(MergeResult& result);
+
 /// What a solution means for all maps, with the copies that it does without. Runs in the calling TBB arena.
 MergeResult make_result(const MapStore& store, const std::vector<MapStore::MapId>& maps,
                         const std::vector<Copy>& copies, const PairLooks& looks, const Solution& solution,

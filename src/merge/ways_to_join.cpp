@@ -44,8 +44,8 @@ MapExtent extent_of(const NodeGroup& group, const std::vector<MapExtent>& maps) 
   return all;
 }
 
-/// How probable each of several ways is against the others, and against being apart, which is worth 0.
-/// O(ways).
+}  // namespace
+
 void weigh_against_each_other(std::vector<WeighedJoin>& ways) {
   const auto worth = [](const WeighedJoin& way) { return way.worth.against_other_poses; };
   double most = -std::numeric_limits<double>::infinity();
@@ -55,8 +55,6 @@ void weigh_against_each_other(std::vector<WeighedJoin>& ways) {
   for (WeighedJoin& way : ways)
     way.probability = 1.0 / (sum * std::exp(most - worth(way)) + std::exp(-way.worth.against_apart));
 }
-
-}  // namespace
 
 /// The distinct poses that candidates of pairs across the groups propose, those first that most pairs agree
 /// with: weighing a pose in full takes a hundred times as long.
@@ -121,14 +119,16 @@ std::vector<WeighedJoin> JoinWeights::ways_of_pair(const PlacedNode& a, const Pl
   return ways;
 }
 
-std::vector<WeighedJoin> JoinWeights::ways_to_join(const NodeGroup& a, const NodeGroup& b) const {
+std::vector<WeighedJoin> JoinWeights::ways_by_worth(const NodeGroup& a, const NodeGroup& b) const {
   std::vector<WeighedJoin> ways;
-  if (a.size() == 1 && b.size() == 1) {
-    ways = ways_of_pair(a.front(), b.front());
-  } else {
-    for (const SE2& T_a_b : proposals(a, b)) ways.push_back({T_a_b, worth_of(a, b, T_a_b)});
-    weigh_against_each_other(ways);
-  }
+  for (const SE2& T_a_b : proposals(a, b)) ways.push_back({T_a_b, worth_of(a, b, T_a_b)});
+  weigh_against_each_other(ways);
+  return ways;
+}
+
+std::vector<WeighedJoin> JoinWeights::ways_to_join(const NodeGroup& a, const NodeGroup& b) const {
+  std::vector<WeighedJoin> ways =
+      a.size() == 1 && b.size() == 1 ? ways_of_pair(a.front(), b.front()) : ways_by_worth(a, b);
   std::stable_sort(ways.begin(), ways.end(), [](const WeighedJoin& x, const WeighedJoin& y) {
     return x.worth.against_other_poses > y.worth.against_other_poses;
   });

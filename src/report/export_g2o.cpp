@@ -41,9 +41,16 @@ bool holds_the_frame(const Component& component, const Member& member) {
   return component.in_world_frame && member.sd && member.sd->position == 0.0 && member.sd->theta == 0.0;
 }
 
-/// Those that an optimiser must not move: one at least, or the poses are not determined.
-std::vector<std::size_t> held_in(const Component& component) {
+/// Those that an optimiser must not move: one at least, or the poses are not determined. A plan holds each of
+/// the parts that hang on it.
+std::vector<std::size_t> held_in(const Component& component, const std::optional<PlanPlacement>& plan) {
   std::vector<std::size_t> held;
+  if (plan && component.in_world_frame) {
+    for (const PlanPart& part : plan->parts) {
+      if (part.on_plan()) held.push_back(part.maps.front());
+    }
+    return held;
+  }
   for (const Member& member : component.members) {
     if (holds_the_frame(component, member)) held.push_back(member.map);
   }
@@ -88,7 +95,7 @@ std::string g2o_text(const NamedMerge& merge) {
                    pose_text(join.T_fixed_moving), information_text(measured));
   }
   for (const Component& component : result.components) {
-    for (const std::size_t map : held_in(component))
+    for (const std::size_t map : held_in(component, result.plan))
       fmt::format_to(std::back_inserter(text), "FIX {}\n", map);
   }
   return text + notes;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "report/json_values.hpp"
+#include "report/plan_json.hpp"
 #include "report/told_joins.hpp"
 
 namespace gridmerge {
@@ -194,6 +195,7 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
                          {"probability", number_json(way.probability)}});
   add_json("open_ways", open_ways);
   add_json("expected_false_joins", probability_json(result.expected_false_joins));
+  if (result.plan) add_json("plan", plan_json(names, *result.plan, component_on_plan(result)));
   return text + "\n}\n";
 }
 

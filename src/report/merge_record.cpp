@@ -15,8 +15,11 @@
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/report/json.hpp"
 #include "io/file_reader.hpp"
+#include "merge/copies.hpp"
 #include "report/json_reader.hpp"
 #include "report/json_values.hpp"
+#include "report/plan_json.hpp"
+#include "report/record_values.hpp"
 #include "report/told_joins.hpp"
 
 namespace gridmerge {
@@ -26,31 +29,8 @@ using namespace internal;
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
-constexpr double kFarthest =
-    1e12;  // [m]: maps' origins are within 1e9, and poses were multiplied a few times
 constexpr std::size_t kMaxEqual = 100;  // of one name: what is said of them is looked for among all pairs
-constexpr double kRounding = 1e-9;      // probabilities are differences, too
 constexpr double kInfinity = std::numeric_limits<double>::max();
-
-double share(const JsonReader& json) {
-  return json.number_in(-kRounding, 1.0 + kRounding);
-}
-
-/// The one of `values` that name_of() calls so.
-template <typename Enum, std::size_t N>
-Enum one_of(const JsonReader& json, const std::array<Enum, N>& values) {
-  const std::string name = json.text();
-  const auto found =
-      std::find_if(values.begin(), values.end(), [&](Enum value) { return name == name_of(value); });
-  if (found == values.end()) json.fail("is unknown: '" + name + "'");
-  return *found;
-}
-
-Reason read_reason(const JsonReader& json) {
-  return one_of(json,
-                std::array{Reason::none, Reason::nothing_to_compare, Reason::ambiguous, Reason::contradiction,
-                           Reason::too_little_overlap, Reason::several, Reason::contradicts_others});
-}
 
 class RecordReader {
  public:
@@ -64,6 +44,7 @@ class RecordReader {
     // Not in what earlier versions wrote, nor where the tree was asked for.
     if (json.has("expected_false_joins") && !json.at("expected_false_joins").is_null())
       record_.result.expected_false_joins = json.at("expected_false_joins").number_in(0.0, kInfinity);
+    if (json.has("plan")) read_plan(json.at("plan"), record_.names, record_.result);
     for (std::size_t i = 0; i < is_placed_.size(); ++i) {
       if (!is_placed_[i]) throw JsonError("'" + record_.names[i] + "' is in no component and not left out");
     }
@@ -136,7 +117,7 @@ class RecordReader {
     if (json.at("omega").is_null()) return std::nullopt;
     const EqualCells omega{json.at("omega").count(), cells.count()};
     if (omega.equal > omega.cells) cells.fail("is less than omega");
-    (void)share(of_cells);
+    (void)read_share(of_cells);
     return omega;
   }
 
@@ -168,7 +149,7 @@ class RecordReader {
     Member member;
     member.map = place(json.at("source"), from);
     member.T_component_map = json.at("transform").transform(kFarthest);
-    if (!json.at("probability").is_null()) member.probability = share(json.at("probability"));
+    if (!json.at("probability").is_null()) member.probability = read_share(json.at("probability"));
     const JsonReader sd = json.at("sd");
     if (!sd.is_null())
       member.sd = {sd.at("position").number_in(0.0, kInfinity), sd.at("theta").number_in(0.0, kInfinity)};
@@ -200,7 +181,7 @@ class RecordReader {
       if (join.fixed == join.moving) row.fail("is of a map and itself");
       join.match.reason = read_reason(row.at(place[2]));
       if (join.match.reason == Reason::none) row.at(place[2]).fail("is none");
-      join.probability = share(row.at(place[3]));
+      join.probability = read_share(row.at(place[3]));
       join.T_fixed_moving = {row.at(place[4]).number_in(-kFarthest, kFarthest),
                              row.at(place[5]).number_in(-kFarthest, kFarthest),
                              row.at(place[6]).number_in(-std::numbers::pi, std::numbers::pi)};
@@ -279,9 +260,9 @@ class RecordReader {
   }
 
   static PairPose read_pair_pose(const JsonReader& json) {
-    return {json.at("transform").transform(kFarthest), share(json.at("probability")),
-            share(json.at("acceptance_index")),        json.at("agreement").count(),
-            json.at("disagreement").count(),           share(json.at("overlap"))};
+    return {json.at("transform").transform(kFarthest), read_share(json.at("probability")),
+            read_share(json.at("acceptance_index")),   json.at("agreement").count(),
+            json.at("disagreement").count(),           read_share(json.at("overlap"))};
   }
 
   /// What the two say by themselves. What they have in common is told of the join's pose alone.
@@ -302,7 +283,7 @@ class RecordReader {
       const JsonReader hypothesis = hypotheses.at(i);
       match.hypotheses.push_back({hypothesis.at("transform").transform(kFarthest),
                                   hypothesis.at("score").number_in(-kInfinity, kInfinity),
-                                  share(hypothesis.at("probability"))});
+                                  read_share(hypothesis.at("probability"))});
     }
     if (!match.hypotheses.empty()) {
       match.T_fixed_moving = match.hypotheses.front().T_fixed_moving;
@@ -339,7 +320,7 @@ class RecordReader {
       way.moving = map_at(one.at("moving"));
       if (way.fixed == way.moving) one.fail("is of a map and itself");
       way.T_fixed_moving = one.at("transform").transform(kFarthest);
-      way.probability = share(one.at("probability"));
+      way.probability = read_share(one.at("probability"));
       record_.result.open_ways.push_back(way);
     }
   }
@@ -348,15 +329,6 @@ class RecordReader {
   std::unordered_map<std::string, std::vector<std::size_t>> named_;  // maps by their name
   std::vector<bool> is_placed_;
 };
-
-/// Whether an equal map lies there: merge() counts equal maps once.
-bool is_placed(const PlacedMap& one, const std::vector<PlacedMap>& placed) {
-  return std::any_of(placed.begin(), placed.end(), [&](const PlacedMap& other) {
-    const OccupancyGrid &a = *one.map, &b = *other.map;
-    return one.T_output_map == other.T_output_map && a.origin == b.origin && a.width == b.width &&
-           a.resolution == b.resolution && a.cells == b.cells;
-  });
-}
 
 }  // namespace
 

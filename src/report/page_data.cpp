@@ -132,6 +132,20 @@ std::vector<ShownMap> show_all(const std::vector<const OccupancyGrid*>& grids, s
   }
 }
 
+/// The plan and which maps hang on it.
+Json plan_page_json(const PlanPlacement& plan) {
+  Json maps = Json::array();
+  for (const PlanPart& part : plan.parts) {
+    for (const std::size_t map : part.maps) {
+      if (part.on_plan()) maps.push_back(map);
+    }
+  }
+  return {{"name", plan.name},
+          {"scale", number_json(plan.scale)},
+          {"probability", number_json(plan.probability())},
+          {"maps", std::move(maps)}};
+}
+
 }  // namespace
 
 Json page_data(const NamedMerge& merge) {
@@ -164,14 +178,16 @@ Json page_data(const NamedMerge& merge) {
   for (const LeftOut& one : result.left_out)
     left_out.push_back(
         {{"map", one.map}, {"reason", name_of(one.reason)}, {"explanation", explain_left_out(result, one)}});
-  return {{"version", kVersion},
-          {"live", false},
-          {"maps", std::move(shown_maps)},
-          {"components", std::move(components)},
-          {"joins", std::move(joins)},
-          {"refused", refused_json(result, told)},
-          {"left_out", std::move(left_out)},
-          {"open_ways", std::move(open_ways)}};
+  Json page{{"version", kVersion},
+            {"live", false},
+            {"maps", std::move(shown_maps)},
+            {"components", std::move(components)},
+            {"joins", std::move(joins)},
+            {"refused", refused_json(result, told)},
+            {"left_out", std::move(left_out)},
+            {"open_ways", std::move(open_ways)}};
+  if (result.plan) page["plan"] = plan_page_json(*result.plan);
+  return page;
 }
 
 }  // namespace gridmerge::internal

@@ -11,4 +11,23 @@ const char* explain_left_out(const MergeResult& result, const LeftOut& one) {
   return explain_left_out(one.reason);
 }
 
+const char* explain_off_plan(Reason reason) {
+  switch (reason) {
+    case Reason::nothing_to_compare:
+      return "there is too little to compare";
+    case Reason::ambiguous:
+      return "the plan has more than one place that fits";
+    case Reason::contradiction:
+      return "the plan has walls where there are none, or none where there are some";
+    case Reason::too_little_overlap:
+      return "the plan agrees, but on too little to be sure";
+    case Reason::contradicts_others:
+      return "what speaks for a place contradicts other maps";
+    case Reason::several:
+    case Reason::none:
+      break;
+  }
+  return "nothing speaks for a place on the plan clearly enough";
+}
+
 }  // namespace gridmerge::internal

@@ -152,5 +152,15 @@ TEST(G2o, FixesTheFixedMapsOfTheWorldsFrame) {
   EXPECT_EQ(read_g2o(export_text(ExportFormat::g2o, fleet.named())).fixed, std::set<std::size_t>{0});
 }
 
+TEST(G2o, FixesTheFirstMapOfEachPartOnAPlan) {
+  Fleet fleet(8);
+  Component& component = fleet.result.components[0];
+  component.in_world_frame = true;
+  for (Member& member : component.members) member.T_component_map.x += 5.0;
+  fleet.result.plan =
+      PlanPlacement{"plan", 1.0, {{{0, 1}, {}, 0.99, Reason::none}, {{2, 3}, {}, 0.99, Reason::none}}};
+  EXPECT_EQ(read_g2o(export_text(ExportFormat::g2o, fleet.named())).fixed, (std::set<std::size_t>{0, 2}));
+}
+
 }  // namespace
 }  // namespace gridmerge

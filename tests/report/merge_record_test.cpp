@@ -52,6 +52,12 @@ MergeResult any_result() {
     result.joins.push_back(refused);
   }
   result.left_out.back().reason = Reason::contradicts_others;
+  result.plan = PlanPlacement{"plan <1>.png",
+                              1.0 / 3.0,
+                              {{{0, 2}, {4.0, 0.1, 1.0}, 0.125, Reason::ambiguous},
+                               {{1}, {}, 0.0, Reason::nothing_to_compare},
+                               {{3, 5}, {7.0, 8.0, 3.0}, 0.9375, Reason::none},
+                               {{4}, {1.0, 2.0, -1.0}, 0.5, Reason::several}}};
   result.open_ways = {{0, 1, {-4.0, 1.0 / 3.0, 2.5}, 0.375}, {1, 3, {}, 0.125}};
   return result;
 }
@@ -163,7 +169,8 @@ TEST(MergeRecord, EveryValueHasItsType) {
       Json json = any_json();
       json[Json::json_pointer(pointer)] = wrong;
       const bool may_be_any_number = pointer.ends_with("/score") && wrong.is_number();
-      if (may_be_any_number) continue;
+      const bool may_be_any_text = pointer == "/plan/source" && wrong.is_string();
+      if (may_be_any_number || may_be_any_text) continue;
       EXPECT_THROW(parse(json.dump()), FileError) << pointer << " " << wrong;
     }
   }
@@ -191,6 +198,15 @@ TEST(MergeRecord, SaysWhatIsWrongAndWhere) {
   EXPECT_TRUE(contains(complaint("/maps", std::vector<std::string>(101, "a.yaml")),
                        "maps[100] is there too often: 'a.yaml'"));
   EXPECT_TRUE(contains(complaint("/maps/1", ""), "no name"));
+  EXPECT_TRUE(contains(complaint("/plan/parts/0/maps/0", "z.yaml"), "none of the maps: 'z.yaml'"));
+  EXPECT_TRUE(contains(complaint("/plan/parts/0/maps/0", "d.yaml"), "in two parts: 'd.yaml'"));
+  EXPECT_TRUE(contains(complaint("/plan/parts/0/maps", Json::array()), "is empty"));
+  EXPECT_TRUE(contains(complaint("/plan/parts/2/reason", "several"), "does not go with the parts"));
+  EXPECT_TRUE(contains(complaint("/plan/scale", nullptr), "plan.scale does not go with the parts"));
+  EXPECT_TRUE(contains(complaint("/plan/scale", 1e7), "outside"));
+  EXPECT_TRUE(contains(complaint("/plan/probability", 0.5), "is not that of the surest part"));
+  EXPECT_TRUE(contains(complaint("/plan/component", "merged.yaml"), "does not hold the maps on the plan"));
+  EXPECT_TRUE(contains(complaint("/plan/maps/0", "a.yaml"), "plan.maps does not go with the parts"));
   EXPECT_TRUE(contains(complaint("/maps/1", std::string("a\0b", 3)), "no name"));
   EXPECT_TRUE(contains(complaint("/maps/6", "g.yaml"), "'g.yaml' is in no component"));
   EXPECT_TRUE(contains(complaint("/components/0/map", "../merged.yaml"), "is not 'merged.yaml'"));

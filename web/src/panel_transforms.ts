@@ -9,6 +9,12 @@ import { moreNote, mostRows, searchBox } from "./search";
 import type { State } from "./state";
 import { flat } from "./text";
 
+/** Of a frame that is no map's. */
+function otherFrame(state: State): HTMLElement {
+  const { plan } = state.report;
+  return plan === undefined ? h("strong", {}, "in which poses were given") : h("span", {}, "of the plan ", h("strong", {}, h("bdi", {}, plan.name)));
+}
+
 /** Where the maps of the scene lie, to read and to copy. */
 export class TransformsPanel {
   readonly element = h("div", { class: "panel", id: "panel-transforms" });
@@ -44,7 +50,7 @@ export class TransformsPanel {
     const rows = (large ? maps.slice(0, mostRows) : maps).flatMap((map) => this.rows(map));
     replace(this.content,
       h("p", { class: "frame" }, "In the frame ",
-        scene.frame === null ? h("strong", {}, "in which poses were given") : h("span", {}, "of ", h("strong", {}, mapLabel(state, scene.frame))),
+        scene.frame === null ? otherFrame(state) : h("span", {}, "of ", h("strong", {}, mapLabel(state, scene.frame))),
         scene.component === null ? "." : h("span", {}, ", which is also that of ", h("bdi", {}, scene.title), "."),
         h("span", { class: "soft" }, " A transform takes a point of the map's own frame there.")),
       h("div", { class: "table" }, h("table", {},
@@ -87,7 +93,7 @@ export class TransformsPanel {
   private buttons(whose: string, maps: () => number[]): HTMLButtonElement[] {
     const { report, scene } = this.state;
     const poses = (): NamedPose[] => maps().map((map) => ({ name: report.maps[map].name, transform: this.state.poseOf(map)! }));
-    const frame = scene.frame === null ? "world" : report.maps[scene.frame].name;
+    const frame = scene.frame === null ? report.plan?.name ?? "world" : report.maps[scene.frame].name;
     // The frame that all are in is one more, whatever maps are called.
     const [parent, ...ids] = frameIds([scene.component === null ? "scene" : scene.title, ...report.maps.map((map) => map.name)]);
     const children = () => maps().map((map) => ids[map]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Deformation } from "./deformation";
 import type { SE2 } from "./se2";
+import { probability } from "./numbers";
 import { count } from "./text";
 
 // What a merge has to tell, as the program writes it into the page.
@@ -30,7 +31,7 @@ export interface Member {
 
 export interface Component extends PackedGrid {
   file: string;
-  /** The map whose frame the component's is; null: the world's, in which poses were given. */
+  /** The map whose frame the component's is; null: the plan's, or without one the world's, in which poses were given. */
   frame: number | null;
   agreeing: number;
   conflicting: number;
@@ -103,6 +104,16 @@ export interface Refused {
   rows: [number, number, string, number, number, number, number][];
 }
 
+/** An architect's plan that the merge was given. */
+export interface Plan {
+  name: string;
+  /** By which it is too small. */
+  scale: number;
+  probability: number;
+  /** Those that hang on it. */
+  maps: number[];
+}
+
 export interface Report {
   version: string;
   /** Served by a running gridmerge, which can refine poses. */
@@ -115,6 +126,7 @@ export interface Report {
   refused: Refused;
   left_out: LeftOut[];
   open_ways: OpenWay[];
+  plan?: Plan;
 }
 
 /** Of more maps than this, lists are searched rather than read. */
@@ -146,9 +158,16 @@ export function isUsed(join: Join): boolean {
   return join.outcome !== "refused" && join.outcome !== "rejected";
 }
 
-/** One sentence that says how the merge went. */
+/** How the merge went: a sentence, and one of the plan if there is one. */
 export function summary(report: Report): string {
   const joined = report.components.reduce((sum, component) => sum + component.members.length, 0);
   const into = report.components.length === 0 ? "" : ` into ${count(report.components.length, "merged map")}`;
-  return `${count(report.maps.length, "map")}: ${joined} joined${into}, ${report.left_out.length} left out.`;
+  const merged = `${count(report.maps.length, "map")}: ${joined} joined${into}, ${report.left_out.length} left out.`;
+  return report.plan === undefined ? merged : `${merged} ${planSummary(report.plan, report.maps.length)}`;
+}
+
+function planSummary(plan: Plan, maps: number): string {
+  if (plan.maps.length === 0) return `No map hangs on the plan ${plan.name}.`;
+  const hung = `${plan.maps.length} of ${maps} hang on the plan ${plan.name}`;
+  return `${hung}, enlarged by ${plan.scale.toFixed(4)} (probability ${probability(plan.probability)}).`;
 }

@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { probability } from "../src/numbers";
 import { type Report, expandRefused, hasFigures, isLarge, summary } from "../src/report";
+import { identity } from "../src/se2";
 import { shortNames } from "../src/text";
 import { reportOf } from "./reports";
 
@@ -22,6 +23,12 @@ test("the summary counts", () => {
   assert.equal(summary(report([3], 1, 4)), "4 maps: 3 joined into 1 merged map, 1 left out.");
   assert.equal(summary(report([3, 2], 0, 5)), "5 maps: 5 joined into 2 merged maps, 0 left out.");
   assert.equal(summary(report([], 2, 2)), "2 maps: 0 joined, 2 left out.");
+});
+
+test("the summary tells of a plan", () => {
+  const report = { ...reportOf([identity, identity]), plan: { name: "floor.png", scale: 1.25, probability: 0.9996, maps: [0] } };
+  assert.match(summary(report), /left out\. 1 of 2 hang on the plan floor\.png, enlarged by 1\.2500 \(probability > 0\.999\)\.$/);
+  assert.match(summary({ ...report, plan: { ...report.plan, maps: [] } }), /left out\. No map hangs on the plan floor\.png\.$/);
 });
 
 test("a probability is never rounded to certainty", () => {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "gridmerge/export.hpp"
@@ -77,7 +78,8 @@ struct Member {
 struct Component {
   std::vector<Member> members;  ///< ascending
   FusedMap fused;               ///< the map that they make, in the component's frame
-  /// The frame is that of the first member, or, where a member's pose is fixed, the world's (see KnownPose).
+  /// The frame is that of the first member, or, where a member's pose is fixed, the world's (see KnownPose),
+  /// or a plan's (see MergeResult::plan).
   bool in_world_frame = false;
 };
 
@@ -111,6 +113,38 @@ struct RefusedCount {
   friend bool operator==(const RefusedCount&, const RefusedCount&) = default;
 };
 
+/// What a merge made of some maps before it knew of a plan, a component or a map alone, and how it lies
+/// there.
+struct PlanPart {
+  std::vector<std::size_t> maps;  ///< indices of input maps, ascending
+  /// Takes the frame of the first of them to the plan's, in metres of the maps: the best way that there is,
+  /// and the identity if there is none.
+  SE2 T_plan_first;
+  double probability = 0.0;                    ///< that it lies so
+  Reason reason = Reason::nothing_to_compare;  ///< why it is not on the plan; none if it is
+
+  /// Whether it hangs on the plan.
+  bool on_plan() const { return reason == Reason::none; }
+};
+
+/// An architect's plan, and which maps hang on it: see place_on_plan().
+struct PlanPlacement {
+  std::string name;  ///< what outputs call the plan
+  /// By which the plan is too small: scale * p is where a point p of the plan's frame, in the plan's own
+  /// metres, lies in the frame of the component on the plan. 1 if no part is on the plan.
+  double scale = 1.0;
+  std::vector<PlanPart> parts;  ///< in the order of their first maps
+
+  /// That of the surest part on the plan, which has decided the scale; 0 if there is none.
+  double probability() const {
+    double most = 0.0;
+    for (const PlanPart& part : parts) {
+      if (part.on_plan() && part.probability > most) most = part.probability;
+    }
+    return most;
+  }
+};
+
 /// What a merge made of its maps.
 struct MergeResult {
   std::vector<Component> components;  ///< of two or more maps each, most members first
@@ -122,6 +156,9 @@ struct MergeResult {
   /// Refused comparisons beside `joins`, by reason. A merge has none. A saved merge of many maps keeps no
   /// more than this of most of them.
   std::vector<RefusedCount> refused_more = {};
+  /// What place_on_plan() has found; none without a plan. All parts on the plan are one component, whose
+  /// frame is the plan's (see Component::in_world_frame), if they are two maps or more.
+  std::optional<PlanPlacement> plan = {};
 };
 
 }  // namespace gridmerge

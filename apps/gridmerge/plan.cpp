@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+#include "gridmerge/bag/any_map.hpp"
+#include "report/plan_json.hpp"
+#include "report/wording.hpp"
+#include "search_options.hpp"
+
+namespace gridmerge::cli {
+
+using namespace internal;
+
+void add_plan_options(CLI::App& command, PlanCommandOptions& options) {
+  CLI::Option* plan =
+      command
+          .add_option("--plan", options.file,
+                      "Hang the maps on this architect's plan, whose scale is unknown: a line drawing or a "
+                      "map, as MAP. Maps that nothing else joins are joined by it. The merged map has the "
+                      "plan's frame, in the maps' metres, and holds the maps alone")
+          ->type_name("PLAN");
+  command
+      .add_option("--plan-scale", options.scales,
+                  "The factors by which the plan may be too small; 0.5:2 if not given")
+      ->type_name("LO:HI")
+      ->check(kScales)
+      ->needs(plan);
+}
+
+Plan::Plan(const PlanCommandOptions& options, const std::vector<std::string>& names,
+           const std::vector<OccupancyGrid>& maps, MapReader& reader)
+    : options_(options), plan_(reader.read(options.file)) {
+  for (const std::string& name : names) {
+    if (is_same_map(options.file, name))
+      throw std::runtime_error(options.file + ": is one of the maps, and cannot be their plan too");
+  }
+  try {
+    validate_plan(maps, plan_.grid);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(options.file + ": " + error.what());
+  }
+}
+
+MergeResult Plan::place(const std::vector<OccupancyGrid>& maps, MergeResult merged,
+                        const MergeOptions& engine, Console& console) const {
+  PlanOptions options;
+  if (!options_.scales.empty()) options.scales = to_scales(options_.scales);
+  options.name = options_.file;
+  options.progress = [&console](std::size_t done, std::size_t total) {
+    console.progress("laying maps on the plan", static_cast<double>(done) / static_cast<double>(total));
+  };
+  try {
+    return place_on_plan(maps, plan_.grid, std::move(merged), engine, options);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(options_.file + ": " + error.what());
+  }
+}
+
+std::string describe_plan(const std::vector<std::string>& names, const MergeResult& result) {
+  if (!result.plan) return {};
+  const PlanPlacement& plan = *result.plan;
+  std::size_t on_plan = 0;
+  for (const PlanPart& part : plan.parts) on_plan += part.on_plan() ? part.maps.size() : 0;
+  std::string text = fmt::format("plan {}: ", escape_controls(plan.name));
+  const auto out = std::back_inserter(text);
+  if (on_plan == 0) {
+    text += "no map hangs on it\n";
+  } else {
+    const std::string file = component_on_plan(result);
+    fmt::format_to(out, "{} of {} maps hang on it{}, enlarged by {:.4f} (probability {:.4f})\n", on_plan,
+                   names.size(), file.empty() ? std::string() : ", as " + file, plan.scale,
+                   plan.probability());
+  }
+  for (const PlanPart& part : plan.parts) {
+    std::vector<std::string> maps;
+    for (const std::size_t map : part.maps) maps.push_back(escape_controls(names[map]));
+    if (part.on_plan()) {
+      if (component_on_plan(result).empty())
+        fmt::format_to(out, "  {}: {}\n", fmt::join(maps, ", "), describe_pose(part.T_plan_first));
+      continue;
+    }
+    fmt::format_to(out, "off the plan: {}: {} (probability {:.4f})\n", fmt::join(maps, ", "),
+                   explain_off_plan(part.reason), part.probability);
+  }
+  return text;
+}
+
+}  // namespace gridmerge::cli

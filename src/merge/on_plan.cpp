@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "merge/on_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "gridmerge/merge/fuse.hpp"
+#include "merge/copies.hpp"
+#include "merge/joins.hpp"
+#include "merge/solution.hpp"
+
+namespace gridmerge::internal {
+
+namespace {
+
+/// How well a member is known on the plan, if so well within its part.
+PoseDeviation deviation_of(const std::optional<PoseDeviation>& in_part, const OnPlan& on_plan) {
+  const double radius = std::max(on_plan.part->voices.front().coverage.extent().radius, 1e-9);
+  const PoseDeviation own = in_part.value_or(PoseDeviation{});
+  return {std::hypot(own.position, on_plan.way.sd), std::hypot(own.theta, on_plan.way.sd / radius)};
+}
+
+Component component_of(const std::vector<OnPlan>& hung, const std::vector<const MapStore::Input*>& inputs,
+                       double resolution) {
+  Component component;
+  component.in_world_frame = true;
+  for (const OnPlan& one : hung) {
+    for (const Member& member : one.part->members) {
+      Member placed = member;
+      placed.T_component_map = one.way.T_plan_part * member.T_component_map;
+      placed.probability = member.probability.value_or(1.0) * one.way.probability;
+      placed.sd = deviation_of(member.sd, one);
+      component.members.push_back(std::move(placed));
+    }
+  }
+  std::sort(component.members.begin(), component.members.end(),
+            [](const Member& a, const Member& b) { return a.map < b.map; });
+  std::vector<PlacedMap> placed;
+  std::vector<Deformation> deformations;
+  for (const Member& member : component.members) {
+    const PlacedMap one{inputs[member.map]->grid.get(), member.T_component_map};
+    if (is_placed(one, placed)) continue;
+    placed.push_back(one);
+    deformations.push_back(member.deformation);
+  }
+  component.fused = fuse(placed, resolution > 0.0 ? resolution : finest_resolution(placed), deformations);
+  return component;
+}
+
+/// Ways that lead out of the component begin at its first map now.
+void tell_ways_anew(const Component& component, std::vector<OpenWay>& ways) {
+  std::map<std::size_t, SE2> places;
+  for (const Member& member : component.members) places[member.map] = member.T_component_map;
+  const std::size_t first = component.members.front().map;
+  const SE2 T_first_plan = inverse(component.members.front().T_component_map);
+  std::erase_if(
+      ways, [&](const OpenWay& way) { return places.contains(way.fixed) && places.contains(way.moving); });
+  for (OpenWay& way : ways) {
+    if (places.contains(way.fixed)) {
+      way.T_fixed_moving = T_first_plan * places.at(way.fixed) * way.T_fixed_moving;
+      way.fixed = first;
+    } else if (places.contains(way.moving)) {
+      way.T_fixed_moving = way.T_fixed_moving * inverse(places.at(way.moving)) * inverse(T_first_plan);
+      way.moving = first;
+    }
+    if (way.fixed < way.moving) continue;
+    std::swap(way.fixed, way.moving);
+    way.T_fixed_moving = inverse(way.T_fixed_moving);
+  }
+}
+
+}  // namespace
+
+void join_on_plan(const std::vector<OnPlan>& hung, const std::vector<const MapStore::Input*>& inputs,
+                  double resolution, MergeResult& merged) {
+  std::size_t maps = 0;
+  for (const OnPlan& one : hung) maps += one.part->members.size();
+  if (maps < 2) return;
+  Component component = component_of(hung, inputs, resolution);
+  std::set<std::size_t> gone;  // components
+  for (const OnPlan& one : hung) {
+    if (one.part->component) gone.insert(*one.part->component);
+    if (merged.expected_false_joins) *merged.expected_false_joins += 1.0 - one.way.probability;
+  }
+  std::vector<Component> components;
+  for (std::size_t i = 0; i < merged.components.size(); ++i) {
+    if (!gone.contains(i)) components.push_back(std::move(merged.components[i]));
+  }
+  tell_ways_anew(component, merged.open_ways);
+  std::erase_if(merged.left_out, [&](const LeftOut& one) {
+    return std::any_of(component.members.begin(), component.members.end(),
+                       [&](const Member& member) { return member.map == one.map; });
+  });
+  components.push_back(std::move(component));
+  merged.components = std::move(components);
+  sort_components(merged);
+}
+
+}  // namespace gridmerge::internal

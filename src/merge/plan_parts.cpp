@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "merge/plan_parts.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+#include "grid/parallel.hpp"
+#include "gridmerge/merge/fuse.hpp"
+#include "merge/copies.hpp"
+
+namespace gridmerge::internal {
+
+namespace {
+
+/// More maps of one part say little that these have not said.
+constexpr std::size_t kMostMembers = 16;
+
+PlanVoice voice_of(std::optional<std::size_t> map, const SE2& T_part_voice, const OccupancyGrid& grid) {
+  auto prepared = std::make_unique<const PreparedMap>(grid);
+  Coverage coverage(prepared->known());
+  return {map, T_part_voice, std::move(prepared), std::move(coverage), {}};
+}
+
+/// The members that know most, without copies: in an order that depends on the maps alone.
+std::vector<Member> speakers(const std::vector<Member>& members,
+                             const std::vector<const MapStore::Input*>& inputs) {
+  std::vector<Member> chosen;
+  for (const Member& member : members) {
+    const PreparedMap& map = inputs[member.map]->prepared;
+    if (map.counts().occupied == 0) continue;
+    const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](const Member& other) {
+      return is_copy(map, inputs[other.map]->prepared);
+    });
+    if (is_new) chosen.push_back(member);
+  }
+  std::stable_sort(chosen.begin(), chosen.end(), [&](const Member& a, const Member& b) {
+    return is_smaller(inputs[b.map]->prepared, inputs[a.map]->prepared);
+  });
+  if (chosen.size() > kMostMembers) chosen.resize(kMostMembers);
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<MergePart> parts_of(const MergeResult& merged,
+                                const std::vector<const MapStore::Input*>& inputs) {
+  std::vector<MergePart> parts;
+  for (std::size_t i = 0; i < merged.components.size(); ++i)
+    parts.push_back({i, merged.components[i].members, {}});
+  for (const LeftOut& one : merged.left_out)
+    parts.push_back({std::nullopt, {{one.map, {}, 1.0, {}, {}}}, {}});
+  std::sort(parts.begin(), parts.end(), [](const MergePart& a, const MergePart& b) {
+    return a.members.front().map < b.members.front().map;
+  });
+  for (MergePart& part : parts) {
+    const std::vector<Member> members = speakers(part.members, inputs);
+    if (members.size() > 1)
+      part.voices.push_back(voice_of({}, {}, merged.components[*part.component].fused.grid));
+    for (const Member& member : members) {
+      const OccupancyGrid& map = *inputs[member.map]->grid;
+      part.voices.push_back(
+          voice_of(member.map, member.T_component_map,
+                   member.deformation.is_identity() ? map : bent_map(map, member.deformation)));
+    }
+  }
+  return parts;
+}
+
+void hear(std::vector<MergePart>& parts, const PreparedMap& plan, const MatchOptions& options,
+          const std::function<void(std::size_t, std::size_t)>& progress) {
+  std::vector<PlanVoice*> voices;
+  for (MergePart& part : parts) {
+    for (PlanVoice& voice : part.voices) voices.push_back(&voice);
+  }
+  std::mutex telling;
+  std::size_t done = 0;
+  if (progress && !voices.empty()) progress(0, voices.size());
+  parallel_for(voices.size(), [&](std::size_t i) {
+    voices[i]->match = match(*voices[i]->prepared, plan, options);
+    const std::scoped_lock lock(telling);
+    ++done;
+    if (progress) progress(done, voices.size());
+  });
+}
+
+}  // namespace gridmerge::internal
