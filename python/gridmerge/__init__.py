@@ -47,7 +47,8 @@ from ._measure import (
     measure_poses,
     poses_between,
 )
-from ._merge import (
+from ._merge import merge
+from ._merge_result import (
     Component,
     ExportFormat,
     Join,
@@ -56,7 +57,6 @@ from ._merge import (
     Member,
     MergeResult,
     OpenWay,
-    merge,
 )
 from ._merger import Merger
 from ._message import OccupancyGridMessage

@@ -16,7 +16,7 @@ from . import _arguments
 
 if TYPE_CHECKING:
     from ._grid import OccupancyGrid
-    from ._merge import MergeResult
+    from ._merge_result import MergeResult
 
 _MOST_PIXELS = 600  # a side
 _COLOURS = bytes((221, 221, 217, 255, 255, 255, 32, 32, 36))  # unknown, free, occupied: those of preview.png

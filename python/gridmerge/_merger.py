@@ -15,7 +15,8 @@ from ._arguments import Progress
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map
 from ._known_poses import CoreKnown, InitialPose, to_core
-from ._merge import MergeResult, to_merge_result, to_output_resolution
+from ._merge import to_output_resolution
+from ._merge_result import MergeResult, to_merge_result
 from ._repr import count
 from ._transform import PoseLike, Transform
 

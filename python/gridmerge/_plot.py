@@ -25,7 +25,7 @@ except ImportError as error:
     raise ImportError("plot() needs matplotlib: pip install 'gridmerge[plot]'") from error
 
 if TYPE_CHECKING:
-    from ._merge import MergeResult
+    from ._merge_result import MergeResult
     from ._random_walk import Walk
 
 _WALL = (32, 32, 36)

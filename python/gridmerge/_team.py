@@ -10,7 +10,8 @@ from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map
 from ._known_poses import InitialPose, to_core
 from ._match import Reason
-from ._merge import MergeResult, to_merge_result, to_output_resolution
+from ._merge import to_output_resolution
+from ._merge_result import MergeResult, to_merge_result
 from ._repr import count, short_pose
 from ._transform import PoseLike, Transform
 
@@ -198,8 +199,8 @@ class Team:
     def merge_result(self) -> MergeResult:
         """The newest answer as merge() would give it: to plot, save and export, with the figures behind each join.
 
-        Names are the robots', of those with maps, first heard first. While the answer holds a change back, its joins
-        can already say otherwise.
+        Names are the robots', of those with maps, in the order in which they came. While the answer holds a change
+        back, its joins can already say otherwise.
         """
         merged, names = self._core.merged()
         return to_merge_result(merged, [OccupancyGrid._of(grid) for grid in merged.maps], names, ())

@@ -62,6 +62,7 @@ def results(robots: list[str], elsewhere: str, team: gridmerge.Simulation, team_
         next(gridmerge.recorded_maps(ROOT / "tests" / "bag" / "data" / "lz4.mcap", "/tb1/map")),
         heard,
         heard.answer(),
+        gridmerge.merge(robots[:2], plan=elsewhere, plan_scale=(0.95, 1.05)),
         gridmerge.merge(robots[:2], accept=1.0),  # nothing is sure enough, so a way stays open
     ]
 
