@@ -50,19 +50,26 @@ PageAnswers LivePage::answers() {
   return answers;
 }
 
+std::shared_ptr<const TeamAnswer> LivePage::shown() const {
+  const std::lock_guard lock(mutex_);
+  return shown_;
+}
+
 std::shared_ptr<const std::string> LivePage::page() {
   const std::shared_ptr<const TeamAnswer> answer = newest();
-  if (page_of_ != answer->number) {
+  if (!page_ || shown() != answer) {
     std::string made;
     with_threads(threads_, [&] { made = page_of(*answer); });
     page_ = std::make_shared<const std::string>(std::move(made));
-    page_of_ = answer->number;
+    const std::lock_guard lock(mutex_);
+    shown_ = answer;
   }
   return page_;
 }
 
 std::string LivePage::refine(const std::string& body) const {
-  const std::shared_ptr<const TeamAnswer> answer = newest();
+  // The question numbers the maps as the page does that asks, which may not be of the newest answer.
+  const std::shared_ptr<const TeamAnswer> answer = shown();
   const auto& maps = answer->merge->maps;
   return answer_refine(
       body, maps.size(), [&](std::size_t i) -> const OccupancyGrid& { return *maps[i]; }, threads_);

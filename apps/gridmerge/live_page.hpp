@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 
 #include "gridmerge/online/team_answer.hpp"
@@ -26,14 +24,15 @@ class LivePage {
 
  private:
   std::shared_ptr<const TeamAnswer> newest() const;
+  std::shared_ptr<const TeamAnswer> shown() const;
   std::shared_ptr<const std::string> page();
   std::string refine(const std::string& body) const;
 
   const int threads_;
   mutable std::mutex mutex_;
   std::shared_ptr<const TeamAnswer> answer_ = std::make_shared<const TeamAnswer>();  // with mutex_ held
-  std::shared_ptr<const std::string> page_;  // the serving thread's own
-  std::optional<std::uint64_t> page_of_;     // of this answer
+  std::shared_ptr<const TeamAnswer> shown_ = answer_;  // by the page that was made last; likewise
+  std::shared_ptr<const std::string> page_;            // the serving thread's own
 };
 
 }  // namespace gridmerge::cli

@@ -63,18 +63,19 @@ int run_node(const NodeCommandOptions& options) {
     warn_of_visitors(*server, console);
   }
   const Interrupt signal;  // one that comes while the node starts is not lost
-  RosNode node(std::move(node_options));
+  auto node = std::make_unique<RosNode>(std::move(node_options));
   if (server) {
     server->start();
     tell("page: " + server->url());
   }
   RosNode::End end = RosNode::End::stopped;
   {
-    const StopAtSignal stop(signal, node);
-    end = node.run();
+    const StopAtSignal stop(signal, *node);
+    end = node->run();
   }
-  if (end != RosNode::End::stopped) print(node.describe());
+  if (end != RosNode::End::stopped) print(node->describe());
   const int exit_code = end == RosNode::End::refused ? kRefused : kDone;
+  node.reset();  // peers are told that it leaves, whatever the server waits for
   if (server) server->end(exit_code);
   return exit_code;
 }

@@ -115,7 +115,15 @@ class PageServer::State {
       : address_(std::move(address)), answers_(std::move(answers)) {
     listen(port);
   }
-  ~State() { end(EXIT_FAILURE); }
+  ~State() {
+    if (std::uncaught_exceptions() == 0) {
+      end(EXIT_FAILURE);
+    } else if (served_.valid()) {  // without an end of the program, so that the error is still told
+      stopping_ = true;
+      server_->stop();
+      listener_.join();
+    }
+  }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 

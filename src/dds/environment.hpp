@@ -37,6 +37,7 @@ struct EnclaveFiles {
   static constexpr const char* kPermissionsAuthority = "permissions_ca.cert.pem";
   static constexpr const char* kGovernance = "governance.p7s";
   static constexpr const char* kPermissions = "permissions.p7s";
+  static constexpr const char* kRevoked = "crl.pem";  // not in every keystore
 };
 
 /// Reads ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS and

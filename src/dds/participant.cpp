@@ -72,6 +72,9 @@ QosPtr participant_qos(const RosEnvironment& environment) {
   }
   for (const auto& [property, file] : kFiles)
     set(property, "file:" + (environment.enclave_files / file).string());
+  const std::filesystem::path revoked = environment.enclave_files / EnclaveFiles::kRevoked;
+  if (std::filesystem::exists(revoked))
+    set("org.eclipse.cyclonedds.sec.auth.crl", "file:" + revoked.string());
   return qos;
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 // Before a function: one build of it for every x86-64 machine, and one for those with AVX2; the loader picks.
-// Only for functions whose results are the same bits either way (integers). Sanitizers run before the
-// resolver can, and get the first.
+// Only for functions whose results are the same bits either way: integers, and reals with no operation fused
+// or reordered (-ffp-contract=off). Sanitizers run before the resolver can, and get the first.
 //
 // GCC exports such a function whatever its visibility. If a header declares it, it goes into the inline
 // namespace `multiversion`, which src/hidden.map keeps out of shared libraries' tables.

@@ -55,7 +55,10 @@ std::string geojson_text(const NamedMerge& merge) {
     const Component& component = merge.result.components[i];
     const std::string file = component_file(i);
     const std::optional<std::size_t> frame = frame_of(component);
-    frames[file] = frame ? "that of the map " + merge.names.at(*frame) : "that of the poses that were given";
+    const std::optional<PlanPlacement>& plan = merge.result.plan;
+    frames[file] = frame  ? "that of the map " + merge.names.at(*frame)
+                   : plan ? "that of the plan " + plan->name + ", in metres of the maps"
+                          : "that of the poses that were given";
     std::vector<Json> members;
     std::vector<Point2> all;
     for (const Member& member : component.members) {

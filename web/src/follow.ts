@@ -46,12 +46,15 @@ export function follow(shown: number, follower: Follower): HTMLElement {
     if (state === "newer") text.append(button);
   };
   const look = async () => {
-    try {
-      if (await ask() === shown) say("live");
-      else if (follower.isBusy()) say("newer");
-      else return load();
-    } catch {
-      say("ended");
+    // Where nobody looks there is nothing to follow.
+    if (!document.hidden) {
+      try {
+        if (await ask() === shown) say("live");
+        else if (follower.isBusy()) say("newer");
+        else return load();
+      } catch {
+        say("ended");
+      }
     }
     setTimeout(() => void look(), pause);
   };

@@ -48,8 +48,8 @@ class HeardRobot:
     last_refusal: str = ""
     pose: str = ""
     """What became of the pose that the parameters give for it; empty where they give none."""
-    heard_first: float = 0.0
-    """Since when maps in this frame are heard, by the oldest account of all nodes: seconds since 1970; 0 before."""
+    heard_first: float | None = None
+    """Since when maps in this frame are heard, by the oldest account of all nodes: seconds since 1970."""
     cells: int = field(default=0, repr=False)
     followed: Publisher | None = field(default=None, repr=False)
 
@@ -140,7 +140,7 @@ class Robots:
         except ValueError as error:
             self._refuse(robot, str(error))
             return
-        if robot.heard_first == 0.0:
+        if robot.heard_first is None:
             self._set_age(robot, now)
         if robot.followed not in publishers:
             robot.followed = next(iter(sorted(publishers)), robot.followed)
@@ -172,7 +172,7 @@ class Robots:
         for robot in self._robots.values():
             if (robot.topic, robot.publisher, robot.frame) != (age.topic, age.publisher, age.frame):
                 continue
-            if robot.maps > 0 and age.heard_first < robot.heard_first:
+            if robot.heard_first is not None and age.heard_first < robot.heard_first:
                 self._set_age(robot, age.heard_first)
 
     def refuse(self, name: str, why: str) -> None:
@@ -207,7 +207,7 @@ class Robots:
         """What was known of the old map's frame says nothing of the new one, whatever its name."""
         self._tell(f"{robot.name}: started anew: {content}")
         self._team.forget(robot.name)
-        robot.heard_first = 0.0
+        robot.heard_first = None
         if self._poses.pop(robot.name, None) is not None:
             self._team.set_known_pose(robot.name, None)
             robot.pose = "holds no longer: the robot started anew"

@@ -143,7 +143,7 @@ def _diagnose_robot(
         ("maps", str(robot.maps)),
         ("updates", str(robot.parts)),
     ]
-    if robot.publisher:
+    if robot.publisher and robot.heard_first is not None:
         values += [(PUBLISHER, robot.publisher), (HEARD_FIRST, format_time(robot.heard_first))]
     values += [
         ("publishers", str(robot.publishers)),
