@@ -115,15 +115,7 @@ class PageServer::State {
       : address_(std::move(address)), answers_(std::move(answers)) {
     listen(port);
   }
-  ~State() {
-    if (std::uncaught_exceptions() == 0) {
-      end(EXIT_FAILURE);
-    } else if (served_.valid()) {  // without an end of the program, so that the error is still told
-      stopping_ = true;
-      server_->stop();
-      listener_.join();
-    }
-  }
+  ~State() { end(EXIT_FAILURE); }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
@@ -185,7 +177,8 @@ class PageServer::State {
   void stop(int exit_code) {
     stopping_ = true;
     server_->stop();
-    if (served_.wait_for(kGrace) == std::future_status::ready) return;
+    // An error that is on its way is still to be told.
+    if (std::uncaught_exceptions() > 0 || served_.wait_for(kGrace) == std::future_status::ready) return;
     std::fflush(nullptr);
     std::_Exit(exit_code);
   }

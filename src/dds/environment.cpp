@@ -88,13 +88,11 @@ std::filesystem::path find_enclave(const Environment& environment, const std::st
   if (keystore.empty()) refuse("ROS_SECURITY_ENABLE", "true", fmt::format("{} is not set", kKeystore));
   const std::filesystem::path folder =
       std::filesystem::absolute(keystore) / "enclaves" / std::filesystem::path(enclave).relative_path();
-  using Files = EnclaveFiles;
-  for (const char* name : {Files::kIdentityAuthority, Files::kIdentity, Files::kPrivateKey,
-                           Files::kPermissionsAuthority, Files::kGovernance, Files::kPermissions}) {
+  for (const EnclaveFile& file : kEnclaveFiles) {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(folder / name, error))
+    if (!std::filesystem::is_regular_file(folder / file.name, error))
       refuse(kKeystore, keystore,
-             fmt::format("the enclave {} has no file {}", enclave, (folder / name).string()));
+             fmt::format("the enclave {} has no file {}", enclave, (folder / file.name).string()));
   }
   return folder;
 }

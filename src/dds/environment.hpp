@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -30,15 +31,19 @@ struct RosEnvironment {
 };
 
 /// What a folder of an enclave holds, as ROS's tools (`ros2 security`) make it.
-struct EnclaveFiles {
-  static constexpr const char* kIdentityAuthority = "identity_ca.cert.pem";
-  static constexpr const char* kIdentity = "cert.pem";
-  static constexpr const char* kPrivateKey = "key.pem";
-  static constexpr const char* kPermissionsAuthority = "permissions_ca.cert.pem";
-  static constexpr const char* kGovernance = "governance.p7s";
-  static constexpr const char* kPermissions = "permissions.p7s";
-  static constexpr const char* kRevoked = "crl.pem";  // not in every keystore
+struct EnclaveFile {
+  const char* name;
+  const char* property;  ///< that names it in the standard (OMG DDS Security 1.1, tables 42 and 49)
 };
+inline constexpr std::array kEnclaveFiles{
+    EnclaveFile{"identity_ca.cert.pem", "dds.sec.auth.identity_ca"},
+    EnclaveFile{"cert.pem", "dds.sec.auth.identity_certificate"},
+    EnclaveFile{"key.pem", "dds.sec.auth.private_key"},
+    EnclaveFile{"permissions_ca.cert.pem", "dds.sec.access.permissions_ca"},
+    EnclaveFile{"governance.p7s", "dds.sec.access.governance"},
+    EnclaveFile{"permissions.p7s", "dds.sec.access.permissions"}};
+/// Not in every keystore; the property is Cyclone DDS's own.
+inline constexpr EnclaveFile kRevokedCertificates{"crl.pem", "org.eclipse.cyclonedds.sec.auth.crl"};
 
 /// Reads ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS and
 /// CYCLONEDDS_URI as ROS does: one that is empty is not set, and ROS_LOCALHOST_ONLY=1 counts for more than

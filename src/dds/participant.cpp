@@ -45,14 +45,6 @@ constexpr std::array kPlugins{
     Plugin{"dds.sec.access", "dds_security_ac", "init_access_control", "finalize_access_control"},
     Plugin{"dds.sec.crypto", "dds_security_crypto", "init_crypto", "finalize_crypto"}};
 
-/// By the names of the standard (OMG DDS Security 1.1, tables 42 and 49).
-constexpr std::array kFiles{std::pair{"dds.sec.auth.identity_ca", EnclaveFiles::kIdentityAuthority},
-                            std::pair{"dds.sec.auth.identity_certificate", EnclaveFiles::kIdentity},
-                            std::pair{"dds.sec.auth.private_key", EnclaveFiles::kPrivateKey},
-                            std::pair{"dds.sec.access.permissions_ca", EnclaveFiles::kPermissionsAuthority},
-                            std::pair{"dds.sec.access.governance", EnclaveFiles::kGovernance},
-                            std::pair{"dds.sec.access.permissions", EnclaveFiles::kPermissions}};
-
 }  // namespace
 
 QosPtr participant_qos(const RosEnvironment& environment) {
@@ -70,11 +62,12 @@ QosPtr participant_qos(const RosEnvironment& environment) {
     set(library + "init", plugin.init);
     set(library + "finalize", plugin.finalize);
   }
-  for (const auto& [property, file] : kFiles)
-    set(property, "file:" + (environment.enclave_files / file).string());
-  const std::filesystem::path revoked = environment.enclave_files / EnclaveFiles::kRevoked;
-  if (std::filesystem::exists(revoked))
-    set("org.eclipse.cyclonedds.sec.auth.crl", "file:" + revoked.string());
+  const auto set_file = [&](const EnclaveFile& file) {
+    set(file.property, "file:" + (environment.enclave_files / file.name).string());
+  };
+  for (const EnclaveFile& file : kEnclaveFiles) set_file(file);
+  if (std::filesystem::exists(environment.enclave_files / kRevokedCertificates.name))
+    set_file(kRevokedCertificates);
   return qos;
 }
 
