@@ -95,8 +95,8 @@ class Peer:
         self._executor.add_node(self.node)
         self._diagnoses: dict[str, dict[str, str]] = {}
         self._levels: dict[str, int] = {}
-        self.node_names: set[str] = set()
         self.names: set[str] = set()
+        """Of all diagnoses: nodes', and nodes' with their robots'."""
         self._programs: list[Program] = []
         self.environment: dict[str, str] = {}
         self.node.create_subscription(DiagnosticArray, "/diagnostics", self._on_diagnostics, 10)
@@ -140,7 +140,6 @@ class Peer:
         for status in message.status:
             _, _, robot = status.name.partition(": ")
             name = robot or "gridmerge"
-            self.node_names.add(status.name.partition(": ")[0])
             self.names.add(status.name)
             self._levels[name] = status.level[0]
             self._diagnoses[name] = {entry.key: entry.value for entry in status.values}
@@ -156,6 +155,11 @@ class Peer:
     def robots(self) -> set[str]:
         """That the node under test knows."""
         return set(self._diagnoses) - {"gridmerge"}
+
+    @property
+    def node_names(self) -> set[str]:
+        """Of nodes that have told diagnoses."""
+        return {name.partition(": ")[0] for name in self.names}
 
     def forget_diagnoses(self) -> None:
         self._diagnoses.clear()
