@@ -66,14 +66,13 @@ MergeResult Plan::place(const std::vector<OccupancyGrid>& maps, MergeResult merg
 std::string describe_plan(const std::vector<std::string>& names, const MergeResult& result) {
   if (!result.plan) return {};
   const PlanPlacement& plan = *result.plan;
-  std::size_t on_plan = 0;
-  for (const PlanPart& part : plan.parts) on_plan += part.on_plan() ? part.maps.size() : 0;
+  const std::size_t on_plan = plan.maps_on_plan().size();
+  const std::string file = component_on_plan(result);
   std::string text = fmt::format("plan {}: ", escape_controls(plan.name));
   const auto out = std::back_inserter(text);
   if (on_plan == 0) {
     text += "no map hangs on it\n";
   } else {
-    const std::string file = component_on_plan(result);
     fmt::format_to(out, "{} of {} maps hang on it{}, enlarged by {:.4f} (probability {:.4f})\n", on_plan,
                    names.size(), file.empty() ? std::string() : ", as " + file, plan.scale,
                    plan.probability());
@@ -82,7 +81,7 @@ std::string describe_plan(const std::vector<std::string>& names, const MergeResu
     std::vector<std::string> maps;
     for (const std::size_t map : part.maps) maps.push_back(escape_controls(names[map]));
     if (part.on_plan()) {
-      if (component_on_plan(result).empty())
+      if (file.empty())
         fmt::format_to(out, "  {}: {}\n", fmt::join(maps, ", "), describe_pose(part.T_plan_first));
       continue;
     }

@@ -58,11 +58,13 @@ Member* find_member(MergeResult& result, std::size_t map, Component*& of) {
 
 }  // namespace
 
+bool has_equal_cells(const OccupancyGrid& a, const OccupancyGrid& b) {
+  return a.width == b.width && a.resolution == b.resolution && a.cells == b.cells;
+}
+
 bool is_copy(const PreparedMap& a, const PreparedMap& b) {
-  const OccupancyGrid &one = a.known(), &other = b.known();
   return a.counts().occupied > 0 && a.counts().occupied == b.counts().occupied &&
-         a.counts().free == b.counts().free && one.width == other.width &&
-         one.resolution == other.resolution && one.cells == other.cells;
+         a.counts().free == b.counts().free && has_equal_cells(a.known(), b.known());
 }
 
 SE2 between_copies(const PreparedMap& a, const PreparedMap& b) {
@@ -71,9 +73,8 @@ SE2 between_copies(const PreparedMap& a, const PreparedMap& b) {
 
 bool is_placed(const PlacedMap& one, const std::vector<PlacedMap>& placed) {
   return std::any_of(placed.begin(), placed.end(), [&](const PlacedMap& other) {
-    const OccupancyGrid &a = *one.map, &b = *other.map;
-    return one.T_output_map == other.T_output_map && a.origin == b.origin && a.width == b.width &&
-           a.resolution == b.resolution && a.cells == b.cells;
+    return one.T_output_map == other.T_output_map && one.map->origin == other.map->origin &&
+           has_equal_cells(*one.map, *other.map);
   });
 }
 

@@ -18,13 +18,12 @@ namespace {
 
 /// How well a member is known on the plan, if so well within its part.
 PoseDeviation deviation_of(const std::optional<PoseDeviation>& in_part, const OnPlan& on_plan) {
-  const double radius = std::max(on_plan.part->voices.front().coverage.extent().radius, 1e-9);
+  const double radius = std::max(on_plan.part->voices.front().input->coverage.extent().radius, 1e-9);
   const PoseDeviation own = in_part.value_or(PoseDeviation{});
   return {std::hypot(own.position, on_plan.way.sd), std::hypot(own.theta, on_plan.way.sd / radius)};
 }
 
-Component component_of(const std::vector<OnPlan>& hung, const std::vector<const MapStore::Input*>& inputs,
-                       double resolution) {
+Component component_of(const std::vector<OnPlan>& hung, const PlanInputs& inputs, double resolution) {
   Component component;
   component.in_world_frame = true;
   for (const OnPlan& one : hung) {
@@ -74,8 +73,8 @@ void tell_ways_anew(const Component& component, std::vector<OpenWay>& ways) {
 
 }  // namespace
 
-void join_on_plan(const std::vector<OnPlan>& hung, const std::vector<const MapStore::Input*>& inputs,
-                  double resolution, MergeResult& merged) {
+void join_on_plan(const std::vector<OnPlan>& hung, const PlanInputs& inputs, double resolution,
+                  MergeResult& merged) {
   std::size_t maps = 0;
   for (const OnPlan& one : hung) maps += one.part->members.size();
   if (maps < 2) return;

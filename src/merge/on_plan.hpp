@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "gridmerge/merge/merge_result.hpp"
-#include "merge/map_store.hpp"
 #include "merge/plan_ways.hpp"
 
 namespace gridmerge::internal {
@@ -19,7 +18,7 @@ struct OnPlan {
 /// in one pass in cells of `resolution` metres, 0 for the finest. Ways that led from one of them to another
 /// are open no more, and their doubts are added to the joins that are expected to be false. A map that hangs
 /// there alone stays left out. O(cells).
-void join_on_plan(const std::vector<OnPlan>& hung, const std::vector<const MapStore::Input*>& inputs,
-                  double resolution, MergeResult& merged);
+void join_on_plan(const std::vector<OnPlan>& hung, const PlanInputs& inputs, double resolution,
+                  MergeResult& merged);
 
 }  // namespace gridmerge::internal

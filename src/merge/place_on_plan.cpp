@@ -10,6 +10,7 @@
 #include "grid/parallel.hpp"
 #include "gridmerge/merge/plan.hpp"
 #include "match/drawing.hpp"
+#include "merge/copies.hpp"
 #include "merge/joins.hpp"
 #include "merge/on_plan.hpp"
 #include "merge/pair_choice.hpp"
@@ -31,10 +32,6 @@ MatchOptions plan_match_options(const MergeOptions& options, const ScaleRange& s
   match.scales = scales;
   validate(match);
   return match;
-}
-
-bool has_equal_cells(const OccupancyGrid& a, const OccupancyGrid& b) {
-  return a.width == b.width && a.resolution == b.resolution && a.cells == b.cells;
 }
 
 void check(const std::vector<OccupancyGrid>& maps, const MergeResult& merged) {
@@ -96,7 +93,8 @@ class Hanger {
   bool is_surer(std::size_t part, std::size_t other) const {
     const double a = ways_[part]->probability, b = ways_[other]->probability;
     if (a != b) return a > b;
-    return is_smaller(*parts_[other].voices.front().prepared, *parts_[part].voices.front().prepared);
+    return is_smaller(parts_[other].voices.front().input->prepared,
+                      parts_[part].voices.front().input->prepared);
   }
 
   /// If it is sure enough.
@@ -165,12 +163,9 @@ MergeResult place_on_plan(const std::vector<OccupancyGrid>& maps, const Occupanc
   plan_match_options(options, plan_options.scales);
   const PreparedMap drawn(with_enclosed_free(plan));
   with_threads(options.match.threads, [&] {
-    std::vector<std::unique_ptr<const MapStore::Input>> owned;
-    std::vector<const MapStore::Input*> inputs;
-    for (const OccupancyGrid& map : maps) {
-      owned.push_back(std::make_unique<const MapStore::Input>(std::make_shared<const OccupancyGrid>(map)));
-      inputs.push_back(owned.back().get());
-    }
+    PlanInputs inputs;
+    for (const OccupancyGrid& map : maps)
+      inputs.push_back(std::make_shared<const MapStore::Input>(std::make_shared<const OccupancyGrid>(map)));
     std::vector<MergePart> parts = parts_of(merged, inputs);
     Hanger hanger(drawn, merged, options, plan_options, parts);
     const std::vector<std::optional<PlanWay>> ways = hanger.find();

@@ -16,15 +16,12 @@ namespace {
 /// More maps of one part say little that these have not said.
 constexpr std::size_t kMostMembers = 16;
 
-PlanVoice voice_of(std::optional<std::size_t> map, const SE2& T_part_voice, const OccupancyGrid& grid) {
-  auto prepared = std::make_unique<const PreparedMap>(grid);
-  Coverage coverage(prepared->known());
-  return {map, T_part_voice, std::move(prepared), std::move(coverage), {}};
+std::shared_ptr<const MapStore::Input> input_of(OccupancyGrid grid) {
+  return std::make_shared<const MapStore::Input>(std::make_shared<const OccupancyGrid>(std::move(grid)));
 }
 
 /// The members that know most, without copies: in an order that depends on the maps alone.
-std::vector<Member> speakers(const std::vector<Member>& members,
-                             const std::vector<const MapStore::Input*>& inputs) {
+std::vector<Member> speakers(const std::vector<Member>& members, const PlanInputs& inputs) {
   std::vector<Member> chosen;
   for (const Member& member : members) {
     const PreparedMap& map = inputs[member.map]->prepared;
@@ -43,8 +40,7 @@ std::vector<Member> speakers(const std::vector<Member>& members,
 
 }  // namespace
 
-std::vector<MergePart> parts_of(const MergeResult& merged,
-                                const std::vector<const MapStore::Input*>& inputs) {
+std::vector<MergePart> parts_of(const MergeResult& merged, const PlanInputs& inputs) {
   std::vector<MergePart> parts;
   for (std::size_t i = 0; i < merged.components.size(); ++i)
     parts.push_back({i, merged.components[i].members, {}});
@@ -56,12 +52,14 @@ std::vector<MergePart> parts_of(const MergeResult& merged,
   for (MergePart& part : parts) {
     const std::vector<Member> members = speakers(part.members, inputs);
     if (members.size() > 1)
-      part.voices.push_back(voice_of({}, {}, merged.components[*part.component].fused.grid));
+      part.voices.push_back({{}, {}, input_of(merged.components[*part.component].fused.grid), {}});
     for (const Member& member : members) {
-      const OccupancyGrid& map = *inputs[member.map]->grid;
-      part.voices.push_back(
-          voice_of(member.map, member.T_component_map,
-                   member.deformation.is_identity() ? map : bent_map(map, member.deformation)));
+      const auto& straight = inputs[member.map];
+      const bool is_bent = !member.deformation.is_identity();
+      part.voices.push_back({member.map,
+                             member.T_component_map,
+                             is_bent ? input_of(bent_map(*straight->grid, member.deformation)) : straight,
+                             {}});
     }
   }
   return parts;
@@ -77,7 +75,7 @@ void hear(std::vector<MergePart>& parts, const PreparedMap& plan, const MatchOpt
   std::size_t done = 0;
   if (progress && !voices.empty()) progress(0, voices.size());
   parallel_for(voices.size(), [&](std::size_t i) {
-    voices[i]->match = match(*voices[i]->prepared, plan, options);
+    voices[i]->match = match(voices[i]->input->prepared, plan, options);
     const std::scoped_lock lock(telling);
     ++done;
     if (progress) progress(done, voices.size());

@@ -10,18 +10,19 @@
 
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/merge/merge_result.hpp"
-#include "merge/coverage.hpp"
 #include "merge/map_store.hpp"
 
 namespace gridmerge::internal {
+
+/// All maps of a merge, by their index.
+using PlanInputs = std::vector<std::shared_ptr<const MapStore::Input>>;
 
 /// What is matched with the plan: a map, or all maps of a part as one.
 struct PlanVoice {
   std::optional<std::size_t> map;  ///< index of the input map; none of all maps as one
   SE2 T_part_voice;
-  std::unique_ptr<const PreparedMap> prepared;  ///< bent, where the member is
-  Coverage coverage;
-  MatchResult match;  ///< of this one, fixed, and the plan
+  std::shared_ptr<const MapStore::Input> input;  ///< bent, where the member is
+  MatchResult match;                             ///< of this one, fixed, and the plan
 };
 
 /// A component of a merge, or a map that was left out.
@@ -33,8 +34,8 @@ struct MergePart {
   std::vector<PlanVoice> voices;
 };
 
-/// In the order of their first maps. `inputs` are all maps.
-std::vector<MergePart> parts_of(const MergeResult& merged, const std::vector<const MapStore::Input*>& inputs);
+/// In the order of their first maps.
+std::vector<MergePart> parts_of(const MergeResult& merged, const PlanInputs& inputs);
 
 /// Matches the voices of these parts with the plan. Runs in the calling TBB arena.
 void hear(std::vector<MergePart>& parts, const PreparedMap& plan, const MatchOptions& options,

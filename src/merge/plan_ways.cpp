@@ -66,8 +66,8 @@ class PlanProblem {
       const std::size_t node = problem_.maps.size();
       if (voice.map) node_of_[*voice.map] = node;
       group.push_back({node, voice.T_part_voice});
-      problem_.maps.push_back(voice.coverage.extent());
-      problem_.coverage.push_back(&voice.coverage);
+      problem_.maps.push_back(voice.input->coverage.extent());
+      problem_.coverage.push_back(&voice.input->coverage);
       MatchResult said;
       for (const Hypothesis& one : voice.match.hypotheses) {
         if (one.probability >= kMinCandidateProbability && is_of_scale(one.scale))
@@ -75,7 +75,7 @@ class PlanProblem {
       }
       said_.push_back({&voice, said.hypotheses});
       for (Hypothesis& one : said.hypotheses)
-        one.T_fixed_moving = inverse(at_scale(one, scale_, voice.coverage.extent().centre));
+        one.T_fixed_moving = inverse(at_scale(one, scale_, voice.input->coverage.extent().centre));
       problem_.pairs.push_back({0, node, candidate_joins(said)});
     }
     return group;

@@ -134,16 +134,10 @@ std::vector<ShownMap> show_all(const std::vector<const OccupancyGrid*>& grids, s
 
 /// The plan and which maps hang on it.
 Json plan_page_json(const PlanPlacement& plan) {
-  Json maps = Json::array();
-  for (const PlanPart& part : plan.parts) {
-    for (const std::size_t map : part.maps) {
-      if (part.on_plan()) maps.push_back(map);
-    }
-  }
   return {{"name", plan.name},
           {"scale", number_json(plan.scale)},
           {"probability", number_json(plan.probability())},
-          {"maps", std::move(maps)}};
+          {"maps", plan.maps_on_plan()}};
 }
 
 }  // namespace

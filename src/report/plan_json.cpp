@@ -60,12 +60,14 @@ std::string component_on_plan(const MergeResult& result) {
 
 Json plan_json(const std::vector<std::string>& names, const PlanPlacement& plan,
                const std::string& component) {
-  Json maps = Json::array(), parts = Json::array();
+  const auto named = [&](const std::vector<std::size_t>& maps) {
+    Json json = Json::array();
+    for (const std::size_t map : maps) json.push_back(names.at(map));
+    return json;
+  };
+  Json maps = named(plan.maps_on_plan()), parts = Json::array();
   for (const PlanPart& part : plan.parts) {
-    Json of_part = Json::array();
-    for (const std::size_t map : part.maps) of_part.push_back(names.at(map));
-    if (part.on_plan()) maps.insert(maps.end(), of_part.begin(), of_part.end());
-    parts.push_back({{"maps", std::move(of_part)},
+    parts.push_back({{"maps", named(part.maps)},
                      {"transform", transform_json(part.T_plan_first)},
                      {"probability", number_json(part.probability)},
                      {"reason", reason_json(part.reason)}});
@@ -84,15 +86,11 @@ namespace {
 /// What is told twice has to be the same.
 void check_plan(const JsonReader& json, const std::vector<std::string>& names, const MergeResult& result) {
   const PlanPlacement& plan = *result.plan;
-  std::vector<std::string> on_plan;
-  for (const PlanPart& part : plan.parts) {
-    for (const std::size_t map : part.maps) {
-      if (part.on_plan()) on_plan.push_back(names[map]);
-    }
-  }
+  const std::vector<std::size_t> on_plan = plan.maps_on_plan();
   const JsonReader maps = json.at("maps");
   bool is_same = maps.size() == on_plan.size();
-  for (std::size_t i = 0; is_same && i < on_plan.size(); ++i) is_same = maps.at(i).text() == on_plan[i];
+  for (std::size_t i = 0; is_same && i < on_plan.size(); ++i)
+    is_same = maps.at(i).text() == names[on_plan[i]];
   if (!is_same) maps.fail("does not go with the parts");
   for (const char* key : {"scale", "probability"}) {
     if (json.at(key).is_null() != on_plan.empty()) json.at(key).fail("does not go with the parts");

@@ -29,16 +29,18 @@ Hypothesis said(const SE2& T_voice_plan, double scale, double probability) {
 const SE2 kHere{};
 const SE2 kElsewhere{6.0, -4.0, 1.5};
 
+std::shared_ptr<const MapStore::Input> input_of(OccupancyGrid map) {
+  return std::make_shared<const MapStore::Input>(std::make_shared<const OccupancyGrid>(std::move(map)));
+}
+
 /// A part of three voices, that of all maps first, which say this of the plan.
 MergePart part_of(const std::vector<std::vector<Hypothesis>>& sayings) {
   MergePart part;
   for (std::size_t i = 0; i < sayings.size(); ++i) {
-    auto prepared = std::make_unique<const PreparedMap>(draw_building(1));
-    Coverage coverage(prepared->known());
     MatchResult match;
     match.hypotheses = sayings[i];
     const std::optional<std::size_t> map = i == 0 ? std::nullopt : std::optional(i - 1);
-    part.voices.push_back({map, {}, std::move(prepared), std::move(coverage), match});
+    part.voices.push_back({map, {}, input_of(draw_building(1)), match});
     if (map) part.members.push_back({*map, {}});
   }
   return part;
@@ -62,7 +64,7 @@ TEST(BestWay, IsNoSurerThanTheSurestOfItsVoices) {
   part.voices.erase(part.voices.begin());
   for (std::size_t i = 0; i < 2; ++i) {
     const double left = 9.0 * static_cast<double>(i);
-    part.voices[i].coverage = Coverage(test::map_part(draw_building(1), {left, 0, left + 9.0, 13}, {}));
+    part.voices[i].input = input_of(test::map_part(draw_building(1), {left, 0, left + 9.0, 13}, {}));
   }
   const std::optional<PlanWay> way = best_way(part, PreparedMap(draw_building(1)));
   ASSERT_TRUE(way);
@@ -136,13 +138,8 @@ TEST(BestWayBeside, PartsThatContradictEachOtherCountAgainstEachOther) {
 }
 
 TEST(JoinOnPlan, TellsOpenWaysFromTheFirstMapOfTheComponent) {
-  std::vector<std::unique_ptr<const MapStore::Input>> owned;
-  std::vector<const MapStore::Input*> inputs;
-  for (int i = 0; i < 5; ++i) {
-    owned.push_back(std::make_unique<const MapStore::Input>(
-        std::make_shared<const OccupancyGrid>(draw_building(static_cast<unsigned>(i) + 1))));
-    inputs.push_back(owned.back().get());
-  }
+  PlanInputs inputs;
+  for (unsigned i = 1; i <= 5; ++i) inputs.push_back(input_of(draw_building(i)));
   MergeResult merged;
   for (std::size_t i = 0; i < 5; ++i) merged.left_out.push_back({i, Reason::ambiguous});
   merged.expected_false_joins = 0.01;

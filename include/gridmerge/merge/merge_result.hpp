@@ -135,6 +135,15 @@ struct PlanPlacement {
   double scale = 1.0;
   std::vector<PlanPart> parts;  ///< in the order of their first maps
 
+  /// Indices of the input maps that hang on it, part by part.
+  std::vector<std::size_t> maps_on_plan() const {
+    std::vector<std::size_t> maps;
+    for (const PlanPart& part : parts) {
+      if (part.on_plan()) maps.insert(maps.end(), part.maps.begin(), part.maps.end());
+    }
+    return maps;
+  }
+
   /// That of the surest part on the plan, which has decided the scale; 0 if there is none.
   double probability() const {
     double most = 0.0;
