@@ -10,12 +10,10 @@ map is right if the plan's scale is within 3 % and the map lies within 1.5 m (ro
 known cells); plans.py tells more.
 """
 
-import argparse
 import concurrent.futures
 import dataclasses
 import json
 import math
-import os
 import pathlib
 import statistics
 import subprocess
@@ -31,9 +29,11 @@ from plans import (
     SIMULATED,
     TOLERANCE,
     Scaled,
+    by_table,
     evenly,
     known_points,
     on_paper,
+    read_options,
     real_cases,
     simulate,
 )
@@ -169,9 +169,7 @@ def merge(gridmerge: pathlib.Path, team: Team) -> Outcome:
 
 
 def report(outcomes: list[Outcome]) -> str:
-    tables: dict[str, list[Outcome]] = {}
-    for outcome in outcomes:
-        tables.setdefault(outcome.team.table, []).append(outcome)
+    tables = by_table(outcomes, lambda outcome: outcome.team.table)
     lines = [
         "| merges | teams | maps of the plan's building | right on it | wrong on it | joins by the plan alone | "
         "most probable stranger | seconds, median |",
@@ -189,16 +187,7 @@ def report(outcomes: list[Outcome]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--gridmerge", type=pathlib.Path, required=True)
-    parser.add_argument("--output", type=pathlib.Path, required=True)
-    parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared/data"))
-    parser.add_argument("--limit", type=int, default=200, help="sets of laser maps for each layout")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="merges at one time")
-    options = parser.parse_args()
-    options.output.mkdir(parents=True, exist_ok=True)
+    options = read_options(__doc__, "sets of laser maps for each layout", "merges")
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         teams = real_teams(options.data, options.limit)
         teams += simulated_teams(options.gridmerge, pathlib.Path(folder))

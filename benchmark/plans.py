@@ -22,11 +22,14 @@ import pathlib
 import statistics
 import subprocess
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import numpy as np
 from peer_maps import FREE, OCCUPIED, UNKNOWN, Map, read_map, transformed, write_map
 from poses import Pose, read_pose
+
+One = TypeVar("One")
 
 SCALES = "0.5:2"
 SCALE_TOLERANCE = 0.03
@@ -287,10 +290,16 @@ def match(gridmerge: pathlib.Path, case: Case) -> Outcome:
     )
 
 
-def report(outcomes: list[Outcome]) -> str:
-    tables: dict[str, list[Outcome]] = {}
+def by_table(outcomes: list[One], table_of: Callable[[One], str]) -> dict[str, list[One]]:
+    """In the order of their first ones."""
+    tables: dict[str, list[One]] = {}
     for outcome in outcomes:
-        tables.setdefault(outcome.case.table, []).append(outcome)
+        tables.setdefault(table_of(outcome), []).append(outcome)
+    return tables
+
+
+def report(outcomes: list[Outcome]) -> str:
+    tables = by_table(outcomes, lambda outcome: outcome.case.table)
     lines = [
         "| maps | cases | best right | accepted right | accepted wrong | most probable wrong | seconds, median |",
         "| --- | --- | --- | --- | --- | --- | --- |",
@@ -307,17 +316,23 @@ def report(outcomes: list[Outcome]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def main() -> None:
+def read_options(description: str, limited: str | None, work: str) -> argparse.Namespace:
+    """What is asked for on the command line; the folder for it is there. `limited`: what --limit counts."""
     parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        description=description, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--gridmerge", type=pathlib.Path, required=True)
     parser.add_argument("--output", type=pathlib.Path, required=True)
     parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared/data"))
-    parser.add_argument("--limit", type=int, default=200)
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="matches at one time")
+    parser.add_argument("--limit", type=int, default=200, help=limited)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help=f"{work} at one time")
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
+    return options
+
+
+def main() -> None:
+    options = read_options(__doc__, None, "matches")
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         cases = real_cases(options.data, options.limit)
         cases += simulated_cases(options.gridmerge, pathlib.Path(folder), options.limit // 2)
