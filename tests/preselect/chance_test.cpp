@@ -69,17 +69,22 @@ TEST(Chance, MoreWallsThatMeetAreMoreLikelyOfOnePlace) {
   EXPECT_GT(log_odds_of_joining(match, map, map), last);
 }
 
+SignatureMatch match_of(double seen, double met, double open, double chance, double votes, double next_votes,
+                        double likeness) {
+  SignatureMatch match;
+  match.seen = seen;
+  match.met = met;
+  match.open = open;
+  match.chance = chance;
+  match.votes = votes;
+  match.next_votes = next_votes;
+  match.likeness = likeness;
+  return match;
+}
+
 /// A pair as half of them look, more or less.
 SignatureMatch usual_match() {
-  SignatureMatch match;
-  match.seen = 60.0;
-  match.met = 30.0;
-  match.open = 10.0;
-  match.chance = 8.0;
-  match.votes = 4.0;
-  match.next_votes = 1.0;
-  match.likeness = 0.6;
-  return match;
+  return match_of(60.0, 30.0, 10.0, 8.0, 4.0, 1.0, 0.6);
 }
 
 TEST(Chance, EachFigureSpeaksForOrAgainst) {
@@ -108,23 +113,10 @@ TEST(Chance, MediansOfJoinsAndOfStrangersAreFarApart) {
   // Medians over a campus of 80 simulated maps to which nothing was fitted (benchmark/fleet.py --campus
   // reported).
   Signature map;
-  SignatureMatch joined, strangers;
-  joined.seen = 109.0;
-  joined.met = 79.0;
-  joined.open = 4.5;
-  joined.chance = 17.2;
-  joined.votes = 3.7;
-  joined.next_votes = 2.0;
-  joined.likeness = 0.78;
+  const SignatureMatch joined = match_of(109.0, 79.0, 4.5, 17.2, 3.7, 2.0, 0.78);
+  const SignatureMatch strangers = match_of(62.6, 27.7, 8.7, 8.5, 0.86, 1.14, 0.55);
   map.wall_length = 177.0;
   const double of_joined = log_odds_of_joining(joined, map, map);
-  strangers.seen = 62.6;
-  strangers.met = 27.7;
-  strangers.open = 8.7;
-  strangers.chance = 8.5;
-  strangers.votes = 0.86;
-  strangers.next_votes = 1.14;
-  strangers.likeness = 0.55;
   map.wall_length = 105.0;
   const double of_strangers = log_odds_of_joining(strangers, map, map);
   // Two or three in a thousand pairs are joined: log-odds of -6. The former are likelier than that, by far.

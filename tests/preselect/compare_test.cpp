@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "gridmerge/grid/resample.hpp"
+#include "drawn_signature.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge::internal {
@@ -16,10 +16,7 @@ namespace {
 
 using test::draw_building;
 using test::map_part;
-
-Signature signature_of(const OccupancyGrid& map) {
-  return make_signature(crop_to_known(map));
-}
+using test::signature_of;
 
 /// What each sampled wall stands for.
 double metres_of_one(const Signature& map) {

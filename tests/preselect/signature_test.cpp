@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "drawn_signature.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "preselect/chance.hpp"
 #include "preselect/compare.hpp"
@@ -18,10 +19,7 @@ namespace {
 
 using test::draw_building;
 using test::map_part;
-
-Signature signature_of(const OccupancyGrid& map) {
-  return make_signature(crop_to_known(map));
-}
+using test::signature_of;
 
 /// How far the found pose puts the middle of an 18 m x 13 m floor from where it belongs [m].
 double error(const SE2& found, const SE2& expected, const SE2& T_map_building) {
