@@ -61,6 +61,9 @@ Coverage::Coverage(const OccupancyGrid& grid)
         centres.push_back(T_map_grid * Point2{(column + 0.5) * cell_, (row + 0.5) * cell_});
     }
   }
+  for (const Point2& centre : centres)
+    reach_ = std::max(reach_, std::hypot(centre.x - extent_.centre.x, centre.y - extent_.centre.y));
+  reach_ += 0.5 * std::numbers::sqrt2 * cell_;  // to the corners of the cells
   const std::size_t drawn = std::min(centres.size(), kMaxCentres);
   for (std::size_t i = 0; i < drawn; ++i) centres_.push_back(centres[i * centres.size() / drawn]);
 }
@@ -69,30 +72,42 @@ MapExtent Coverage::extent() const {
   return extent_;
 }
 
-InCommon Coverage::in_common(const Coverage& other, const SE2& T_this_other, const SE2& T_frame_this) const {
+template <typename Visit>
+void Coverage::visit_common(const Coverage& other, const ManyPointsTransform& T_this_other,
+                            Visit visit) const {
   const bool other_is_smaller = other.area_ <= area_;
   const Coverage& smaller = other_is_smaller ? other : *this;
   const Coverage& larger = other_is_smaller ? *this : other;
-  if (smaller.centres_.empty()) return {};
   const Point2 there = T_this_other * other.extent_.centre;
-  const double apart = std::hypot(there.x - extent_.centre.x, there.y - extent_.centre.y);
-  // No known cell is farther from the centre than the diagonal of a square about all of them.
-  if (apart > std::numbers::sqrt2 * (extent_.side + other.extent_.side)) return {};
-  const SE2 T_larger_smaller = other_is_smaller ? T_this_other : inverse(T_this_other);
-  const ManyPointsTransform to_grid(larger.T_grid_map_ * T_larger_smaller);
-  const ManyPointsTransform to_frame(other_is_smaller ? T_frame_this * T_this_other : T_frame_this);
-  InCommon common;
+  if (std::hypot(there.x - extent_.centre.x, there.y - extent_.centre.y) > reach_ + other.reach_) return;
+  const ManyPointsTransform to_grid =
+      larger.T_grid_map_ * (other_is_smaller ? T_this_other : T_this_other.inverse());
+  const double cells_per_metre = 1.0 / larger.cell_;
   for (const Point2& centre : smaller.centres_) {
     const Point2 p = to_grid * centre;
-    const double x = p.x / larger.cell_, y = p.y / larger.cell_;
+    const double x = p.x * cells_per_metre, y = p.y * cells_per_metre;
     if (!(x >= 0.0 && y >= 0.0 && x < larger.width_ && y < larger.height_)) continue;
     const std::size_t at =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(larger.width_) + static_cast<std::size_t>(x);
-    if (larger.known_[at] == 0) continue;
-    common.places.push_back(to_frame * centre);
+    if (larger.known_[at] != 0) visit(centre, other_is_smaller);
   }
-  common.share = static_cast<double>(common.places.size()) / static_cast<double>(smaller.centres_.size());
-  return common;
+}
+
+double Coverage::share_in_common(const Coverage& other, const ManyPointsTransform& T_this_other) const {
+  std::size_t common = 0;
+  visit_common(other, T_this_other, [&](const Point2&, bool) { ++common; });
+  const std::size_t all = (other.area_ <= area_ ? other : *this).centres_.size();
+  return all == 0 ? 0.0 : static_cast<double>(common) / static_cast<double>(all);
+}
+
+std::vector<Point2> Coverage::places_in_common(const Coverage& other, const ManyPointsTransform& T_this_other,
+                                               const ManyPointsTransform& T_frame_this) const {
+  const ManyPointsTransform T_frame_other = T_frame_this * T_this_other;
+  std::vector<Point2> places;
+  visit_common(other, T_this_other, [&](const Point2& centre, bool of_other) {
+    places.push_back((of_other ? T_frame_other : T_frame_this) * centre);
+  });
+  return places;
 }
 
 }  // namespace gridmerge::internal

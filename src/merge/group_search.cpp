@@ -2,6 +2,7 @@
 #include "merge/group_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -17,6 +18,8 @@ namespace {
 
 /// A map that moves elsewhere must gain so much, or rounding would keep it moving [nats].
 constexpr double kMinGain = 0.1;
+/// From a little more on, a probability is 1 to rounding [nats].
+constexpr double kSurely = 36.0;
 
 /// The groups of one connected part while they are arranged. A group has a number that grows with time: of
 /// two that are joined the lower one stays, and what is cut off gets new ones.
@@ -25,7 +28,10 @@ class Arranger {
   using Number = std::size_t;
 
   Arranger(const JoinWeights& weights, double accept_probability, NodeGroups groups)
-      : weights_(weights), accept_(accept_probability), group_of_(weights.maps()) {
+      : weights_(weights),
+        accept_(accept_probability),
+        min_worth_(std::min(kSurely, std::log(accept_probability / (1.0 - accept_probability)) - 1e-9)),
+        group_of_(weights.maps()) {
     for (NodeGroup& group : groups) add(std::move(group));
   }
 
@@ -100,7 +106,7 @@ class Arranger {
     const std::vector<Sides> all(due.begin(), due.end());
     std::vector<std::optional<WeighedJoin>> found(all.size());
     parallel_for(all.size(), [&](std::size_t i) {
-      found[i] = weights_.best_join(groups_.at(all[i].first), groups_.at(all[i].second));
+      found[i] = weights_.best_join(groups_.at(all[i].first), groups_.at(all[i].second), min_worth_);
     });
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (!found[i] || found[i]->probability < accept_) continue;
@@ -164,20 +170,22 @@ class Arranger {
       gains_[groups_.at(due[i].first)[due[i].second].map] = gains[i];
   }
 
+  /// Exact where it is more than a move has to gain.
   double gain_of_moving(Number number, std::size_t place) const {
     const auto [rest, alone] = taken_out(groups_.at(number), place);
     const double stays = weights_.worth_of(rest, alone, {}).against_apart;
-    double elsewhere = std::max(0.0, gain_of_joining(rest, alone));
+    double elsewhere = 0.0;  // apart
+    const auto try_to_join = [&](const NodeGroup& group) {
+      // What gains too little for a move need not be known.
+      const std::optional<WeighedJoin> way =
+          weights_.best_way(group, alone, std::max(elsewhere, stays + kMinGain));
+      if (way) elsewhere = std::max(elsewhere, way->worth.against_apart);
+    };
+    try_to_join(rest);
     for (const Number other : groups_near(alone)) {
-      if (other != number) elsewhere = std::max(elsewhere, gain_of_joining(groups_.at(other), alone));
+      if (other != number) try_to_join(groups_.at(other));
     }
     return elsewhere - stays;
-  }
-
-  /// Beside being apart.
-  double gain_of_joining(const NodeGroup& a, const NodeGroup& b) const {
-    const std::optional<WeighedJoin> join = weights_.best_join(a, b);
-    return join ? join->worth.against_apart : 0.0;
   }
 
   /// Joins a map where it is worth most, if it is worth anything.
@@ -186,7 +194,7 @@ class Arranger {
     std::optional<Number> where;
     SE2 T_where_alone;
     for (const Number number : groups_near(alone)) {
-      const std::optional<WeighedJoin> join = weights_.best_join(groups_.at(number), alone);
+      const std::optional<WeighedJoin> join = weights_.best_way(groups_.at(number), alone, most);
       if (!join || join->worth.against_apart <= most) continue;
       most = join->worth.against_apart;
       where = number;
@@ -199,6 +207,7 @@ class Arranger {
 
   const JoinWeights& weights_;
   double accept_;
+  double min_worth_;  // a way of less worth is not so probable, whatever the others are [nats]
   Number next_ = 0;
   std::map<Number, NodeGroup> groups_;
   std::vector<Number> group_of_;             // by map

@@ -79,7 +79,8 @@ JoinWeights::JoinWeights(const JoinProblem& problem) : problem_(problem), partne
     partners_[pair.moving].push_back({pair.fixed, i});
     std::vector<Mark>& marks = marks_.emplace_back();
     for (const CandidateJoin& candidate : pair.candidates)
-      marks.push_back(mark_of(candidate.T_fixed_moving, problem.maps[pair.fixed], problem.maps[pair.moving]));
+      marks.push_back(mark_of(ManyPointsTransform(candidate.T_fixed_moving), problem.maps[pair.fixed],
+                              problem.maps[pair.moving]));
   }
   for (std::vector<Partner>& partners : partners_)
     std::sort(partners.begin(), partners.end(),
@@ -94,10 +95,17 @@ std::vector<std::size_t> JoinWeights::partners_of(std::size_t map) const {
   return others;
 }
 
-JoinWeights::Mark JoinWeights::mark_of(const SE2& T_fixed_moving, const MapExtent& fixed,
+JoinWeights::Mark JoinWeights::mark_of(const ManyPointsTransform& T_fixed_moving, const MapExtent& fixed,
                                        const MapExtent& moving) {
-  return {T_fixed_moving * moving.centre, inverse(T_fixed_moving) * fixed.centre,
-          std::cos(T_fixed_moving.theta), std::sin(T_fixed_moving.theta)};
+  return {T_fixed_moving * moving.centre, T_fixed_moving.inverse() * fixed.centre, T_fixed_moving.cos(),
+          T_fixed_moving.sin()};
+}
+
+std::vector<ManyPointsTransform> JoinWeights::poses_of(const NodeGroup& group) {
+  std::vector<ManyPointsTransform> poses;
+  poses.reserve(group.size());
+  for (const PlacedNode& node : group) poses.emplace_back(node.T_group_map);
+  return poses;
 }
 
 std::optional<std::size_t> JoinWeights::pair_of(std::size_t a, std::size_t b) const {
@@ -131,9 +139,9 @@ std::vector<JoinWeights::Across> JoinWeights::pairs_across(const NodeGroup& a, c
 }
 
 std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t index, std::size_t a,
-                                                                  const SE2& T_a_b) const {
+                                                                  const ManyPointsTransform& T_a_b) const {
   const PairCandidates& pair = problem_.pairs[index];
-  const SE2 T = pair.fixed == a ? T_a_b : inverse(T_a_b);
+  const ManyPointsTransform T = pair.fixed == a ? T_a_b : T_a_b.inverse();
   const MapExtent& fixed = problem_.maps[pair.fixed];
   const MapExtent& moving = problem_.maps[pair.moving];
   // As difference() to each candidate, without a sine or cosine for each.
@@ -159,21 +167,26 @@ std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t in
 JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE2& T_a_b) const {
   std::vector<double> losses;
   std::vector<Witness> witnesses;
+  const bool know_coverage = !problem_.coverage.empty();
+  std::vector<ManyPointsTransform> poses_b = poses_of(b);  // in the frame of a
+  for (ManyPointsTransform& pose : poses_b) pose = ManyPointsTransform(T_a_b) * pose;
   for (const PlacedNode& in_a : a) {
-    const SE2 T_map_b = inverse(in_a.T_group_map) * T_a_b;
-    for (const PlacedNode& in_b : b) {
-      const std::optional<std::size_t> pair = pair_of(in_a.map, in_b.map);
+    const ManyPointsTransform T_a_map(in_a.T_group_map), T_map_a = T_a_map.inverse();
+    for (std::size_t i = 0; i < b.size(); ++i) {
+      const std::optional<std::size_t> pair = pair_of(in_a.map, b[i].map);
       if (!pair) continue;  // nobody has looked at it: it says nothing, for or against
-      const SE2 T = T_map_b * in_b.T_group_map;
-      InCommon common;
-      if (!problem_.coverage.empty())
-        common = problem_.coverage[in_a.map]->in_common(*problem_.coverage[in_b.map], T, in_a.T_group_map);
-      const double loss =
-          -kMissNats * std::clamp((common.share - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
+      const ManyPointsTransform T = T_map_a * poses_b[i];
       const std::optional<Agreement> agreement = find_agreement(*pair, in_a.map, T);
-      if (agreement && agreement->worth > std::max(loss, 0.0)) {
-        witnesses.push_back({agreement->worth, std::move(common.places)});
+      if (agreement && agreement->worth > 0.0) {
+        witnesses.push_back({agreement->worth, {}});
+        if (know_coverage)
+          witnesses.back().places =
+              problem_.coverage[in_a.map]->places_in_common(*problem_.coverage[b[i].map], T, T_a_map);
       } else {
+        const double share =
+            know_coverage ? problem_.coverage[in_a.map]->share_in_common(*problem_.coverage[b[i].map], T)
+                          : 0.0;
+        const double loss = -kMissNats * std::clamp((share - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
         losses.push_back(agreement ? std::max(loss, agreement->worth) : loss);
       }
     }
@@ -194,10 +207,11 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
 }
 
 std::vector<JoinWeights::Edge> JoinWeights::edges_of(const NodeGroup& group) const {
+  const std::vector<ManyPointsTransform> poses = poses_of(group);
   std::vector<Edge> edges;
   for (const Across& pair : pairs_across(group, group)) {
     if (pair.a >= pair.b) continue;
-    const SE2 T_a_b = inverse(group[pair.a].T_group_map) * group[pair.b].T_group_map;
+    const ManyPointsTransform T_a_b = poses[pair.a].inverse() * poses[pair.b];
     if (const auto agreement = find_agreement(pair.pair, group[pair.a].map, T_a_b))
       edges.push_back({pair.a, pair.b, *agreement});
   }

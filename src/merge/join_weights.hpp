@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -71,8 +72,12 @@ class JoinWeights {
   /// alone.
   std::vector<WeighedJoin> ways_by_worth(const NodeGroup& a, const NodeGroup& b) const;
 
-  /// The first of them; none if no candidate proposes any.
-  std::optional<WeighedJoin> best_join(const NodeGroup& a, const NodeGroup& b) const;
+  /// The first of them; none if no candidate proposes any. Of groups of more than one map also none, soon, if
+  /// no way can be worth more than `least` against being apart [nats].
+  std::optional<WeighedJoin> best_join(const NodeGroup& a, const NodeGroup& b, double least = kAny) const;
+
+  /// The same without its probability, in a fraction of the time.
+  std::optional<WeighedJoin> best_way(const NodeGroup& a, const NodeGroup& b, double least = kAny) const;
 
   /// What it is worth that the groups lie so.
   JoinWorth worth_of(const NodeGroup& a, const NodeGroup& b, const SE2& T_a_b) const;
@@ -94,6 +99,8 @@ class JoinWeights {
   NodeGroup adjusted(NodeGroup group) const;
 
  private:
+  static constexpr double kAny = -std::numeric_limits<double>::infinity();
+
   struct Agreement {
     std::size_t pair;
     std::size_t candidate;
@@ -106,7 +113,8 @@ class JoinWeights {
     Point2 fixed_centre;   // in the moving frame
     double cos, sin;
   };
-  static Mark mark_of(const SE2& T_fixed_moving, const MapExtent& fixed, const MapExtent& moving);
+  static Mark mark_of(const ManyPointsTransform& T_fixed_moving, const MapExtent& fixed,
+                      const MapExtent& moving);
 
   struct Edge {
     std::size_t a, b;  // places in the group
@@ -119,6 +127,13 @@ class JoinWeights {
     std::size_t pair;
   };
 
+  /// A pose between two groups that a candidate proposes.
+  struct Proposal {
+    SE2 T_a_b;
+    double agreement = 0.0;   // of all pairs across the groups, for and against [nats]
+    double most_worth = 0.0;  // against other poses: it is not worth more [nats]
+  };
+
   /// A pair with candidates across two groups: places in them, and its index in the problem.
   struct Across {
     std::size_t a, b, pair;
@@ -126,12 +141,19 @@ class JoinWeights {
 
   std::optional<std::size_t> pair_of(std::size_t a, std::size_t b) const;
   /// T takes points of map b to map a.
-  std::optional<Agreement> find_agreement(std::size_t pair, std::size_t a, const SE2& T_a_b) const;
+  std::optional<Agreement> find_agreement(std::size_t pair, std::size_t a,
+                                          const ManyPointsTransform& T_a_b) const;
   /// In the order of the places. O(maps + pairs of the smaller group's maps).
   std::vector<Across> pairs_across(const NodeGroup& a, const NodeGroup& b) const;
+  static std::vector<ManyPointsTransform> poses_of(const NodeGroup& group);
   void unite_fixed(const NodeGroup& group, Labels& labels) const;
   std::vector<WeighedJoin> ways_of_pair(const PlacedNode& a, const PlacedNode& b) const;
-  std::vector<SE2> proposals(const NodeGroup& a, const NodeGroup& b) const;
+  /// The distinct ways that candidates propose, their probabilities not told. A way that is worth less than
+  /// the best one by more than `margin` may be missing; all are, if none can be worth more than `least`
+  /// against being apart.
+  std::vector<WeighedJoin> weigh_proposals(const NodeGroup& a, const NodeGroup& b, double margin,
+                                           double least) const;
+  std::vector<Proposal> proposals(const NodeGroup& a, const NodeGroup& b) const;
   std::vector<Edge> edges_of(const NodeGroup& group) const;
 
   const JoinProblem& problem_;

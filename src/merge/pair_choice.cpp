@@ -196,11 +196,9 @@ std::vector<PairChoice::Pair> PairChoice::laid_on_each_other(const MapStore& sto
             continue;
           }
           if (is_chosen || (looked_at[i] >= kMostLaid && looked_at[j] >= kMostLaid)) continue;
-          const SE2 T = inverse(group[i].T_group_map) * group[j].T_group_map;
-          if (store.at(maps_[group[i].map])
-                  .coverage.in_common(store.at(maps_[group[j].map]).coverage, T)
-                  .share < kLaidShare)
-            continue;
+          const ManyPointsTransform T(inverse(group[i].T_group_map) * group[j].T_group_map);
+          const Coverage& other = store.at(maps_[group[j].map]).coverage;
+          if (store.at(maps_[group[i].map]).coverage.share_in_common(other, T) < kLaidShare) continue;
           ++looked_at[i];
           ++looked_at[j];
           pairs.emplace_back(maps_[a], maps_[b]);

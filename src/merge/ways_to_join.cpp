@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "grid/logistic.hpp"
 #include "merge/join_weights.hpp"
@@ -20,6 +21,9 @@ constexpr double kRepeats = 0.005;
 
 /// So many poses are weighed in full for two groups: those with which most pairs agree.
 constexpr std::size_t kMaxProposals = 50;
+/// A pose that must be worth so much less than another one is not weighed: all that are left out together
+/// change no probability by more than 50 exp(-30), which is 5e-12 [nats].
+constexpr double kNegligible = 30.0;
 /// Candidates less likely than this propose no join, though they may agree with one.
 constexpr double kMinLogOdds = -6.0;
 /// Poses nearer to each other than this many tolerances are one way to join: the same candidate may agree
@@ -44,6 +48,16 @@ MapExtent extent_of(const NodeGroup& group, const std::vector<MapExtent>& maps) 
   return all;
 }
 
+bool is_worth_more(const WeighedJoin& x, const WeighedJoin& y) {
+  return x.worth.against_other_poses > y.worth.against_other_poses;
+}
+
+/// The one for which most is said, the first of equals.
+std::optional<WeighedJoin> first_of(const std::vector<WeighedJoin>& ways) {
+  const auto first = std::min_element(ways.begin(), ways.end(), is_worth_more);
+  return first == ways.end() ? std::nullopt : std::optional(*first);
+}
+
 }  // namespace
 
 void weigh_against_each_other(std::vector<WeighedJoin>& ways) {
@@ -56,13 +70,9 @@ void weigh_against_each_other(std::vector<WeighedJoin>& ways) {
     way.probability = 1.0 / (sum * std::exp(most - worth(way)) + std::exp(-way.worth.against_apart));
 }
 
-/// The distinct poses that candidates of pairs across the groups propose, those first that most pairs agree
-/// with: weighing a pose in full takes a hundred times as long.
-std::vector<SE2> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) const {
-  struct Proposal {
-    SE2 T_a_b;
-    double agreement = 0.0;
-  };
+/// The poses that candidates of pairs across the groups propose, those first that most pairs agree with:
+/// weighing a pose in full takes a hundred times as long.
+std::vector<JoinWeights::Proposal> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) const {
   const std::vector<Across> across = pairs_across(a, b);
   std::vector<Proposal> all;
   for (const Across& one : across) {
@@ -73,26 +83,21 @@ std::vector<SE2> JoinWeights::proposals(const NodeGroup& a, const NodeGroup& b) 
       all.push_back({a[one.a].T_group_map * T * inverse(b[one.b].T_group_map)});
     }
   }
+  const std::vector<ManyPointsTransform> poses_a = poses_of(a), poses_b = poses_of(b);
   for (Proposal& proposal : all) {
+    const ManyPointsTransform T_a_b(proposal.T_a_b);
     for (const Across& one : across) {
-      const SE2 T_map_b = inverse(a[one.a].T_group_map) * proposal.T_a_b;
-      if (const auto agreement = find_agreement(one.pair, a[one.a].map, T_map_b * b[one.b].T_group_map))
-        proposal.agreement += agreement->worth;
+      const ManyPointsTransform T = poses_a[one.a].inverse() * T_a_b * poses_b[one.b];
+      const auto agreement = find_agreement(one.pair, a[one.a].map, T);
+      if (!agreement) continue;
+      proposal.agreement += agreement->worth;
+      proposal.most_worth += std::max(0.0, agreement->worth);
     }
+    proposal.most_worth -= kPoseNats;  // as worth_of(), with every pair that agrees counted in full
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const Proposal& x, const Proposal& y) { return x.agreement > y.agreement; });
-  const MapExtent of_a = extent_of(a, problem_.maps), of_b = extent_of(b, problem_.maps);
-  const double distinct = kDistinct * agreement_tolerance(of_a, of_b);
-  std::vector<SE2> kept;
-  for (const Proposal& proposal : all) {
-    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const SE2& other) {
-      return difference(of_a, of_b, proposal.T_a_b, other) < distinct;
-    });
-    if (is_new) kept.push_back(proposal.T_a_b);
-    if (kept.size() == kMaxProposals) break;
-  }
-  return kept;
+  return all;
 }
 
 /// Two maps alone lie as their pair says, which has weighed all that there is.
@@ -119,9 +124,30 @@ std::vector<WeighedJoin> JoinWeights::ways_of_pair(const PlacedNode& a, const Pl
   return ways;
 }
 
-std::vector<WeighedJoin> JoinWeights::ways_by_worth(const NodeGroup& a, const NodeGroup& b) const {
+std::vector<WeighedJoin> JoinWeights::weigh_proposals(const NodeGroup& a, const NodeGroup& b, double margin,
+                                                      double least) const {
+  const std::vector<Proposal> all = proposals(a, b);
+  if (std::none_of(all.begin(), all.end(), [&](const Proposal& one) { return one.most_worth > least; }))
+    return {};
+  const MapExtent of_a = extent_of(a, problem_.maps), of_b = extent_of(b, problem_.maps);
+  const double distinct = kDistinct * agreement_tolerance(of_a, of_b);
   std::vector<WeighedJoin> ways;
-  for (const SE2& T_a_b : proposals(a, b)) ways.push_back({T_a_b, worth_of(a, b, T_a_b)});
+  double most = -std::numeric_limits<double>::infinity();
+  for (const Proposal& proposal : all) {
+    if (proposal.most_worth < most - margin) continue;
+    const bool is_new = std::none_of(ways.begin(), ways.end(), [&](const WeighedJoin& way) {
+      return difference(of_a, of_b, proposal.T_a_b, way.T_a_b) < distinct;
+    });
+    if (!is_new) continue;
+    ways.push_back({proposal.T_a_b, worth_of(a, b, proposal.T_a_b)});
+    most = std::max(most, ways.back().worth.against_other_poses);
+    if (ways.size() == kMaxProposals) break;
+  }
+  return ways;
+}
+
+std::vector<WeighedJoin> JoinWeights::ways_by_worth(const NodeGroup& a, const NodeGroup& b) const {
+  std::vector<WeighedJoin> ways = weigh_proposals(a, b, kNegligible, kAny);
   weigh_against_each_other(ways);
   return ways;
 }
@@ -129,15 +155,21 @@ std::vector<WeighedJoin> JoinWeights::ways_by_worth(const NodeGroup& a, const No
 std::vector<WeighedJoin> JoinWeights::ways_to_join(const NodeGroup& a, const NodeGroup& b) const {
   std::vector<WeighedJoin> ways =
       a.size() == 1 && b.size() == 1 ? ways_of_pair(a.front(), b.front()) : ways_by_worth(a, b);
-  std::stable_sort(ways.begin(), ways.end(), [](const WeighedJoin& x, const WeighedJoin& y) {
-    return x.worth.against_other_poses > y.worth.against_other_poses;
-  });
+  std::stable_sort(ways.begin(), ways.end(), is_worth_more);
   return ways;
 }
 
-std::optional<WeighedJoin> JoinWeights::best_join(const NodeGroup& a, const NodeGroup& b) const {
-  const std::vector<WeighedJoin> ways = ways_to_join(a, b);
-  return ways.empty() ? std::nullopt : std::optional(ways.front());
+std::optional<WeighedJoin> JoinWeights::best_join(const NodeGroup& a, const NodeGroup& b,
+                                                  double least) const {
+  if (a.size() == 1 && b.size() == 1) return first_of(ways_of_pair(a.front(), b.front()));
+  std::vector<WeighedJoin> ways = weigh_proposals(a, b, kNegligible, least);
+  weigh_against_each_other(ways);
+  return first_of(ways);
+}
+
+std::optional<WeighedJoin> JoinWeights::best_way(const NodeGroup& a, const NodeGroup& b, double least) const {
+  return first_of(a.size() == 1 && b.size() == 1 ? ways_of_pair(a.front(), b.front())
+                                                 : weigh_proposals(a, b, 0.0, least));
 }
 
 double JoinWeights::probability_of_lying_so(const NodeGroup& a, const NodeGroup& b) const {

@@ -72,6 +72,19 @@ RC_GTEST_PROP(Se2, CompositionIsAssociative, (const SE2& a, const SE2& b, const 
   RC_ASSERT(near((a * b) * c, a * (b * c)));
 }
 
+RC_GTEST_PROP(ManyPointsTransform, ProductsAndInversesAreThoseOfTheSe2s,
+              (const SE2& T_a_b, const SE2& T_b_c)) {
+  const ManyPointsTransform product = ManyPointsTransform(T_a_b) * ManyPointsTransform(T_b_c);
+  const ManyPointsTransform back = product.inverse();
+  const SE2 expected = T_a_b * T_b_c;
+  for (const Point2& p : {Point2{0.0, 0.0}, Point2{3.0, -7.0}}) {
+    RC_ASSERT(near(product * p, expected * p));
+    RC_ASSERT(near(back * p, inverse(expected) * p));
+  }
+  RC_ASSERT(std::abs(product.cos() - std::cos(expected.theta)) < kTolerance);
+  RC_ASSERT(std::abs(product.sin() - std::sin(expected.theta)) < kTolerance);
+}
+
 RC_GTEST_PROP(Se2, KeepsDistances, (const SE2& T)) {
   const Point2 p{*between(-100.0, 100.0), *between(-100.0, 100.0)};
   const Point2 q{*between(-100.0, 100.0), *between(-100.0, 100.0)};

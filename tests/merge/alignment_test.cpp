@@ -202,12 +202,18 @@ TEST(Coverage, SharesAreThoseOfTheSmallerMap) {
   const OccupancyGrid building = test::draw_building(1);  // 18 m x 13 m
   const Coverage whole(building);
   const Coverage half(test::map_part(building, {0, 0, 9, 13}, {}));
-  EXPECT_NEAR(whole.in_common(half, {}).share, 1.0, 0.02);
-  EXPECT_NEAR(half.in_common(whole, {}).share, 1.0, 0.02);
-  EXPECT_NEAR(half.in_common(half, {4.5, 0.0, 0.0}).share, 0.5, 0.05);
-  EXPECT_EQ(half.in_common(half, {100.0, 0.0, 0.0}).share, 0.0);
+  const auto share = [](const Coverage& a, const Coverage& b, const SE2& T_a_b) {
+    return a.share_in_common(b, ManyPointsTransform(T_a_b));
+  };
+  EXPECT_NEAR(share(whole, half, {}), 1.0, 0.02);
+  EXPECT_NEAR(share(half, whole, {}), 1.0, 0.02);
+  EXPECT_NEAR(share(half, half, {4.5, 0.0, 0.0}), 0.5, 0.05);
+  EXPECT_EQ(share(half, half, {100.0, 0.0, 0.0}), 0.0);
+  for (double x = 0.0; x < 20.0; x += 0.5)  // the whole has nothing in common with the half from 18 m on
+    EXPECT_EQ(share(whole, half, {x, 0.0, 0.0}) > 0.0, x < 18.0) << x;
   EXPECT_NEAR(half.extent().side, 13.0, 0.3);
-  const std::vector<Point2> places = half.in_common(half, {4.5, 0.0, 0.0}, {0.0, 100.0, 0.0}).places;
+  const std::vector<Point2> places = half.places_in_common(half, ManyPointsTransform({4.5, 0.0, 0.0}),
+                                                           ManyPointsTransform({0.0, 100.0, 0.0}));
   EXPECT_FALSE(places.empty());
   for (const Point2& place : places) {
     EXPECT_GT(place.x, 4.0);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <random>
@@ -289,6 +290,82 @@ TEST(GroupSearch, IsThatOfTheLiteralOneToTheBit) {
     }
   }
   EXPECT_GT(joined, 100u);
+}
+
+/// The maps of a problem in two groups, as they lie in the world or nearly so.
+std::pair<NodeGroup, NodeGroup> two_groups(const JoinProblem& problem, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-30.0, 30.0);
+  std::pair<NodeGroup, NodeGroup> groups;
+  for (std::size_t map = 0; map < problem.maps.size(); ++map) {
+    const SE2 pose{uniform(random), uniform(random), uniform(random) / 10.0};
+    (map % 2 == 0 ? groups.first : groups.second).push_back({map, pose});
+  }
+  return groups;
+}
+
+TEST(JoinWeights, NoCandidateProposesABetterWayThanTheBest) {
+  std::size_t compared = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const JoinProblem problem = drawn(seed);
+    const JoinWeights weights(problem);
+    std::mt19937 random(seed);
+    const auto [a, b] = two_groups(problem, random);
+    const std::vector<WeighedJoin> ways = weights.ways_to_join(a, b);
+    const std::optional<WeighedJoin> best = weights.best_join(a, b);
+    ASSERT_EQ(best.has_value(), !ways.empty());
+    for (const PairCandidates& pair : problem.pairs) {
+      const auto in_a = std::find_if(a.begin(), a.end(), [&](const PlacedNode& node) {
+        return node.map == pair.fixed || node.map == pair.moving;
+      });
+      const auto in_b = std::find_if(b.begin(), b.end(), [&](const PlacedNode& node) {
+        return node.map == pair.fixed || node.map == pair.moving;
+      });
+      if (in_a == a.end() || in_b == b.end()) continue;  // of one group
+      for (const CandidateJoin& candidate : pair.candidates) {
+        if (candidate.log_odds < -6.0) continue;  // proposes nothing
+        const SE2 T = pair.fixed == in_a->map ? candidate.T_fixed_moving : inverse(candidate.T_fixed_moving);
+        const SE2 T_a_b = in_a->T_group_map * T * inverse(in_b->T_group_map);
+        const double worth = weights.worth_of(a, b, T_a_b).against_other_poses;
+        if (worth <= best->worth.against_other_poses) continue;
+        // Then it is left out for one beside it with which more pairs agree.
+        double nearest = 1e9;
+        for (const WeighedJoin& way : ways)
+          nearest = std::min(nearest, std::hypot(way.T_a_b.x - T_a_b.x, way.T_a_b.y - T_a_b.y));
+        EXPECT_LT(nearest, 10.0) << seed;
+      }
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 500u);
+}
+
+TEST(JoinWeights, TheBestWayIsTheFirstOfAll) {
+  std::size_t found = 0, left_out = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    const JoinProblem problem = drawn(seed);
+    const JoinWeights weights(problem);
+    std::mt19937 random(seed);
+    const auto [a, b] = two_groups(problem, random);
+    const std::vector<WeighedJoin> ways = weights.ways_to_join(a, b);
+    const std::optional<WeighedJoin> best = weights.best_join(a, b), way = weights.best_way(a, b);
+    ASSERT_EQ(best.has_value(), !ways.empty());
+    ASSERT_EQ(way.has_value(), !ways.empty());
+    if (ways.empty()) continue;
+    EXPECT_EQ(best->T_a_b, ways.front().T_a_b);
+    EXPECT_EQ(best->probability, ways.front().probability);
+    EXPECT_EQ(way->T_a_b, ways.front().T_a_b);
+    const double worth = way->worth.against_apart;
+    EXPECT_EQ(worth, ways.front().worth.against_apart);
+    for (const double least : {worth - 1.0, worth + 1.0, worth + 10.0, 100.0}) {
+      const std::optional<WeighedJoin> above = weights.best_way(a, b, least);
+      EXPECT_EQ(above.has_value(), weights.best_join(a, b, least).has_value());
+      EXPECT_TRUE(!above || above->T_a_b == way->T_a_b);
+      EXPECT_TRUE(above || least >= worth);
+      ++(above ? found : left_out);
+    }
+  }
+  EXPECT_GT(found, 50u);
+  EXPECT_GT(left_out, 60u);
 }
 
 }  // namespace
