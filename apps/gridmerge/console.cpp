@@ -8,10 +8,12 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <numbers>
 #include <stdexcept>
 #include <system_error>
 
+#include "grid/parallel.hpp"
 #include "gridmerge/bag/any_map.hpp"
 #include "io/atomic_file.hpp"
 
@@ -133,7 +135,34 @@ void try_output_file(const std::string& path, const std::vector<std::filesystem:
 }
 
 LoadedMap MapReader::read(const std::string& path) {
-  LoadedMap map = load_any_map(path, options_);
+  return take(path, load_any_map(path, options_));
+}
+
+std::vector<LoadedMap> MapReader::read_all(const std::vector<std::string>& paths, int threads) {
+  constexpr std::size_t kAtOnce = 16;  // between two looks at how much is done
+  std::vector<LoadedMap> maps(paths.size());
+  std::vector<std::exception_ptr> faults(paths.size());
+  for (std::size_t begin = 0; begin < paths.size(); begin += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, paths.size() - begin);
+    console_.progress("reading maps", static_cast<double>(begin) / static_cast<double>(paths.size()));
+    internal::with_threads(threads, [&] {
+      internal::parallel_for(count, [&](std::size_t i) {
+        try {
+          maps[begin + i] = load_any_map(paths[begin + i], options_);
+        } catch (const FileError&) {
+          faults[begin + i] = std::current_exception();
+        }
+      });
+    });
+    for (std::size_t i = begin; i < begin + count; ++i) {
+      if (faults[i]) std::rethrow_exception(faults[i]);
+      maps[i] = take(paths[i], std::move(maps[i]));
+    }
+  }
+  return maps;
+}
+
+LoadedMap MapReader::take(const std::string& path, LoadedMap map) {
   for (const MapWarning& warning : map.warnings) warned_.push_back({path, warning});
   console_.remark(fmt::format("read {}: {} x {} cells of {} m", path, map.grid.width, map.grid.height,
                               map.grid.resolution));

@@ -70,10 +70,17 @@ class MapReader {
   /// load_any_map().
   LoadedMap read(const std::string& path);
 
+  /// The same of several, in their order. Some are read at a time, by up to `threads` threads; 0 = one per
+  /// core.
+  std::vector<LoadedMap> read_all(const std::vector<std::string>& paths, int threads);
+
   /// Tells the warnings of all maps that were read since it was called last.
   void tell_warnings();
 
  private:
+  /// Keeps the warnings, and tells that the map was read.
+  LoadedMap take(const std::string& path, LoadedMap map);
+
   struct Warned {
     std::string path;
     MapWarning warning;

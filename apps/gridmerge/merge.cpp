@@ -18,6 +18,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "exports.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/bag/any_map.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/json.hpp"
@@ -89,10 +90,7 @@ void tell_of_copies(const MergeCommandOptions& options, const std::vector<Occupa
 Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
   Inputs inputs;
   MapReader reader(options.load, console);
-  for (const std::string& path : options.maps) {
-    console.progress("reading maps",
-                     static_cast<double>(inputs.maps.size()) / static_cast<double>(options.maps.size()));
-    LoadedMap map = reader.read(path);
+  for (LoadedMap& map : reader.read_all(options.maps, options.common.threads)) {
     inputs.maps.push_back(std::move(map.grid));
     inputs.files.insert(inputs.files.end(), map.files.begin(), map.files.end());
   }
@@ -207,7 +205,9 @@ int run_merge(const MergeCommandOptions& options) {
   if (inputs.plan)
     result = inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
   console.progress("writing the result");
-  write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
+  internal::with_threads(options.common.threads, [&] {
+    write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
+  });
   matcher.write_trace();
   const AskedMerge asked{options.maps, options.search, options.elastic};
   const std::string hints = scale_hints(options, inputs.maps, result, console) +

@@ -17,4 +17,11 @@ GRIDMERGE_INTERNAL_EXPORT void with_threads(int threads, const std::function<voi
 /// passed on.
 GRIDMERGE_INTERNAL_EXPORT void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
+/// The same for every row in [first, end) of a grid.
+inline void parallel_rows(int first, int end, const std::function<void(int)>& body) {
+  if (first < end)
+    parallel_for(static_cast<std::size_t>(end - first),
+                 [&](std::size_t i) { body(first + static_cast<int>(i)); });
+}
+
 }  // namespace gridmerge::internal

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "grid/logistic.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/similarity/lattice.hpp"
 #include "merge/log_odds.hpp"
 
@@ -28,8 +28,7 @@ struct Totals {
 };
 
 void add(const LogOddsPatch& patch, const Lattice& lattice, Totals& total) {
-  for (int row = 0; row < patch.height; ++row) {
-    throw_if_cancelled();
+  parallel_rows(0, patch.height, [&](int row) {
     std::size_t target = static_cast<std::size_t>(patch.row + row) * static_cast<std::size_t>(lattice.width) +
                          static_cast<std::size_t>(patch.column);
     for (int column = 0; column < patch.width; ++column, ++target) {
@@ -40,7 +39,28 @@ void add(const LogOddsPatch& patch, const Lattice& lattice, Totals& total) {
       seen = static_cast<std::uint8_t>(seen | (seen != 0 ? kSawTwice : 0) |
                                        (log_odds > 0 ? kSawOccupied : kSawFree));
     }
+  });
+}
+
+// Cells of a row that several maps know.
+struct SharedCells {
+  std::int64_t agreeing = 0;
+  std::int64_t conflicting = 0;
+};
+
+SharedCells draw_row(const Totals& total, int row, OccupancyGrid& fused) {
+  SharedCells shared;
+  const std::size_t begin = fused.index(0, row);
+  for (std::size_t i = begin; i < begin + static_cast<std::size_t>(fused.width); ++i) {
+    const bool conflict = (total.witnesses[i] & kSawFree) != 0 && (total.witnesses[i] & kSawOccupied) != 0;
+    if (conflict) ++shared.conflicting;
+    if (!conflict && (total.witnesses[i] & kSawTwice) != 0) ++shared.agreeing;
+    if (total.sum[i] == 0) continue;
+    const double log_odds = std::clamp(total.sum[i], -kLimit, kLimit) / kLogOddsPerNat;
+    fused.cells[i] = log_odds > 0.0 ? Cell::occupied : Cell::free;
+    fused.probability[i] = static_cast<float>(logistic(log_odds));
   }
+  return shared;
 }
 
 std::optional<EqualCells> measure_omega(const OccupancyGrid& lattice, const std::vector<PlacedMap>& inputs) {
@@ -71,15 +91,12 @@ FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution,
     add(draw_log_odds(inputs[i], lattice, deformation), lattice, total);
   }
 
-  for (std::size_t i = 0; i < fused.grid.cells.size(); ++i) {
-    if (i % static_cast<std::size_t>(lattice.width) == 0) throw_if_cancelled();
-    const bool conflict = (total.witnesses[i] & kSawFree) != 0 && (total.witnesses[i] & kSawOccupied) != 0;
-    if (conflict) ++fused.conflicting;
-    if (!conflict && (total.witnesses[i] & kSawTwice) != 0) ++fused.agreeing;
-    if (total.sum[i] == 0) continue;
-    const double log_odds = std::clamp(total.sum[i], -kLimit, kLimit) / kLogOddsPerNat;
-    fused.grid.cells[i] = log_odds > 0.0 ? Cell::occupied : Cell::free;
-    fused.grid.probability[i] = static_cast<float>(logistic(log_odds));
+  std::vector<SharedCells> shared(static_cast<std::size_t>(lattice.height));
+  parallel_rows(0, lattice.height,
+                [&](int row) { shared[static_cast<std::size_t>(row)] = draw_row(total, row, fused.grid); });
+  for (const SharedCells& of_row : shared) {
+    fused.conflicting += of_row.conflicting;
+    fused.agreeing += of_row.agreeing;
   }
   if (!is_bent) fused.omega = measure_omega(fused.grid, inputs);
   return fused;

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "grid/box.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 
 namespace gridmerge::internal {
@@ -121,12 +122,10 @@ class LogOddsSource {
         height_(map.height),
         stride_(static_cast<std::size_t>(map.width) + 2),
         log_odds_(stride_ * (static_cast<std::size_t>(map.height) + 2), 0) {
-    for (int row = 0; row < height_; ++row) {
-      throw_if_cancelled();
-      for (int column = 0; column < width_; ++column) {
+    parallel_rows(0, height_, [&](int row) {
+      for (int column = 0; column < width_; ++column)
         log_odds_[offset(column, row)] = cell_log_odds(map, map.index(column, row));
-      }
-    }
+    });
   }
 
   // What the map says at a point, in its own cells from its lower-left corner.
@@ -202,9 +201,8 @@ void sample_map(const PlacedMap& input, const Lattice& lattice, int samples, Log
   const double s = std::sin(T_grid_output.theta) / map_resolution;
   const double shift_x = T_grid_output.x / map_resolution;
   const double shift_y = T_grid_output.y / map_resolution;
-  std::size_t target = 0;
-  for (int row = patch.row; row < patch.row + patch.height; ++row) {
-    throw_if_cancelled();
+  parallel_rows(patch.row, patch.row + patch.height, [&](int row) {
+    std::size_t target = patch.index(0, row - patch.row);
     for (int column = patch.column; column < patch.column + patch.width; ++column, ++target) {
       for (int j = 0; j < samples; ++j) {
         const double y = lattice.corner.y + (row + (j + 0.5) / samples) * lattice.resolution;
@@ -214,7 +212,7 @@ void sample_map(const PlacedMap& input, const Lattice& lattice, int samples, Log
         }
       }
     }
-  }
+  });
 }
 
 // From the output's frame to a bent map's, at the nodes of a coarse grid over a patch; linear between them.
@@ -261,9 +259,8 @@ void sample_bent_map(const PlacedMap& input, const Deformation& deformation, con
                      int samples, LogOddsPatch& patch) {
   const LogOddsSource source(*input.map);
   const StraightenedGrid straightened(input, deformation, lattice, patch);
-  std::size_t target = 0;
-  for (int row = 0; row < patch.height; ++row) {
-    throw_if_cancelled();
+  parallel_rows(0, patch.height, [&](int row) {
+    std::size_t target = patch.index(0, row);
     for (int column = 0; column < patch.width; ++column, ++target) {
       for (int j = 0; j < samples; ++j) {
         for (int i = 0; i < samples; ++i) {
@@ -272,7 +269,7 @@ void sample_bent_map(const PlacedMap& input, const Deformation& deformation, con
         }
       }
     }
-  }
+  });
 }
 
 // Drops every known cell of the map into the patch's cell that its centre lies in.

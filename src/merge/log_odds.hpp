@@ -40,10 +40,11 @@ struct LogOddsPatch {
   int height = 0;
   std::vector<std::int16_t> log_odds;  ///< row-major, width * height values, in 1 / kLogOddsPerNat nat
 
-  std::int16_t at(int patch_column, int patch_row) const {
-    return log_odds[static_cast<std::size_t>(patch_row) * static_cast<std::size_t>(width) +
-                    static_cast<std::size_t>(patch_column)];
+  std::size_t index(int patch_column, int patch_row) const {
+    return static_cast<std::size_t>(patch_row) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(patch_column);
   }
+  std::int16_t at(int patch_column, int patch_row) const { return log_odds[index(patch_column, patch_row)]; }
 };
 
 /// Draws one input on the lattice. The rules:

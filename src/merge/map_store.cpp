@@ -16,10 +16,9 @@ MapStore::Input::Input(std::shared_ptr<const OccupancyGrid> map)
   if (is_mostly_painted(*grid)) grid = std::make_shared<const OccupancyGrid>(without_painted(*grid));
 }
 
-MapStore::MapId MapStore::add(std::shared_ptr<const OccupancyGrid> map,
+MapStore::MapId MapStore::add(std::unique_ptr<const Input> input,
                               const std::optional<KnownPose>& known_pose) {
   if (known_pose) validate(*known_pose);
-  auto input = std::make_unique<const Input>(std::move(map));  // throws for an invalid map
   const MapId id = next_++;
   inputs_.emplace(id, std::move(input));
   if (known_pose) known_poses_[id] = *known_pose;

@@ -23,6 +23,7 @@ class MapStore {
 
   /// A map with all that does not depend on the others.
   struct Input {
+    /// Throws std::invalid_argument for an invalid map.
     explicit Input(std::shared_ptr<const OccupancyGrid> map);
 
     std::shared_ptr<const OccupancyGrid> grid;  ///< without what somebody painted black
@@ -30,10 +31,10 @@ class MapStore {
     Coverage coverage;
   };
 
-  /// Throws std::invalid_argument for an invalid map or pose, and is then as before.
-  MapId add(std::shared_ptr<const OccupancyGrid> map, const std::optional<KnownPose>& known_pose);
+  /// Throws std::invalid_argument for an invalid pose, and is then as before.
+  MapId add(std::unique_ptr<const Input> input, const std::optional<KnownPose>& known_pose);
 
-  /// Throw std::out_of_range for an unknown id, and as add().
+  /// Throw std::out_of_range for an unknown id, and for an invalid map or pose as above.
   void replace(MapId id, std::shared_ptr<const OccupancyGrid> map);
   void set_known_pose(MapId id, const std::optional<KnownPose>& known_pose);
   void remove(MapId id);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "grid/parallel.hpp"
@@ -42,6 +43,10 @@ MergeOptions checked(MergeOptions options) {
   return options;
 }
 
+std::unique_ptr<const MapStore::Input> prepare(OccupancyGrid map) {
+  return std::make_unique<const MapStore::Input>(std::make_shared<const OccupancyGrid>(std::move(map)));
+}
+
 }  // namespace
 
 class __attribute__((visibility("hidden"))) Merger::State {  // or it is as public as Merger
@@ -52,8 +57,8 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
         groups_(options_.match),
         choice_(options_.max_missed) {}
 
-  MapId add(std::shared_ptr<const OccupancyGrid> map, std::optional<KnownPose> known_pose) {
-    const MapId id = store_.add(std::move(map), known_pose);
+  MapId add(std::unique_ptr<const MapStore::Input> input, const std::optional<KnownPose>& known_pose) {
+    const MapId id = store_.add(std::move(input), known_pose);
     first_.reset();
     return id;
   }
@@ -261,7 +266,7 @@ Merger::Merger(Merger&&) noexcept = default;
 Merger& Merger::operator=(Merger&&) noexcept = default;
 
 Merger::MapId Merger::add(OccupancyGrid map, std::optional<KnownPose> known_pose) {
-  return state_->add(std::make_shared<const OccupancyGrid>(std::move(map)), known_pose);
+  return state_->add(prepare(std::move(map)), known_pose);
 }
 
 void Merger::update(MapId id, OccupancyGrid map) {
@@ -319,6 +324,32 @@ MergeResult Merger::solve_soon(std::size_t most_thorough) {
 
 bool Merger::is_complete() const {
   return state_->is_complete();
+}
+
+Merger merger_of(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
+                 const std::vector<std::optional<KnownPose>>& known_poses) {
+  if (known_poses.size() > maps.size()) throw std::invalid_argument("there are more known poses than maps");
+  Merger merger(options);
+  std::vector<std::unique_ptr<const MapStore::Input>> inputs(maps.size());
+  std::vector<std::string> faults(maps.size());
+  with_threads(options.match.threads, [&] {
+    parallel_for(maps.size(), [&](std::size_t i) {
+      try {
+        inputs[i] = prepare(maps[i]);
+      } catch (const std::invalid_argument& error) {
+        faults[i] = error.what();
+      }
+    });
+  });
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    try {
+      if (!inputs[i]) throw std::invalid_argument(faults[i]);
+      merger.state_->add(std::move(inputs[i]), i < known_poses.size() ? known_poses[i] : std::nullopt);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("map " + std::to_string(i) + ": " + error.what());
+    }
+  }
+  return merger;
 }
 
 }  // namespace gridmerge

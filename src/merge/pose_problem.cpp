@@ -12,7 +12,7 @@ namespace gridmerge::internal {
 namespace {
 
 /// Jacobians of more poses than this are kept sparse.
-constexpr std::size_t kDensePoses = 20;
+constexpr std::size_t kDensePoses = 5;
 
 /// How far two poses put the moving frame from where it was measured: the pivot's displacement and the turn,
 /// in standard deviations.

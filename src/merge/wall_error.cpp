@@ -70,7 +70,8 @@ bool WallError::Evaluate(const double* const* poses, double* residuals, double**
     residuals[i] = weight_ * flattened * field.distance / root / sd_;
     if (jacobians == nullptr) continue;
     // Of the residual by u, through the distance.
-    const double by_distance = weight_ * std::pow(flattened / root, 3) / sd_ / fixed_.cell;
+    const double ratio = flattened / root;
+    const double by_distance = weight_ * ratio * ratio * ratio / sd_ / fixed_.cell;
     const double gx = by_distance * (cg * field.dx + sg * field.dy);
     const double gy = by_distance * (-sg * field.dx + cg * field.dy);
     const double tx = cf * gx - sf * gy, ty = sf * gx + cf * gy;  // by the world's x and y

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "grid/parallel.hpp"
 #include "report/style.hpp"
 
 namespace gridmerge::internal {
@@ -31,7 +32,7 @@ std::vector<Sighting> sight(const MapPanel& panel, const Lattice& lattice) {
     const LogOddsPatch patch = i < panel.deformations.size()
                                    ? draw_log_odds(panel.maps[i], lattice, panel.deformations[i])
                                    : draw_log_odds(panel.maps[i], lattice);
-    for (int row = 0; row < patch.height; ++row) {
+    parallel_rows(0, patch.height, [&](int row) {
       for (int column = 0; column < patch.width; ++column) {
         const std::int16_t log_odds = patch.at(column, row);
         if (log_odds == 0) continue;
@@ -43,7 +44,7 @@ std::vector<Sighting> sight(const MapPanel& panel, const Lattice& lattice) {
           (log_odds > 0 ? cell.first_occupied : cell.first_free) = static_cast<std::uint32_t>(i);
         ++count;
       }
-    }
+    });
   }
   return sightings;
 }
@@ -59,7 +60,7 @@ Canvas draw_maps(const MapPanel& panel, const Lattice& lattice, int zoom) {
   const std::vector<Sighting> sightings = sight(panel, lattice);
   Canvas canvas(lattice.width * zoom + 2 * kMargin, lattice.height * zoom + 2 * kMargin,
                 PreviewColours::kUnknown);
-  for (int row = 0; row < lattice.height; ++row) {
+  parallel_rows(0, lattice.height, [&](int row) {
     for (int column = 0; column < lattice.width; ++column) {
       const Sighting& cell =
           sightings[static_cast<std::size_t>(row) * static_cast<std::size_t>(lattice.width) +
@@ -67,7 +68,7 @@ Canvas draw_maps(const MapPanel& panel, const Lattice& lattice, int zoom) {
       canvas.fill(kMargin + column * zoom, kMargin + (lattice.height - 1 - row) * zoom, zoom, zoom,
                   colour_of(cell, panel.colours));
     }
-  }
+  });
   return canvas;
 }
 

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/report/json.hpp"
@@ -145,8 +146,16 @@ void write_merge_output(const fs::path& directory, const std::vector<fs::path>& 
   const std::vector<Component>& components = merge.result.components;
   for (std::size_t i = 0; i < components.size(); ++i)
     add_map(files, components[i].fused.grid, component_file(i));
-  files.add(kPreview, preview_png(merge));
-  files.add(kReport, report_page(merge));
+  std::string preview, report;
+  parallel_for(2, [&](std::size_t i) {
+    if (i == 0) {
+      preview = preview_png(merge);
+    } else {
+      report = report_page(merge);
+    }
+  });
+  files.add(kPreview, preview);
+  files.add(kReport, report);
   files.add(kTransforms, transforms_json(merge.names, merge.result));
   remove_stale_maps(files, directory, components.size());
   files.commit();

@@ -31,8 +31,10 @@ struct Choice {
   /// `all` maps, with what is known of the poses of some.
   explicit Choice(const std::vector<std::optional<KnownPose>>& poses, double max_missed = 0.5)
       : choice(max_missed) {
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      ids.push_back(store.add(std::make_shared<const OccupancyGrid>(tiny(static_cast<int>(i))), poses[i]));
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      auto map = std::make_shared<const OccupancyGrid>(tiny(static_cast<int>(i)));
+      ids.push_back(store.add(std::make_unique<const MapStore::Input>(std::move(map)), poses[i]));
+    }
     choice.prepare(store, ids);
     for (std::size_t i = 0; i < ids.size(); ++i) alone.groups.push_back({{i, {}}});
   }

@@ -19,6 +19,13 @@ struct DueMatch {
   SearchMethod search = SearchMethod::exhaustive;  ///< how it is to be made
 };
 
+class Merger;
+
+/// A merger that holds these maps, the ids in their order, with what merge() takes beside them. Throws as
+/// merge() does.
+GRIDMERGE_EXPORT Merger merger_of(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
+                                  const std::vector<std::optional<KnownPose>>& known_poses = {});
+
 /// merge() for maps that come one after the other, or grow: pairs that have not changed are not matched
 /// again. The result is the same as that of merge() with all the maps that are in it, in the order in which
 /// they were added.
@@ -106,13 +113,11 @@ class GRIDMERGE_EXPORT Merger {
   bool is_complete() const;
 
  private:
+  friend Merger merger_of(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
+                          const std::vector<std::optional<KnownPose>>& known_poses);
+
   class State;
   std::unique_ptr<State> state_;
 };
-
-/// A merger that holds these maps, the ids in their order, with what merge() takes beside them. Throws as
-/// merge() does.
-GRIDMERGE_EXPORT Merger merger_of(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
-                                  const std::vector<std::optional<KnownPose>>& known_poses = {});
 
 }  // namespace gridmerge
