@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/report/json.hpp"
@@ -25,6 +26,7 @@ constexpr int kLegendGap = 6;  // between its lines [pixels]
 constexpr int kPageMinWidth = 1000, kPageMaxWidth = 2400;
 constexpr int kComponentMinSide = 1400, kComponentMaxSide = kPageMaxWidth - 2 * kGap;
 constexpr int kLeftOutMinSide = 280, kLeftOutMaxSide = 560;
+constexpr std::size_t kMaxComponentPanels = 12;  // or the picture of a fleet is 40,000 pixels high
 constexpr std::size_t kMaxLeftOutPanels = 12;
 
 MapPanel component_panel(const std::vector<OccupancyGrid>& maps, const MergeResult& result,
@@ -98,9 +100,10 @@ Canvas legend_entry(Colour left, Colour right, const std::string& label, int wid
   return canvas;
 }
 
-std::vector<Canvas> legend(const std::vector<std::string>& names, const MergeResult& result, int width) {
+std::vector<Canvas> legend(const std::vector<std::string>& names, std::span<const Component> components,
+                           int width) {
   std::vector<Canvas> entries;
-  for (const Component& component : result.components) {
+  for (const Component& component : components) {
     for (const Member& member : component.members) {
       const Colour colour = map_colour(member.map);
       entries.push_back(legend_entry(colour, free_tint(colour), names.at(member.map), width));
@@ -162,11 +165,14 @@ std::string preview_png(const NamedMerge& merge) {
   const TextSize size = result.components.empty() ? TextSize::small : TextSize::large;
   std::vector<Canvas> blocks;
   int width = kPageMinWidth;
-  for (std::size_t i = 0; i < result.components.size(); ++i) {
+  const std::size_t components = std::min(result.components.size(), kMaxComponentPanels);
+  for (std::size_t i = 0; i < components; ++i) {
     blocks.push_back(draw_panel(component_panel(maps, result, i), size));
     width = std::max(width, blocks.back().width());
   }
-  const std::vector<Canvas> entries = legend(called, result, width);
+  if (const std::size_t more = result.components.size() - components; more > 0)
+    blocks.push_back(heading(fmt::format("And {} more merged maps", more), size));
+  const std::vector<Canvas> entries = legend(called, std::span(result.components).first(components), width);
   if (!entries.empty()) blocks.push_back(flow(entries, width, kLegendGap));
 
   std::vector<Canvas> left_out;

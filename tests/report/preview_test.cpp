@@ -238,6 +238,22 @@ TEST(Preview, ManyMapsStayReadable) {
   EXPECT_LT(picture.image.height, 4000);
 }
 
+TEST(Preview, OfManyComponentsTheFirstTwelveAreShown) {
+  std::vector<OccupancyGrid> maps;
+  std::vector<std::vector<Member>> components;
+  for (std::size_t i = 0; i < 50; ++i) {
+    maps.insert(maps.end(), {map_from({"#."}), map_from({".."})});
+    components.push_back({{2 * i, {}}, {2 * i + 1, {}}});
+  }
+  const Picture picture = preview(maps, components);
+  EXPECT_EQ(picture.cells(Colours::kDisagreement), 12u) << "one in each";
+  components.resize(12);
+  maps.resize(24);
+  const int note = picture.image.height - preview(maps, components).image.height;
+  EXPECT_GT(note, 0);
+  EXPECT_LT(note, 200);
+}
+
 TEST(Preview, OddMapsAndNames) {
   std::vector<OccupancyGrid> maps;
   for (std::size_t i = 0; i < test::kHostileNames.size(); ++i)
