@@ -184,7 +184,10 @@ class Team:
         )
 
     def forget(self, robot: str) -> None:
-        """The robot is gone, and its map with it."""
+        """The robot is gone, and its map with it.
+
+        From now on answer() gives no pose that is of this map; the merged map goes without it from the next answer on.
+        """
         self._core.forget(_arguments.text("robot", robot))
 
     def set_known_pose(self, robot: str, pose: InitialPose | PoseLike | None, *, fixed: bool = False) -> None:

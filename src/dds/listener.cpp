@@ -274,7 +274,7 @@ void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapSa
     if (heard.maps == 0 || restarted) heard.heard_first = now;
     heard.publisher = writer.guid;
     heard.frame = frame;
-    heard.stamp = stamp;
+    heard.stamp = robot.map_stamp = stamp;
     heard.cells = cells;
     if (heard.maps++ == 0) ++news_;
   } catch (const RefusedMessage& error) {
@@ -292,9 +292,10 @@ void MapListener::take_part(Robot& robot, const RemoteWriter& writer, const Upda
     if (part.frame != robot.heard.frame)
       throw RefusedMessage(
           fmt::format("an update in the frame {}, of a map in {}", part.frame, robot.heard.frame));
-    if (part.stamp < robot.heard.stamp) return;  // the map has it already
+    if (part.stamp < robot.map_stamp) return;  // the map has it already
     if (!callbacks_.part(robot.heard.name, part))
       throw RefusedMessage("an update that reaches beyond its map");
+    robot.heard.stamp = part.stamp;
     ++robot.heard.parts;
   } catch (const RefusedMessage& error) {
     refuse(robot, error.what());

@@ -31,8 +31,8 @@ struct HeardRobot {
   std::string name;
   std::string topic;
   std::string frame;           // of its newest map; empty before the first
-  Stamp stamp;                 // likewise
-  std::size_t cells = 0;       // likewise
+  Stamp stamp;                 // of what was taken last, a map or an update
+  std::size_t cells = 0;       // of its newest map
   std::uint64_t maps = 0;      // that were taken
   std::uint64_t parts = 0;     // likewise, of updates
   std::uint64_t refused = 0;   // maps and updates that were not
@@ -88,6 +88,7 @@ class MapListener {
 
   struct Robot {
     HeardRobot heard;
+    Stamp map_stamp;  // of the newest whole map
     Readers maps;
     Readers parts;
     std::optional<dds_instance_handle_t> followed;  // the writer whose maps count

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/online/team.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <deque>
@@ -24,6 +25,30 @@ constexpr std::size_t kEventsKept = 1000;
 }  // namespace
 
 using namespace internal;
+
+namespace {
+
+/// The answer, but without poses of robots that were forgotten since: they are of maps that are gone.
+std::shared_ptr<const TeamAnswer> without_forgotten(std::shared_ptr<const TeamAnswer> answer,
+                                                    const News& news) {
+  const auto is_forgotten = [&](const RobotStatus& status) {
+    const auto found = news.find(status.name);
+    return found != news.end() && found->second.is_gone;
+  };
+  if (std::none_of(answer->robots.begin(), answer->robots.end(), is_forgotten)) return answer;
+  auto told = std::make_shared<TeamAnswer>(*answer);
+  for (RobotStatus& status : told->robots) {
+    if (!is_forgotten(status)) continue;
+    const std::string name = std::move(status.name);
+    status = {};
+    status.name = name;
+    status.why = "it was forgotten, and what was heard since is being looked at";
+  }
+  told->settled = false;
+  return told;
+}
+
+}  // namespace
 
 void validate(const TeamOptions& options) {
   if (!(options.search_again >= 0.0 && options.search_again <= 1.0))
@@ -106,6 +131,7 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
     RobotNews news;
     news.is_gone = true;
     put(robot, std::move(news));
+    answer_ = without_forgotten(std::move(answer_), news_);
   }
 
   void set_known_pose(const std::string& robot, std::optional<KnownPose> known_pose) {
@@ -215,7 +241,7 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
       if (answer) {
         is_all_done_ = answer->settled || is_quiet;
         keep_events(answer->events);
-        answer_ = std::move(answer);
+        answer_ = without_forgotten(std::move(answer), news_);
       }
       changed_.notify_all();
     }

@@ -160,6 +160,18 @@ TEST_F(NodeTest, TakesAnotherFrameForARobotThatStartedAnew) {
   EXPECT_TRUE(diagnosed("b", "frame", "b/map_2"));
 }
 
+TEST_F(NodeTest, PublishesNoTransformOfANewFrameFromAnOldPose) {
+  start();
+  merge_two();
+  ASSERT_TRUE(comes_true([&] { return peer->transforms().contains("b/map"); }));
+  b->publish(map_of(3, "b/map_2"));  // another building
+  ASSERT_TRUE(diagnosed("b", "frame", "b/map_2"));
+  // Told with the new frame or later, and the pose of the old one never with it.
+  EXPECT_NE(diagnosis("b").values["state"], "placed");
+  ASSERT_TRUE(diagnosed("b", "state", "left_out")) << node->lines();
+  EXPECT_FALSE(peer->transforms().contains("b/map_2"));
+}
+
 TEST_F(NodeTest, HearsOnePublisherOfATopic) {
   start();
   merge_two();
@@ -212,9 +224,15 @@ TEST_F(NodeTest, TakesUpdatesOfItsPublisher) {
   RawUpdate update;
   update.frame = "b/map";
   update.width = 2;
+  update.seconds = 7;
   update.data = {100, 100};
   peer->publish_update("/b/map_updates", update);
   EXPECT_TRUE(diagnosed("b", "updates", "1")) << node->lines();
+  // It is in the merged map, whose time it is now.
+  EXPECT_TRUE(comes_true([&] {
+    const std::optional<RawMap> merged = peer->take_map("/merged_map");
+    return merged && merged->seconds == 7;
+  }));
   update.frame = "a/map";
   peer->publish_update("/b/map_updates", update);
   EXPECT_TRUE(diagnosed("b", "last refusal", "an update in the frame a/map, of a map in b/map"));

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "explorers.hpp"
 #include "support/effort.hpp"
@@ -145,6 +146,34 @@ TEST(Team, ForgetsRobots) {
   ASSERT_TRUE(team.wait_until_settled(kLong));
   EXPECT_TRUE(team.answer()->components.empty());
   EXPECT_EQ(team.answer()->robots.size(), 1u);
+}
+
+TEST(Team, SaysNothingOfWhereAForgottenMapLay) {
+  const Explorers explorers;
+  TeamOptions options;
+  options.quiet = 10ms;
+  Team team(options);
+  team.hear("anna", explorers.map(0, 5));
+  team.hear("bert", explorers.map(1, 5));
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  const auto bert = [&] {  // who is last, if there is one
+    const auto answer = team.answer();
+    return answer->robots.size() < 2 ? RobotStatus{} : answer->robots.at(1);
+  };
+  ASSERT_EQ(bert().state, RobotState::placed);
+  // Work on what was heard before may be going on, and ends with an answer of its own.
+  OccupancyGrid changed = explorers.map(0, 5), elsewhere = explorers.map(3, 5);  // of another building
+  for (int i = 0; i < 5; ++i) {
+    changed.cells[static_cast<std::size_t>(i)] = Cell::occupied;
+    team.hear("anna", changed);
+  }
+  team.forget("bert");
+  team.hear("bert", std::move(elsewhere));
+  do {
+    EXPECT_NE(bert().state, RobotState::placed);
+    EXPECT_EQ(bert().component, std::nullopt);
+  } while (!team.wait_until_settled(1ms));
+  EXPECT_EQ(bert().state, RobotState::left_out);
 }
 
 TEST(Team, RefusesWhatMakesNoSense) {

@@ -70,7 +70,8 @@ class GRIDMERGE_EXPORT Team {
   /// another order or started anew.
   void hear_age(const std::string& robot, TeamTime heard_first);
 
-  /// The robot is gone, and its map with it.
+  /// The robot is gone, and its map with it. From now on answer() gives no pose that is of this map; the
+  /// merged map goes without it from the next answer on. O(robots).
   void forget(const std::string& robot);
 
   /// What is known of where a robot's map lies, heard or not yet. Throws std::invalid_argument as merge().
