@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <csignal>
 #include <stdexcept>
+#include <tuple>
 
 #include "gridmerge/grid/cancellation.hpp"
 
@@ -82,11 +83,18 @@ Interrupt::Interrupt() {
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe to wait for signals");
   read_end_ = ends[0];
   write_end = ends[1];
+  static_assert(std::tuple_size_v<decltype(before_)> == kSignals.size());
+  for (std::size_t i = 0; i < kSignals.size(); ++i) ::sigaction(kSignals[i], nullptr, &before_[i]);
   handle(on_signal, SA_RESTART);
 }
 
 Interrupt::~Interrupt() {
-  handle(SIG_DFL, 0);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    struct sigaction now {};
+    // After a first signal, the next one is to end the program still.
+    if (::sigaction(kSignals[i], nullptr, &now) == 0 && now.sa_handler == on_signal)
+      ::sigaction(kSignals[i], &before_[i], nullptr);
+  }
   ::close(write_end.exchange(-1));
   ::close(read_end_);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <csignal>
 #include <functional>
 
 namespace gridmerge::cli {
@@ -11,7 +13,8 @@ namespace gridmerge::cli {
 int run_interruptibly(const std::function<int()>& work);
 
 /// Waits for Ctrl-C (SIGINT), SIGTERM or SIGHUP. While it lives, the first of these does not end the program;
-/// a second one does, the same or another. One at a time.
+/// a second one does, the same or another. Its end gives back to the others what they did before. One at a
+/// time.
 class Interrupt {
  public:
   /// Throws std::runtime_error when the system denies it.
@@ -26,6 +29,8 @@ class Interrupt {
   void raise() const;
 
  private:
+  /// What the signals did before, in the order of the list that interrupt.cpp has.
+  std::array<struct sigaction, 3> before_{};
   int read_end_ = -1;
 };
 

@@ -24,6 +24,7 @@
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "known_poses.hpp"
+#include "merge/copies.hpp"
 #include "merge_summary.hpp"
 #include "plan.hpp"
 #include "scale_hint.hpp"
@@ -58,20 +59,20 @@ struct Inputs {
 };
 
 /// A map that is given twice is no second opinion. Says so once for names and once for copies.
+/// Maps of which both have known poses count each, equal or not.
 void tell_of_copies(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
-                    Console& console) {
+                    const std::vector<std::optional<KnownPose>>& known_poses, Console& console) {
   std::vector<std::string> twice;   // named before
   std::vector<std::string> copies;  // of another file's cells
-  const auto has_equal_cells = [&](std::size_t i, std::size_t j) {
-    return maps[i].width == maps[j].width && maps[i].resolution == maps[j].resolution &&
-           maps[i].cells == maps[j].cells;
+  const auto is_copy = [&](std::size_t i, std::size_t j) {
+    return internal::has_equal_cells(maps[i], maps[j]) && !(known_poses[i] && known_poses[j]);
   };
   for (std::size_t i = 1; i < maps.size(); ++i) {
     bool is_twice = false;
     std::optional<std::size_t> original;
     for (std::size_t j = 0; j < i; ++j) {
       is_twice = is_twice || is_same_map(options.maps[i], options.maps[j]);
-      if (!original && has_equal_cells(i, j)) original = j;
+      if (!original && is_copy(i, j)) original = j;
     }
     if (!(is_twice || original) || count_cells(maps[i]).known() == 0) continue;
     if (is_twice) {
@@ -87,7 +88,7 @@ void tell_of_copies(const MergeCommandOptions& options, const std::vector<Occupa
   if (!copies.empty()) console.warn(fmt::format("copies, which count once: {}", fmt::join(copies, ", ")));
 }
 
-Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
+Inputs load_inputs(const MergeCommandOptions& options, const KnownPoses& known_poses, Console& console) {
   Inputs inputs;
   MapReader reader(options.load, console);
   for (LoadedMap& map : reader.read_all(options.maps, options.common.threads)) {
@@ -99,7 +100,7 @@ Inputs load_inputs(const MergeCommandOptions& options, Console& console) {
     inputs.files.insert(inputs.files.end(), inputs.plan->files().begin(), inputs.plan->files().end());
   }
   reader.tell_warnings();
-  tell_of_copies(options, inputs.maps, console);
+  tell_of_copies(options, inputs.maps, known_poses.poses(), console);
   return inputs;
 }
 
@@ -174,7 +175,7 @@ int run_shard(const MergeCommandOptions& options) {
   Console console(options.common);
   const KnownPoses known_poses(options.known, options.maps, console);
   CachedEngine cached(options.cache, console);
-  const Inputs inputs = load_inputs(options, console);
+  const Inputs inputs = load_inputs(options, known_poses, console);
   const std::string text =
       cached.make_shard(inputs.maps, merge_options(options, console), known_poses.poses());
   console.clear();
@@ -186,7 +187,7 @@ int run_merge(const MergeCommandOptions& options) {
   Console console(options.common);
   const KnownPoses known_poses(options.known, options.maps, console);
   CachedEngine cached(options.cache, console);
-  Inputs inputs = load_inputs(options, console);
+  Inputs inputs = load_inputs(options, known_poses, console);
   if (!options.known.init.empty()) inputs.files.emplace_back(options.known.init);
   prepare_merge_output(options.output, inputs.files);
   const std::optional<double> coarser =

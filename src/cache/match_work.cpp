@@ -34,19 +34,13 @@ class Round {
   void make(const std::vector<Missing>& missing, std::size_t done, std::size_t total) {
     std::vector<MatchResult> made(missing.size());
     std::mutex telling;
-    const auto make_one = [&](std::size_t i) {
+    parallel_tasks(missing.size(), [&](std::size_t i) {
       throw_if_cancelled();
       made[i] = merger_.make(missing[i].due);
       keep(missing[i].key, made[i], telling);
       const std::lock_guard lock(telling);
       if (options_.progress) options_.progress(++done, total);
-    };
-    // As Merger does: a single pair by all threads, several by one each.
-    if (missing.size() == 1) {
-      make_one(0);
-    } else {
-      parallel_for(missing.size(), [&](std::size_t i) { with_threads(1, [&] { make_one(i); }); });
-    }
+    });
     for (std::size_t i = 0; i < missing.size(); ++i) merger_.hand_in(missing[i].due, std::move(made[i]));
   }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only file that starts threads. oneTBB orders a caller's writes before the work it hands over, and that
-// work before the caller goes on; but ThreadSanitizer cannot see into a library that was built without it,
-// and would call all of it a race. The atomics below say the same order once more, in a language that it
-// understands, and cmake/tsan.supp passes over this file and oneTBB's own. What is left to report is a race
-// of ours.
+// The engine's threads are started here, and for the rotations of a search. oneTBB orders a caller's writes
+// before the work it hands over, and that work before the caller goes on; but ThreadSanitizer cannot see into
+// a library that was built without it, and would call all of it a race. The atomics below say the same order
+// once more, in a language that it understands, and cmake/tsan.supp passes over this file and oneTBB's own.
+// What is left to report is a race of ours.
 #include "grid/parallel.hpp"
 
 #include <tbb/info.h>
@@ -48,6 +48,14 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
     ended.fetch_add(1, std::memory_order_release);
   });
   (void)ended.load(std::memory_order_acquire);
+}
+
+void parallel_tasks(std::size_t count, const std::function<void(std::size_t)>& task) {
+  if (count == 1) {
+    task(0);
+  } else {
+    parallel_for(count, [&](std::size_t i) { with_threads(1, [&] { task(i); }); });
+  }
 }
 
 }  // namespace gridmerge::internal

@@ -17,7 +17,12 @@ GRIDMERGE_INTERNAL_EXPORT void with_threads(int threads, const std::function<voi
 /// passed on.
 GRIDMERGE_INTERNAL_EXPORT void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
-/// The same for every row in [first, end) of a grid.
+/// The same for tasks that call parallel_for() themselves: several run by one thread each, since one that
+/// waited within a task would begin another meanwhile; a single one runs by all.
+GRIDMERGE_INTERNAL_EXPORT void parallel_tasks(std::size_t count,
+                                              const std::function<void(std::size_t)>& task);
+
+/// As parallel_for() for every row in [first, end) of a grid.
 inline void parallel_rows(int first, int end, const std::function<void(int)>& body) {
   if (first < end)
     parallel_for(static_cast<std::size_t>(end - first),

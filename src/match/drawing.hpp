@@ -12,7 +12,8 @@ bool is_drawing(const OccupancyGrid& grid);
 
 /// A drawing as a map: what its walls enclose is free, and what lies outside is unknown. Gaps of the outline
 /// are closed for that, the least that encloses half of the walls' bounding box: up to 8 % of its longer
-/// side. If none does, what the widest closing encloses. Any other grid as it is. O(cells).
+/// side. If none does, what the widest closing encloses. A closing that takes a raster of more than 2^28
+/// cells is not tried, nor are wider ones. Any other grid as it is. O(cells).
 GRIDMERGE_INTERNAL_EXPORT OccupancyGrid with_enclosed_free(const OccupancyGrid& grid);
 
 }  // namespace gridmerge::internal

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/match/match_bytes.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "match/pair_pose_bytes.hpp"
@@ -22,6 +24,14 @@ std::size_t bytes_of_a_hypothesis() {
 /// Throws std::invalid_argument for what no match can have found.
 void check_scale(double scale) {
   if (!(std::isfinite(scale) && scale > 0.0)) throw std::invalid_argument("holds a scale that no match has");
+}
+
+void check_figures(double score, const PoseFigures& figures) {
+  const std::span<const PoseFigure> all = pose_figures();
+  const bool are_sound =
+      std::isfinite(score) && figures.sigma >= 0.0 &&
+      std::all_of(all.begin(), all.end(), [&](const auto& one) { return std::isfinite(figures.*one.value); });
+  if (!are_sound) throw std::invalid_argument("holds a figure that no match has");
 }
 
 }  // namespace
@@ -65,6 +75,7 @@ MatchResult match_from_bytes(std::string_view bytes) {
     one.scale = reader.number();
     check_scale(one.scale);
     for (const PoseFigure& figure : pose_figures()) one.figures.*figure.value = reader.number();
+    check_figures(one.score, one.figures);
   }
   if (!reader.is_at_end()) throw std::invalid_argument("holds more than a match");
   return match;

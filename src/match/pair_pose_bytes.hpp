@@ -33,6 +33,9 @@ inline void read_pair_pose(ByteReader& reader, PairPose& pose) {
   pose.disagreement = static_cast<std::int64_t>(reader.whole());
   pose.overlap = reader.number();
   check_pose(pose.T_fixed_moving, pose.probability);
+  if (!(std::isfinite(pose.acceptance_index) && pose.agreement >= 0 && pose.disagreement >= 0 &&
+        pose.overlap >= 0.0 && std::isfinite(pose.overlap)))
+    throw std::invalid_argument("holds a comparison that no match has");
 }
 
 }  // namespace gridmerge::internal

@@ -27,6 +27,11 @@ void validate(const JoinProblem& problem, double accept_probability) {
   }
 }
 
+void validate_budget(double max_false_joins) {
+  if (!(max_false_joins >= 0.0) || !std::isfinite(max_false_joins))
+    throw std::invalid_argument("max_false_joins must be a number from 0 on");
+}
+
 /// In the frame of the lowest map, maps ascending.
 NodeGroup in_order(NodeGroup group) {
   std::sort(group.begin(), group.end(),
@@ -115,10 +120,14 @@ double expected_false_joins(const ConsistentSet& consistent_set) {
   return expected;
 }
 
+double false_joins_allowed(double max_false_joins, std::size_t maps) {
+  validate_budget(max_false_joins);
+  return max_false_joins * std::max(1.0, static_cast<double>(maps) / static_cast<double>(kFewMaps));
+}
+
 ConsistentSet find_consistent_set_within(const JoinProblem& problem, double accept_probability,
                                          double max_false_joins) {
-  if (!(max_false_joins >= 0.0) || !std::isfinite(max_false_joins))
-    throw std::invalid_argument("max_false_joins must be a number from 0 on");
+  validate_budget(max_false_joins);
   validate(problem, accept_probability);
   const JoinWeights weights(problem);
   const GroupSearch search(weights, problem, accept_probability);

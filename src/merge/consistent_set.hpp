@@ -57,6 +57,14 @@ std::vector<OpenJoin> find_open_joins(const JoinProblem& problem, const Consiste
 /// doubt in a member that is not fixed. O(maps).
 double expected_false_joins(const ConsistentSet& consistent_set);
 
+/// Of up to so many maps all pairs are looked at, and a budget of false joins holds for all of them.
+inline constexpr std::size_t kFewMaps = 50;
+
+/// So many joins of a merge of so many maps may be expected to be false, by MergeOptions::max_false_joins.
+/// Many maps are many teams, and each has the budget of one: or what is surely one map would be cut for maps
+/// that have nothing to do with it. Throws std::invalid_argument for a budget that is negative or not finite.
+double false_joins_allowed(double max_false_joins, std::size_t maps);
+
 /// find_consistent_set() with as many joins as a budget of false ones allows: as long as more are expected,
 /// the groups are cut from a higher probability on, that of the least sure member. Joined are they from
 /// `accept_probability` on: what two maps alone say is seldom as sure as what many say in the end. O(joins)

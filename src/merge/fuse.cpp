@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 
 #include "grid/logistic.hpp"
 #include "grid/parallel.hpp"
+#include "gridmerge/grid/resample.hpp"
 #include "gridmerge/similarity/lattice.hpp"
 #include "merge/log_odds.hpp"
 
@@ -63,6 +65,12 @@ SharedCells draw_row(const Totals& total, int row, OccupancyGrid& fused) {
   return shared;
 }
 
+// The map without what somebody painted black, where that is most of it; none where it is not.
+std::unique_ptr<const OccupancyGrid> as_seen(const OccupancyGrid& map) {
+  if (!is_mostly_painted(map) || count_cells(map).free == 0) return nullptr;
+  return std::make_unique<const OccupancyGrid>(without_painted(map));
+}
+
 std::optional<EqualCells> measure_omega(const OccupancyGrid& lattice, const std::vector<PlacedMap>& inputs) {
   try {
     return EqualCells{count_equal_cells(lattice, inputs), static_cast<std::int64_t>(lattice.cells.size())};
@@ -73,9 +81,16 @@ std::optional<EqualCells> measure_omega(const OccupancyGrid& lattice, const std:
 
 }  // namespace
 
-FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution,
+FusedMap fuse(const std::vector<PlacedMap>& maps, double resolution,
               const std::vector<Deformation>& deformations) {
-  if (inputs.empty()) throw std::invalid_argument("there is no map to fuse");
+  if (maps.empty()) throw std::invalid_argument("there is no map to fuse");
+  std::vector<PlacedMap> inputs = maps;
+  std::vector<std::unique_ptr<const OccupancyGrid>> seen;
+  for (PlacedMap& input : inputs) {
+    if (input.map == nullptr) continue;  // cover() refuses it
+    validate(*input.map);
+    if (seen.emplace_back(as_seen(*input.map))) input.map = seen.back().get();
+  }
   const Lattice lattice = cover(inputs, resolution, deformations);
   FusedMap fused;
   fused.grid =

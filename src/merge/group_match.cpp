@@ -127,11 +127,9 @@ JoinProblem GroupMatches::heard(const JoinProblem& problem, const ConsistentSet&
     std::unique_ptr<PreparedMap>& group = prepared[meeting.group];
     if (!group) group = prepare(groups[meeting.group], inputs);
   }
-  parallel_for(fresh.size(), [&](std::size_t i) {
-    const auto [meeting, result] = fresh[i];
-    with_threads(1, [&, meeting = meeting, result = result] {
-      *result = match(*prepared[meeting->group], *inputs.prepared[meeting->map], options_);
-    });
+  parallel_tasks(fresh.size(), [&](std::size_t i) {
+    const auto& [meeting, result] = fresh[i];
+    *result = match(*prepared[meeting->group], *inputs.prepared[meeting->map], options_);
   });
   kept_ = std::move(needed);
 

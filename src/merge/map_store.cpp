@@ -6,15 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "gridmerge/grid/resample.hpp"
-
 namespace gridmerge::internal {
 
 MapStore::Input::Input(std::shared_ptr<const OccupancyGrid> map)
-    : grid(std::move(map)), prepared(*grid), coverage(prepared.known()) {
-  // What somebody painted black would hide what others have seen there.
-  if (is_mostly_painted(*grid)) grid = std::make_shared<const OccupancyGrid>(without_painted(*grid));
-}
+    : grid(std::move(map)), prepared(*grid), coverage(prepared.known()) {}
 
 MapStore::MapId MapStore::add(std::unique_ptr<const Input> input,
                               const std::optional<KnownPose>& known_pose) {
@@ -66,8 +61,12 @@ std::vector<const OccupancyGrid*> MapStore::grids() const {
 
 std::vector<MapStore::MapId> MapStore::in_canonical_order() const {
   std::vector<MapId> maps = ids();
-  std::stable_sort(maps.begin(), maps.end(),
-                   [&](MapId a, MapId b) { return is_smaller(at(a).prepared, at(b).prepared); });
+  std::stable_sort(maps.begin(), maps.end(), [&](MapId a, MapId b) {
+    if (is_smaller(at(a).prepared, at(b).prepared)) return true;
+    // Of equal maps one with a known pose comes first: the others are copies of it.
+    return known_poses_.contains(a) && !known_poses_.contains(b) &&
+           !is_smaller(at(b).prepared, at(a).prepared);
+  });
   return maps;
 }
 

@@ -26,7 +26,7 @@ class MapStore {
     /// Throws std::invalid_argument for an invalid map.
     explicit Input(std::shared_ptr<const OccupancyGrid> map);
 
-    std::shared_ptr<const OccupancyGrid> grid;  ///< without what somebody painted black
+    std::shared_ptr<const OccupancyGrid> grid;
     PreparedMap prepared;
     Coverage coverage;
   };

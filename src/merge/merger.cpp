@@ -34,8 +34,7 @@ MergeOptions checked(MergeOptions options) {
   if (options.match.scales)
     throw std::invalid_argument("maps are merged at one scale: only match() searches scales");
   validate_merge({}, options.resolution);
-  if (!(options.max_false_joins >= 0.0) || !std::isfinite(options.max_false_joins))
-    throw std::invalid_argument("max_false_joins must be a number from 0 on");
+  false_joins_allowed(options.max_false_joins, 0);  // throws for one that makes no sense
   if (!(options.max_missed >= 0.0 && options.max_missed < 1.0))
     throw std::invalid_argument("max_missed must be a share in [0, 1)");
   options.match.progress = nullptr;
@@ -222,8 +221,9 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
       };
     while (true) {
       JoinProblem problem = groups_.heard(solution.problem, solution.consistent_set, inputs, worth_meeting);
-      ConsistentSet consistent_set = find_consistent_set_within(problem, options_.match.accept_probability,
-                                                                max_false_joins_of(maps.size()));
+      ConsistentSet consistent_set =
+          find_consistent_set_within(problem, options_.match.accept_probability,
+                                     false_joins_allowed(options_.max_false_joins, maps.size()));
       if (count_alone(consistent_set) >= count_alone(solution.consistent_set)) return solution;
       solution.problem = std::move(problem);
       solution.consistent_set = std::move(consistent_set);
@@ -239,16 +239,10 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
   Solution find_solution(const std::vector<MapId>& maps, const std::vector<Pair>& chosen,
                          std::set<Pair> again) const {
     Solution solution{make_problem(store_, maps, chosen, looks_, again), {}, std::move(again)};
-    solution.consistent_set = find_consistent_set_within(solution.problem, options_.match.accept_probability,
-                                                         max_false_joins_of(maps.size()));
+    solution.consistent_set =
+        find_consistent_set_within(solution.problem, options_.match.accept_probability,
+                                   false_joins_allowed(options_.max_false_joins, maps.size()));
     return solution;
-  }
-
-  /// Many maps are many teams, and each has the budget of one: or what is surely one map would be cut for
-  /// maps that have nothing to do with it.
-  double max_false_joins_of(std::size_t maps) const {
-    return options_.max_false_joins *
-           std::max(1.0, static_cast<double>(maps) / static_cast<double>(kFewMaps));
   }
 
   MergeOptions options_;

@@ -16,9 +16,6 @@
 
 namespace gridmerge::internal {
 
-/// Of up to so many maps all pairs are looked at, and a budget of false joins holds for all of them.
-inline constexpr std::size_t kFewMaps = 50;
-
 /// Chooses the pairs of many maps that are looked at, by signatures of the maps: in rounds, the likeliest
 /// first, until those that are left hide at most a given share of all joins. A pair whose maps lie in one
 /// component already can change little, and waits.

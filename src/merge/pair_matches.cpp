@@ -21,20 +21,14 @@ void PairMatches::add(std::vector<Pair> pairs, const FindMap& find_map, const Ma
   std::erase_if(pairs, [&](const Pair& pair) { return is_up_to_date(pair.first, pair.second); });
   std::mutex keeping;
   std::size_t done = 0;
-  const auto match_pair = [&](std::size_t i) {
+  parallel_tasks(pairs.size(), [&](std::size_t i) {
     const auto [fixed, moving] = pairs[i];
     MatchResult result = match(find_map(fixed), find_map(moving), options);
     const std::lock_guard lock(keeping);
     keep(pairs[i], std::move(result));
     ++done;
     if (progress) progress(done, pairs.size());
-  };
-  if (pairs.size() == 1) {
-    match_pair(0);
-  } else {
-    // Each pair by one thread: one that waited within a pair would begin with another one meanwhile.
-    parallel_for(pairs.size(), [&](std::size_t i) { with_threads(1, [&] { match_pair(i); }); });
-  }
+  });
 }
 
 void PairMatches::keep(const Pair& pair, MatchResult match) {

@@ -10,10 +10,10 @@
 #include "grid/parallel.hpp"
 #include "gridmerge/merge/plan.hpp"
 #include "match/drawing.hpp"
+#include "merge/consistent_set.hpp"
 #include "merge/copies.hpp"
 #include "merge/joins.hpp"
 #include "merge/on_plan.hpp"
-#include "merge/pair_choice.hpp"
 #include "merge/plan_ways.hpp"
 
 namespace gridmerge {
@@ -56,12 +56,9 @@ class Hanger {
   Hanger(const PreparedMap& plan, const MergeResult& merged, const MergeOptions& options,
          const PlanOptions& plan_options, std::vector<MergePart>& parts)
       : plan_(plan), merged_(merged), options_(options), plan_options_(plan_options), parts_(parts) {
-    // As a merge of so many maps has it.
     std::size_t maps = 0;
     for (const MergePart& part : parts) maps += part.members.size();
-    budget_ =
-        options.max_false_joins * std::max(1.0, static_cast<double>(maps) / static_cast<double>(kFewMaps)) -
-        merged.expected_false_joins.value_or(0.0);
+    budget_ = false_joins_allowed(options.max_false_joins, maps) - merged.expected_false_joins.value_or(0.0);
   }
 
   /// By part; none of those that nothing is said of.
@@ -163,9 +160,10 @@ MergeResult place_on_plan(const std::vector<OccupancyGrid>& maps, const Occupanc
   plan_match_options(options, plan_options.scales);
   const PreparedMap drawn(with_enclosed_free(plan));
   with_threads(options.match.threads, [&] {
-    PlanInputs inputs;
-    for (const OccupancyGrid& map : maps)
-      inputs.push_back(std::make_shared<const MapStore::Input>(std::make_shared<const OccupancyGrid>(map)));
+    PlanInputs inputs(maps.size());
+    parallel_for(maps.size(), [&](std::size_t i) {
+      inputs[i] = std::make_shared<const MapStore::Input>(std::make_shared<const OccupancyGrid>(maps[i]));
+    });
     std::vector<MergePart> parts = parts_of(merged, inputs);
     Hanger hanger(drawn, merged, options, plan_options, parts);
     const std::vector<std::optional<PlanWay>> ways = hanger.find();

@@ -74,7 +74,7 @@ void hear(std::vector<MergePart>& parts, const PreparedMap& plan, const MatchOpt
   std::mutex telling;
   std::size_t done = 0;
   if (progress && !voices.empty()) progress(0, voices.size());
-  parallel_for(voices.size(), [&](std::size_t i) {
+  parallel_tasks(voices.size(), [&](std::size_t i) {
     voices[i]->match = match(voices[i]->input->prepared, plan, options);
     const std::scoped_lock lock(telling);
     ++done;

@@ -118,7 +118,7 @@ struct Checked {
   double votes = 0.0;
 };
 
-/// The poses that the proposals make, most votes first; of those near each other the first.
+/// The poses that the proposals make, most votes first.
 std::vector<Checked> poses_of(const Signature& fixed, const Signature& moving,
                               const std::vector<Proposal>& proposals) {
   std::vector<Checked> all;

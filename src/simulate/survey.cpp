@@ -55,7 +55,7 @@ class Scanner {
   Random& random_;
 };
 
-/// The farthest that the robot comes from where it starts, along x or y [m].
+/// The farthest that the robot comes from where it starts [m].
 double farthest(const std::vector<SE2>& poses) {
   double reach = 0.0;
   for (const SE2& pose : poses)

@@ -46,6 +46,31 @@ TEST(ParallelFor, PassesAnExceptionOn) {
   EXPECT_THROW(with_threads(2, work), std::runtime_error);
 }
 
+TEST(ParallelTasks, ATaskOfSeveralStaysOnItsThread) {
+  for (const std::size_t count : {std::size_t{1}, std::size_t{40}}) {
+    std::vector<std::set<std::thread::id>> threads(count);
+    std::vector<int> calls(count, 0);
+    with_threads(2, [&] {
+      parallel_tasks(count, [&](std::size_t task) {
+        ++calls[task];
+        if (count == 1) return;
+        threads[task].insert(std::this_thread::get_id());
+        parallel_for(20, [&](std::size_t) { threads[task].insert(std::this_thread::get_id()); });
+      });
+    });
+    EXPECT_EQ(calls, std::vector<int>(count, 1));
+    for (const std::set<std::thread::id>& of_task : threads) EXPECT_LE(of_task.size(), 1u);
+  }
+  parallel_tasks(0, [](std::size_t) { FAIL(); });
+}
+
+TEST(ParallelRows, CallsTheBodyOnceForEveryRow) {
+  std::vector<int> calls(10, 0);
+  parallel_rows(3, 7, [&](int row) { ++calls[static_cast<std::size_t>(row)]; });
+  EXPECT_EQ(calls, (std::vector<int>{0, 0, 0, 1, 1, 1, 1, 0, 0, 0}));
+  parallel_rows(7, 3, [](int) { FAIL(); });
+}
+
 TEST(WithThreads, OneThreadIsTheCallersOwn) {
   std::set<std::thread::id> seen;  // unguarded: one thread only
   with_threads(1, [&] { parallel_for(1000, [&](std::size_t) { seen.insert(std::this_thread::get_id()); }); });

@@ -105,6 +105,16 @@ TEST(Drawing, ADoorOfTheOutlineIsClosedAndAMissingWallIsNot) {
   EXPECT_EQ(at(open, 2.05, 4.05), Cell::occupied);
 }
 
+TEST(Drawing, OfALongStripNoWideGapIsClosed) {
+  // A closing of half a hundredth of its length has a margin of 5000 cells: 10^10 cells for the widest.
+  OccupancyGrid strip = make_grid(1000000, 1, 0.05);
+  strip.at(0, 0) = strip.at(999999, 0) = Cell::occupied;
+  const OccupancyGrid enclosed = with_enclosed_free(strip);
+  EXPECT_EQ(enclosed.width, 1000000);
+  EXPECT_EQ(count_cells(enclosed).occupied, 2u);
+  EXPECT_EQ(count_cells(enclosed).free, 0u);
+}
+
 TEST(Drawing, AMapStaysAsItIs) {
   const OccupancyGrid map = test::draw_building(1);
   EXPECT_EQ(with_enclosed_free(map).cells, map.cells);

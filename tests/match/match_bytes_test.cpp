@@ -17,27 +17,28 @@ namespace gridmerge {
 namespace {
 
 MatchResult drawn_match() {
-  const auto number = [] { return *rc::gen::arbitrary<double>(); };
+  const auto count = [] { return std::int64_t{*rc::gen::inRange(0, 1 << 30)} << *rc::gen::inRange(0, 30); };
   const auto share = [] { return *rc::gen::inRange(0, 1001) / 1000.0; };
   const auto finite = [] { return *rc::gen::inRange(-1000000, 1000000) / 977.0; };
   MatchResult match;
   match.T_fixed_moving = {finite(), finite(), finite()};
   match.probability = share();
-  match.acceptance_index = number();
-  match.agreement = *rc::gen::arbitrary<std::int64_t>();
-  match.disagreement = *rc::gen::arbitrary<std::int64_t>();
-  match.overlap = number();
+  match.acceptance_index = finite();
+  match.agreement = count();
+  match.disagreement = count();
+  match.overlap = share();
   match.verdict = *rc::gen::element(Verdict::refused, Verdict::accepted);
   match.reason = static_cast<Reason>(*rc::gen::inRange(0, 7));
-  match.seconds = number();
+  match.seconds = *rc::gen::arbitrary<double>();
   match.scale = *rc::gen::inRange(1, 5000) / 977.0;
   match.hypotheses.resize(*rc::gen::inRange<std::size_t>(0, 5));
   for (Hypothesis& one : match.hypotheses) {
     one.T_fixed_moving = {finite(), finite(), -0.0};
-    one.score = std::numeric_limits<double>::quiet_NaN();
+    one.score = -finite();
     one.probability = share();
     one.scale = *rc::gen::inRange(1, 5000) / 977.0;
-    for (const PoseFigure& figure : pose_figures()) one.figures.*figure.value = number();
+    for (const PoseFigure& figure : pose_figures()) one.figures.*figure.value = finite();
+    one.figures.sigma = share();
   }
   return match;
 }
@@ -83,6 +84,31 @@ TEST(MatchBytes, RefuseWhatNoMatchHas) {
   std::string bytes = to_bytes(match);
   bytes[bytes.size() - 1] = '\x7f';  // more hypotheses than there can be
   EXPECT_THROW(match_from_bytes(bytes), std::invalid_argument);
+}
+
+TEST(MatchBytes, RefuseFiguresThatNoMatchHas) {
+  MatchResult match;
+  match.hypotheses.resize(2);
+  match.hypotheses[1].figures.sigma = 0.1;
+  const std::string sound = to_bytes(match);
+  EXPECT_NO_THROW(match_from_bytes(sound));
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto expect_refused = [&](auto&& spoil) {
+    MatchResult spoilt = match_from_bytes(sound);
+    spoil(spoilt);
+    EXPECT_THROW(match_from_bytes(to_bytes(spoilt)), std::invalid_argument);
+  };
+  for (const double value : {kInfinity, -kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
+    for (const PoseFigure& figure : pose_figures())
+      expect_refused([&](MatchResult& one) { one.hypotheses[1].figures.*figure.value = value; });
+    expect_refused([&](MatchResult& one) { one.hypotheses[0].score = value; });
+    expect_refused([&](MatchResult& one) { one.acceptance_index = value; });
+    expect_refused([&](MatchResult& one) { one.overlap = value; });
+  }
+  expect_refused([](MatchResult& one) { one.hypotheses[0].figures.sigma = -0.1; });
+  expect_refused([](MatchResult& one) { one.agreement = -1; });
+  expect_refused([](MatchResult& one) { one.disagreement = -1; });
+  expect_refused([](MatchResult& one) { one.overlap = -0.1; });
 }
 
 TEST(MatchBytes, RefuseScalesThatNoMatchHas) {

@@ -62,6 +62,24 @@ TEST(Fuse, CoversAllInputsAndCountsWhatTheyShare) {
   EXPECT_EQ(fused.conflicting, 1u) << "a wall in free space";
 }
 
+TEST(Fuse, BlackPaintHidesNothingThatOthersHaveSeen) {
+  // A room in a corner of a sheet that somebody painted black, and a map of what lies beside the room.
+  OccupancyGrid sheet = make_grid(60, 60, 0.1, {}, Cell::occupied);
+  for (int row = 2; row < 20; ++row)
+    for (int column = 2; column < 20; ++column) sheet.at(column, row) = Cell::free;
+  const OccupancyGrid beside = make_grid(20, 20, 0.1, {3.0, 0.0, 0.0}, Cell::free);
+  const OccupancyGrid seen = without_painted(sheet);
+  ASSERT_LT(count_cells(seen).occupied, 300u);
+  const FusedMap painted = fuse({{&sheet, {}}, {&beside, {}}}, 0.1);
+  const FusedMap expected = fuse({{&seen, {}}, {&beside, {}}}, 0.1);
+  EXPECT_EQ(painted.grid.cells, expected.grid.cells);
+  EXPECT_EQ(painted.conflicting, 0u);
+  EXPECT_EQ(count_cells(painted.grid).free, 18u * 18u + 20u * 20u);
+  // Of a sheet that is black alone, nothing tells what was seen.
+  const OccupancyGrid black = make_grid(8, 8, 0.1, {}, Cell::occupied);
+  EXPECT_EQ(count_cells(fuse({{&black, {}}}, 0.1).grid).occupied, 64u);
+}
+
 TEST(Fuse, AddsLogOdds) {
   const auto log_odds = [](double p) { return std::log(p / (1.0 - p)); };
   const auto fused_log_odds = [&](const std::string& cells) {

@@ -279,6 +279,21 @@ TEST(Merge, AMapThatIsJoinedToItsCopyAloneHoldsTheFrame) {
   }
 }
 
+TEST(Merge, OfEqualMapsThatWithAKnownPoseIsTheOriginal) {
+  OccupancyGrid map = make_grid(4, 4, 0.1, {});
+  for (std::size_t i = 0; i < map.cells.size(); ++i) map.cells[i] = i % 3 == 0 ? Cell::occupied : Cell::free;
+  const std::vector<OccupancyGrid> maps(3, map);
+  for (std::size_t known = 0; known < maps.size(); ++known) {
+    std::vector<std::optional<KnownPose>> poses(maps.size());
+    poses[known] = KnownPose{{1.0, 2.0, 0.0}, 0.1, 0.1, true};
+    const MergeResult result = merge(maps, {}, poses);
+    ASSERT_EQ(result.components.size(), 1U) << known;
+    EXPECT_EQ(result.components[0].members.size(), 3U) << known;
+    for (const Member& member : result.components[0].members)
+      EXPECT_EQ(member.T_component_map, (SE2{1.0, 2.0, 0.0})) << known;
+  }
+}
+
 TEST(Merge, AMapGivenTwiceCountsOnce) {
   Team team;
   const MergeResult once = merge(team.maps);

@@ -283,6 +283,11 @@ TEST(PlaceOnPlan, RefusesWhatMakesNoSense) {
   OccupancyGrid broken = ends.plan;
   broken.cells.pop_back();
   fails(broken, apart(2), {}, "cell");
+  for (const double budget : {std::nan(""), -0.1, HUGE_VAL}) {
+    MergeOptions options;
+    options.max_false_joins = budget;
+    EXPECT_THROW(place_on_plan(ends.maps, ends.plan, apart(2), options), std::invalid_argument);
+  }
   MergeOptions walk;
   walk.match.search = SearchMethod::random_walk;
   EXPECT_THROW(place_on_plan(ends.maps, ends.plan, apart(2), walk), std::invalid_argument);

@@ -30,21 +30,23 @@ struct FusedMap {
   std::optional<EqualCells> omega = {};
 };
 
-/// Fuses all inputs in one pass. The result covers their known cells, upright in the output frame, in cells
-/// of `resolution` metres; it continues the cell boundaries of the input that lies at the identity, if one
-/// does. The log-odds of every input that knows a cell are summed and clamped to 3.5 nats (a probability of
-/// 0.03 to 0.97). A positive sum is occupied, a negative one free, and log-odds that cancel out are unknown.
-/// A map says "occupied" with probability 0.85 and "free" with 0.35, or with its own probabilities, at most
-/// 0.88 and at least 0.12; a wall one cell thick stays in one piece at any angle. The sums are integers, so
-/// the result does not depend on the inputs' order. Throws std::invalid_argument for no input, an invalid
-/// grid, a transform that is not finite, a resolution that is not positive, and a result of more than 2^28
-/// cells. O(cells of the inputs + cells of the result).
+/// Fuses all maps, the inputs, in one pass. The result covers their known cells, upright in the output frame,
+/// in cells of `resolution` metres; it continues the cell boundaries of the input that lies at the identity,
+/// if one does. The log-odds of every input that knows a cell are summed and clamped to 3.5 nats (a
+/// probability of 0.03 to 0.97). A positive sum is occupied, a negative one free, and log-odds that cancel
+/// out are unknown. A map says "occupied" with probability 0.85 and "free" with 0.35, or with its own
+/// probabilities, at most 0.88 and at least 0.12; a wall one cell thick stays in one piece at any angle.
+/// Where most of an input is painted black (is_mostly_painted()), what was painted counts as unknown: it
+/// would hide what others have seen. The sums are integers, so the result does not depend on the inputs'
+/// order. Throws std::invalid_argument for no input, an invalid grid, a transform that is not finite, a
+/// resolution that is not positive, and a result of more than 2^28 cells. O(cells of the inputs + cells of
+/// the result).
 ///
 /// `deformations[i]`, where there is one, bends input i before its transform places it; it may be shorter
-/// than `inputs`. Each cell of the result looks up the bent input where it comes from, to a tenth of a cell,
+/// than `maps`. Each cell of the result looks up the bent input where it comes from, to a tenth of a cell,
 /// so this is one pass too. Where a map is squeezed, a wall one cell thick may get gaps. With a bent input
 /// there is no omega.
-GRIDMERGE_EXPORT FusedMap fuse(const std::vector<PlacedMap>& inputs, double resolution,
+GRIDMERGE_EXPORT FusedMap fuse(const std::vector<PlacedMap>& maps, double resolution,
                                const std::vector<Deformation>& deformations = {});
 
 /// A map as its deformation bends it, in cells of its own size along its own rows: for drawing and for

@@ -30,8 +30,9 @@ struct MergeOptions {
   /// Whether maps are bent so that walls that are one come to lie on each other: for maps that drift has
   /// bent. See Member::deformation.
   bool elastic = false;
-  /// Called with the numbers of pairs that are matched and to be matched, never from two threads at once. Of
-  /// the second look, if there is one, the numbers begin anew.
+  /// Called with the numbers of pairs that are matched and to be matched, never from two threads at once. The
+  /// numbers begin anew with each round: with the second look, and of many maps with each choice of pairs.
+  /// Matches of maps with merged groups are not told.
   std::function<void(std::size_t, std::size_t)> progress;
 };
 
