@@ -3,17 +3,22 @@
 """Simulated teams that are heard while they map: when robots are placed, whether rightly, and whether they stay.
 
 usage: benchmark/online.py [--teams N] [--robots N] [--steps N] [--rate HZ] [--updates N]
+       benchmark/online.py --hour [--robots N] [--speed N]
 
 Runs in an environment that has the package gridmerge. Each robot's map is heard at N moments of its way, HZ times a
 second. Beside the team stands merge() of the same maps at the same moment. A placement is wrong where the robots' true
 transforms, by least squares over all that they drew, are farther off than the tolerance that `gridmerge simulate` gives
 them. At last one team is heard for --updates more maps, as fast as it answers, with robots that change a little each
 time: time and memory must not grow.
+
+--hour plays what a team publishes within an hour, --speed times as fast: robots that explore, stand, repeat their maps,
+and start anew in another frame every ten minutes. Time and memory must be those of the first ten minutes.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import resource
 import sys
 import time
@@ -21,6 +26,8 @@ from dataclasses import dataclass
 
 import gridmerge
 import numpy as np
+
+import hour
 
 KINDS = ("office", "hall", "warehouse", "loop", "apartment", "outdoor")
 SURE = 0.98
@@ -168,6 +175,28 @@ def run_long(arguments: argparse.Namespace) -> None:
               f"{1000 * (time.process_time() - cpu) / n:.0f} ms of CPU, {resident:.0f} MB resident", flush=True)
 
 
+def run_hour(arguments: argparse.Namespace) -> None:
+    played = hour.Hour(arguments.robots)
+    team = gridmerge.Team()
+    heard = 0
+
+    def send(robot: int, second: int) -> None:
+        nonlocal heard
+        team.hear(f"tb{robot}", played.grid(robot, second))
+        heard += 1
+
+    def look(second: int) -> tuple[int, int, int, int]:
+        answer = team.answer()
+        # One map a second: which one an answer knows tells in which frame its pose is.
+        maps = {robot.name: robot.maps_heard for robot in answer.robots}
+        laps = [played.lap(robot, max(0, maps.get(f"tb{robot}", 0) - 1))[0] for robot in played.robots]
+        placed = sum(len(component.robots) for component in answer.components)
+        return heard, answer.number, placed, len(wrong_ones(*played.truth(laps, second), answer))
+
+    print(f"An hour of {arguments.robots} robots, {arguments.speed:g} times as fast:", flush=True)
+    hour.play(played, arguments.speed, hour.Cost(os.getpid()), send, look)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--teams", type=int, default=6)
@@ -175,7 +204,12 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=12)
     parser.add_argument("--rate", type=float, default=1.0, help="maps of each robot per second")
     parser.add_argument("--updates", type=int, default=600)
+    parser.add_argument("--hour", action="store_true", help="play an hour instead")
+    parser.add_argument("--speed", type=float, default=20.0, help="with --hour: seconds of it per second")
     arguments = parser.parse_args()
+    if arguments.hour:
+        run_hour(arguments)
+        return
     count = Count()
     for number in range(arguments.teams):
         run_team(number, arguments, count)

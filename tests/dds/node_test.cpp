@@ -172,6 +172,61 @@ TEST_F(NodeTest, PublishesNoTransformOfANewFrameFromAnOldPose) {
   EXPECT_FALSE(peer->transforms().contains("b/map_2"));
 }
 
+TEST_F(NodeTest, StaysWithItsAnswerThoughARobotRepeatsOldMaps) {
+  start();
+  merge_two();
+  const std::string x = diagnosis("b").values.at("x");
+  const RawMap newest = map_of(1, "b/map"), old = raw_map("b/map", explorers.map(1, Explorers::kSteps - 1));
+  for (int i = 0; i < 5; ++i) {
+    for (const RawMap* map : {&old, &newest}) {
+      const std::uint64_t maps = std::stoull(diagnosis("b").values.at("maps"));
+      b->publish(*map);
+      ASSERT_TRUE(diagnosed("b", "maps", std::to_string(maps + 1))) << node->lines();
+      EXPECT_EQ(diagnosis("b").values["state"], "placed");
+    }
+  }
+  EXPECT_TRUE(diagnosed("b", "x", x));
+  EXPECT_FALSE(node->said("b started anew") || node->said("b: started anew") || node->said("no longer"))
+      << node->lines();
+}
+
+TEST_F(NodeTest, HearsARobotWhoseClockGoesBack) {
+  start();
+  merge_two();
+  RawMap map = map_of(1, "b/map");
+  // Something that stands in the middle comes and goes, so that the merged map changes each time.
+  RawUpdate update;
+  update.frame = "b/map";
+  update.width = update.height = 6;
+  update.x = static_cast<std::int32_t>(map.width / 2);
+  update.y = static_cast<std::int32_t>(map.height / 2);
+  const auto draw = [&](std::int8_t value) {
+    update.data.assign(36, value);
+    for (std::uint32_t i = 0; i < 36; ++i)
+      map.data[(map.height / 2 + i / 6) * map.width + map.width / 2 + i % 6] = value;
+  };
+  map.seconds = 100;
+  draw(100);
+  b->publish(map);
+  const auto merged_at = [&](int seconds) {
+    return comes_true([&] {
+      const std::optional<RawMap> merged = peer->take_map("/merged_map");
+      return merged && merged->seconds == seconds;
+    });
+  };
+  EXPECT_TRUE(merged_at(100)) << node->lines();
+  map.seconds = 50;
+  draw(0);
+  b->publish(map);
+  EXPECT_TRUE(merged_at(50)) << node->lines();
+  // What it says after that counts too.
+  draw(100);
+  update.seconds = 51;
+  peer->publish_update("/b/map_updates", update);
+  EXPECT_TRUE(merged_at(51)) << node->lines();
+  EXPECT_EQ(diagnosis("b").values["state"], "placed");
+}
+
 TEST_F(NodeTest, HearsOnePublisherOfATopic) {
   start();
   merge_two();
@@ -223,9 +278,10 @@ TEST_F(NodeTest, TakesUpdatesOfItsPublisher) {
   merge_two();
   RawUpdate update;
   update.frame = "b/map";
-  update.width = 2;
+  update.x = update.y = 80;  // within the building
+  update.width = update.height = 6;
   update.seconds = 7;
-  update.data = {100, 100};
+  update.data.assign(36, 100);
   peer->publish_update("/b/map_updates", update);
   EXPECT_TRUE(diagnosed("b", "updates", "1")) << node->lines();
   // It is in the merged map, whose time it is now.

@@ -1,0 +1,210 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""`gridmerge node` beside rclpy, over the loopback interface: an hour of a team, and maps of 4000 x 4000 cells.
+
+usage: benchmark/live.py GRIDMERGE hour [--robots N] [--speed N]
+       benchmark/live.py GRIDMERGE large [--repeats N]
+
+Runs in an environment that has rclpy and the package gridmerge: ./dev benchmark --live makes it.
+
+hour: robots that explore, stand, repeat their maps, and start anew in another frame every ten minutes, once a second
+each and --speed times as fast. What the node takes in time and memory must be that of the first ten minutes.
+
+large: two robots' maps of 4000 x 4000 cells, of one building of 170 m. Then the second one changes in a hundredth of its
+area, again and again: it is sent whole, and as an update. Told is until /merged_map is here, and what it takes of CPU.
+"""
+
+from __future__ import annotations
+
+import argparse
+import array
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+# Before anything of ROS starts.
+os.environ["ROS_LOCALHOST_ONLY"] = "1"
+for _variable in ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS", "CYCLONEDDS_URI", "RMW_IMPLEMENTATION"):
+    os.environ.pop(_variable, None)
+# Fast DDS loses maps of 16 MB with its usual buffers (docs/node.md).
+PROFILE = """<profiles xmlns="http://www.eprosima.com"><transport_descriptors><transport_descriptor>
+<transport_id>udp</transport_id><type>UDPv4</type><sendBufferSize>4194304</sendBufferSize>
+<receiveBufferSize>4194304</receiveBufferSize></transport_descriptor></transport_descriptors>
+<participant profile_name="large" is_default_profile="true"><rtps><userTransports><transport_id>udp</transport_id>
+</userTransports><useBuiltinTransports>false</useBuiltinTransports><sendSocketBufferSize>4194304</sendSocketBufferSize>
+<listenSocketBufferSize>4194304</listenSocketBufferSize></rtps></participant></profiles>"""
+_folder = tempfile.TemporaryDirectory(prefix="gridmerge-live-")
+_profile = pathlib.Path(_folder.name, "fastdds.xml")
+_profile.write_text(PROFILE)
+os.environ["FASTRTPS_DEFAULT_PROFILES_FILE"] = os.environ["FASTDDS_DEFAULT_PROFILES_FILE"] = str(_profile)
+
+import gridmerge  # noqa: E402
+import numpy as np  # noqa: E402
+import rclpy  # noqa: E402
+from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
+from map_msgs.msg import OccupancyGridUpdate  # noqa: E402
+from nav_msgs.msg import OccupancyGrid  # noqa: E402
+from rclpy.qos import DurabilityPolicy, QoSProfile  # noqa: E402
+
+import hour  # noqa: E402
+from online import wrong_ones  # noqa: E402
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+LONGEST_WAIT = 300.0  # s: ends what would never end
+
+
+class Live:
+    """The node, and robots that talk to it."""
+
+    def __init__(self, program: str) -> None:
+        domain = 1 + os.getpid() % 100
+        os.environ["ROS_DOMAIN_ID"] = str(domain)
+        self.program = subprocess.Popen([program, "node", "--quiet"], stdout=subprocess.DEVNULL)
+        rclpy.init(domain_id=domain)
+        self.node = rclpy.create_node("robots")
+        self.diagnoses: dict[str, dict[str, str]] = {}
+        self.node.create_subscription(DiagnosticArray, "/diagnostics", self.on_diagnostics, 10)
+        self.publishers: dict[str, Any] = {}
+
+    def __enter__(self) -> Live:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.program.send_signal(signal.SIGTERM)
+        print(f"the node ended with exit code {self.program.wait()}")
+        rclpy.shutdown()
+
+    def on_diagnostics(self, message: DiagnosticArray) -> None:
+        for status in message.status:
+            self.diagnoses[status.name.removeprefix("gridmerge: ")] = {one.key: one.value for one in status.values}
+
+    def value(self, robot: str, key: str) -> str:
+        return self.diagnoses.get(robot, {}).get(key, "")
+
+
+    def wait_until(self, holds: Callable[[], bool], what: str) -> None:
+        end = time.monotonic() + LONGEST_WAIT
+        while not holds():
+            if time.monotonic() > end:
+                raise SystemExit(f"never: {what}; the node says {self.diagnoses}")
+            rclpy.spin_once(self.node, timeout_sec=0.005)
+
+    def publish(self, robot: str, grid: gridmerge.OccupancyGrid, frame: str, second: int) -> None:
+        if robot not in self.publishers:
+            self.publishers[robot] = self.node.create_publisher(OccupancyGrid, f"/{robot}/map", LATCHED)
+        message = grid.to_msg(OccupancyGrid, frame_id=frame, probabilities=False)
+        message.header.stamp.sec = second
+        self.publishers[robot].publish(message)
+
+
+def run_hour(live: Live, arguments: argparse.Namespace) -> None:
+    played = hour.Hour(arguments.robots)
+
+    def send(robot: int, second: int) -> None:
+        live.publish(f"tb{robot}", played.grid(robot, second), f"tb{robot}/map_{played.lap(robot, second)[0]}", second)
+        rclpy.spin_once(live.node, timeout_sec=0.0)
+
+    def look(second: int) -> tuple[int, int, int, int]:
+        heard = live.value("gridmerge", "solves")
+        live.wait_until(lambda: live.value("gridmerge", "solves") != heard, "another answer")
+        names = [f"tb{robot}" for robot in played.robots]
+        laps, robots, components = [], [], {}
+        for name in names:
+            values = live.diagnoses[name]
+            laps.append(int(values["frame"].rpartition("_")[2]))
+            if values["state"] != "placed":
+                continue
+            transform = gridmerge.Transform(*(float(values[key]) for key in ("x", "y", "theta")))
+            robots.append(SimpleNamespace(name=name, transform=transform))
+            components.setdefault(values["component"], []).append(name)
+        answer = SimpleNamespace(robots=robots, components=[SimpleNamespace(robots=one) for one in components.values()])
+        maps = sum(int(live.value(name, "maps")) for name in names)
+        return maps, int(live.value("gridmerge", "solves")), len(robots), len(wrong_ones(*played.truth(laps, second), answer))
+
+    print(f"An hour of {arguments.robots} robots, {arguments.speed:g} times as fast:", flush=True)
+    hour.play(played, arguments.speed, hour.Cost(live.program.pid), send, look)
+
+
+def large_maps() -> list[gridmerge.OccupancyGrid]:
+    simulation = gridmerge.simulate("office", size=(170.0, 170.0), robots=2, overlap=0.7, drift=0.0, others=0, seed=3)
+    grids = []
+    for one in simulation.maps:
+        cells = np.zeros((4000, 4000), np.uint8)
+        height, width = np.minimum(one.grid.cells.shape, 4000)
+        cells[:height, :width] = one.grid.cells[:height, :width]
+        grids.append(gridmerge.OccupancyGrid.from_cells(cells, one.grid.resolution, one.grid.origin))
+    return grids
+
+
+def run_large(live: Live, arguments: argparse.Namespace) -> None:
+    first, second = large_maps()
+    cost = hour.Cost(live.program.pid)
+    merged: list[OccupancyGrid] = []
+    live.node.create_subscription(OccupancyGrid, "/merged_map", lambda message: merged.__setitem__(slice(None), [message]), LATCHED)
+    updates = live.node.create_publisher(OccupancyGridUpdate, "/tb2/map_updates", LATCHED)
+
+    def measure(what: str, stamp: int, send: Callable[[], None]) -> None:
+        cost.look()
+        cpu, begin = cost.cpu, time.monotonic()
+        send()
+        written = time.monotonic() - begin
+        live.wait_until(lambda: bool(merged) and merged[0].header.stamp.sec == stamp, f"a merged map of second {stamp}")
+        seconds = time.monotonic() - begin
+        cost.look()
+        until_here, memory = cost.cpu - cpu, cost.resident[-1]
+        # What follows once no newer map comes: until the node rests for longer than that takes.
+        rest = cost.cpu
+        while True:
+            time.sleep(4.0)
+            cost.look()
+            if cost.cpu - rest < 0.2:
+                break
+            rest = cost.cpu
+        info = merged[0].info
+        print(f"{what:22s} written {written:4.2f} s, /merged_map of {info.width} x {info.height} cells after {seconds:4.2f} s "
+              f"and {until_here:4.2f} s of CPU, {memory:4.0f} MB; searched thoroughly: {cost.cpu - cpu - until_here:5.2f} s of CPU more, "
+              f"{max(cost.resident):4.0f} MB at most", flush=True)
+
+    live.publish("tb1", first, "tb1/map", 1)
+    live.wait_until(lambda: live.value("tb1", "maps") == "1", "the first map")
+    measure("the second map", 2, lambda: live.publish("tb2", second, "tb2/map", 2))
+    cells = second.cells.copy()
+    corner, side = 1500, 400  # a hundredth of the area
+    dice = np.random.default_rng(1)
+    stamp = 2
+    for _ in range(arguments.repeats):
+        for as_update in (False, True):
+            stamp += 1
+            part = cells[corner : corner + side, corner : corner + side]
+            part[dice.random(part.shape) < 0.003] = 1 + stamp % 2
+            if as_update:
+                values = np.choose(part, (-1, 0, 100)).astype(np.int8)
+                update = OccupancyGridUpdate(x=corner, y=corner, width=side, height=side, data=array.array("b", values.tobytes()))
+                update.header.frame_id = "tb2/map"
+                update.header.stamp.sec = stamp
+                measure("as an update", stamp, lambda: updates.publish(update))
+            else:
+                grid = gridmerge.OccupancyGrid.from_cells(cells, second.resolution, second.origin)
+                measure("1 % changes, as a whole", stamp, lambda: live.publish("tb2", grid, "tb2/map", stamp))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("gridmerge")
+    parser.add_argument("what", choices=("hour", "large"))
+    parser.add_argument("--robots", type=int, default=6)
+    parser.add_argument("--speed", type=float, default=20.0, help="seconds of the hour per second")
+    parser.add_argument("--repeats", type=int, default=5)
+    arguments = parser.parse_args()
+    with Live(arguments.gridmerge) as live:
+        {"hour": run_hour, "large": run_large}[arguments.what](live, arguments)
+
+
+if __name__ == "__main__":
+    main()
