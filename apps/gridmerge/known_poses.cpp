@@ -100,10 +100,16 @@ std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps,
         "{}: --fix keeps it {:.3g} m from where it fits {}: the maps contradict the given poses\n",
         escape_controls(names_[fix.moving]), fix.distance, escape_controls(names_[fix.fixed]));
   }
+  for (const LeftOut& one : result.left_out) {
+    if (poses_[one.map] && poses_[one.map]->fixed)
+      text +=
+          fmt::format("{}: --fix has no effect, as the map is left out\n", escape_controls(names_[one.map]));
+  }
   const std::vector<UnusedPose> all = find_unused_poses(maps, poses_, result);
-  std::set<std::pair<std::size_t, std::size_t>> told;  // pairs of which neither pose is sure enough
+  std::set<std::pair<std::size_t, std::size_t>> told;  // pairs whose poses are not used
   for (const UnusedPose& unused : all) {
-    const bool is_pair = unused.why == UnusedPose::Why::not_sure_enough;
+    const bool is_pair =
+        unused.why == UnusedPose::Why::not_sure_enough || unused.why == UnusedPose::Why::against_match;
     if (!is_pair || told.insert(std::minmax(unused.map, unused.other)).second)
       text += describe(unused) + "\n";
   }
@@ -132,6 +138,12 @@ std::string KnownPoses::describe(const UnusedPose& unused) const {
           "     or {}",
           name, other, unused.sd, pose.sd_position, pose.sd_theta, unused.sd_allowed, escape_controls(table_),
           unused.sd_allowed / unused.sd, remedy());
+    case UnusedPose::Why::against_match:
+      return fmt::format(
+          "{0}: the given pose is {1:.3g} m from where the map surely fits {2} without it: one of the two is "
+          "wrong\n"
+          "try: gridmerge match {2} {0}   (where it fits), or {3}",
+          name, unused.distance, other, remedy());
     case UnusedPose::Why::contradicted:
       break;
   }

@@ -36,6 +36,13 @@ struct MatchCommandOptions {
   bool scaled() const { return !search.scales.empty(); }
 };
 
+/// Whether the second hypothesis alone would keep the first from being accepted.
+bool has_near_rival(const MatchResult& result, double accept_from) {
+  if (result.hypotheses.size() < 2) return false;
+  const double first = result.hypotheses[0].probability, second = result.hypotheses[1].probability;
+  return first < accept_from * (first + second);
+}
+
 std::string describe_verdict(const MatchResult& result, const SearchOptions& search) {
   if (search.random_walk() && !result.hypotheses.empty()) {
     if (result.verdict == Verdict::refused && result.acceptance_index >= search.accept_from())
@@ -58,7 +65,9 @@ std::string describe_verdict(const MatchResult& result, const SearchOptions& sea
         return refused(
             fmt::format("the maps are free to slide along {:.0f} degrees",
                         180.0 / std::numbers::pi * result.hypotheses.front().figures.free_direction));
-      return refused("two ways to lay the maps explain them nearly equally well");
+      if (has_near_rival(result, search.accept_from()))
+        return refused("two ways to lay the maps explain them nearly equally well");
+      return refused("this way to lay the maps hardly stands out from all others");
     case Reason::contradiction:
       return refused("the maps disagree where both know the same places");
     case Reason::too_little_overlap:
@@ -76,6 +85,10 @@ std::string describe(const MatchResult& result, const MatchCommandOptions& optio
   const auto line = [&](const std::string& name, const std::string& value) {
     fmt::format_to(std::back_inserter(text), "  {:<14}{}\n", name, value);
   };
+  if (result.hypotheses.empty()) {
+    line("time", fmt::format(" {:.3f} s", result.seconds));
+    return text;
+  }
   line("T_fixed_moving", " " + describe_pose(result.T_fixed_moving));
   if (options.scaled())
     line("scale", fmt::format(" {:.4f}, by which MOVING is enlarged first", result.scale));

@@ -157,7 +157,7 @@ std::string scale_hints(const MergeCommandOptions& options, const std::vector<Oc
   if (options.search.up_the_tree() || result.left_out.empty()) return {};
   const bool has_merged = !result.components.empty();
   const std::size_t first = result.left_out.front().map;
-  const NamedMap fixed = has_merged ? NamedMap{component_file(0), result.components.front().fused.grid}
+  const NamedMap fixed = has_merged ? NamedMap{"the merged map", result.components.front().fused.grid}
                                     : NamedMap{options.maps[first], maps[first]};
   std::string text;
   std::size_t asked = 0;
@@ -210,7 +210,7 @@ int run_merge(const MergeCommandOptions& options) {
     write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   });
   matcher.write_trace();
-  const AskedMerge asked{options.maps, options.search, options.elastic};
+  const AskedMerge asked{options.maps, options.search, options.elastic, options.max_false_joins};
   const std::string hints = scale_hints(options, inputs.maps, result, console) +
                             describe_doubled(asked, inputs.maps, result, options.common.verbose);
   console.clear();

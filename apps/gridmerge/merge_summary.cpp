@@ -23,6 +23,15 @@ const char* figure_name(const SearchOptions& search) {
   return search.random_walk() ? "acceptance index" : "probability";
 }
 
+/// The options by which two maps would be joined, which have this probability; "" if neither would.
+std::string what_asks_for_less(const AskedMerge& asked, double probability) {
+  const bool is_below = probability < asked.search.accept_from();
+  const double doubt = 1.0 - probability;
+  if (doubt <= asked.max_false_joins) return is_below ? "     a lower --accept asks for less\n" : "";
+  return fmt::format("     {}a higher --max-false-joins asks for less: this join alone is false in {:.3f}\n",
+                     is_below ? "a lower --accept with " : "", doubt);
+}
+
 /// The head of a result that holds no merged map. What became of known poses comes first: who gives them
 /// wants them used.
 std::string describe_nothing(const AskedMerge& asked, const MergeResult& result,
@@ -38,13 +47,15 @@ std::string describe_nothing(const AskedMerge& asked, const MergeResult& result,
     const std::string moving = escape_controls(asked.names[nearest->moving]);
     fmt::format_to(out, "nearest to it: {} and {}, {} {:.4f}\n", fixed, moving, figure_name(asked.search),
                    nearest->probability);
-    fmt::format_to(out, "try: gridmerge match {} {}   (how these two may lie, and why it is not believed)\n",
-                   fixed, moving);
+    fmt::format_to(out,
+                   "try: gridmerge match {} {}{}   (how these two may lie, and why it is not believed)\n",
+                   fixed, moving, asked.search.random_walk() ? " --search random-walk" : "");
   }
   if (asked.search.up_the_tree()) return text + "     a lower --accept asks for less\n";
-  return text +
-         "     a lower --accept or a higher --max-false-joins asks for less\n"
-         "     --init TABLE and --fix MAP take poses that you know; the page lays maps by hand\n";
+  text += asked.names.size() == 2 && nearest != result.joins.end()
+              ? what_asks_for_less(asked, nearest->probability)
+              : "     a lower --accept or a higher --max-false-joins asks for less\n";
+  return text + "     --init TABLE and --fix MAP take poses that you know; the page lays maps by hand\n";
 }
 
 /// How maps that lie apart may lie together, the most probable ways.
@@ -131,8 +142,8 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
       fmt::format_to(out, "rescued: {}, {:.3f} by themselves, but the other maps or known poses agree\n",
                      pair, join.probability);
     if (join.outcome == JoinOutcome::rejected)
-      fmt::format_to(out, "rejected: {}, {:.3f} by themselves, but the others contradict\n", pair,
-                     join.probability);
+      fmt::format_to(out, "rejected: {}, {:.3f} by themselves, but other maps or fixed poses contradict\n",
+                     pair, join.probability);
     if (join.outcome == JoinOutcome::known)
       fmt::format_to(out, "known: {}, from their initial poses\n", pair);
   }

@@ -14,6 +14,7 @@ struct AskedMerge {
   const std::vector<std::string>& names;  ///< of the maps
   const SearchOptions& search;
   bool elastic = false;
+  double max_false_joins = MergeOptions{}.max_false_joins;
 };
 
 /// What became of each comparison, a line each.

@@ -20,7 +20,7 @@ void warn_of_missing_cells(const OccupancyGrid& grid, std::vector<MapWarning>& w
         {MapWarningKind::painted_black,
          fmt::format("{} of {} known cells are occupied, most of them far from any free one: was the unseen "
                      "painted black? "
-                     "They count as unknown",
+                     "Matching and merging take them for unknown",
                      counts.occupied, counts.known())});
   }
 }

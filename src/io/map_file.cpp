@@ -40,7 +40,9 @@ MapImage read_image(FileReader& file, const LoadOptions& options) {
 
 LoadedMap load_bare_image(const std::filesystem::path& path, FileReader& file, const LoadOptions& options) {
   if (options.resolution == 0.0) {
-    throw FileError(path, "an image without a YAML needs a resolution (metres a cell) to be given");
+    throw FileError(path,
+                    "an image without a YAML needs a resolution in metres per cell: --resolution, or "
+                    "resolution= in Python");
   }
   return blaming(path, [&] {
     MapYaml yaml;

@@ -61,7 +61,9 @@ void TextTable::check_header(const Row& header, const std::vector<std::string_vi
                              const std::vector<std::string_view>& optional) {
   for (const std::string_view name : required) {
     if (std::count(header.fields.begin(), header.fields.end(), name) == 0) {
-      fail_at_line(header.line, "names no column '" + std::string(name) + "'");
+      const bool has_spaces = header.fields.size() == 1 && header.fields[0].find(' ') != std::string::npos;
+      fail_at_line(header.line, "names no column '" + std::string(name) + "'" +
+                                    (has_spaces ? ": tabs separate columns, not spaces" : ""));
     }
   }
   for (const std::string& name : header.fields) {

@@ -79,7 +79,8 @@ bool is_placed(const PlacedMap& one, const std::vector<PlacedMap>& placed) {
 }
 
 void add_copies(const std::vector<Copy>& copies, const std::vector<const OccupancyGrid*>& grids,
-                double resolution, MergeResult& result) {
+                const std::vector<std::optional<KnownPose>>& known_poses, double resolution,
+                MergeResult& result) {
   if (copies.empty()) return;
   struct LiesOn {
     std::size_t original;
@@ -118,9 +119,13 @@ void add_copies(const std::vector<Copy>& copies, const std::vector<const Occupan
     const Member* original = find_member(result, copy.original, component);
     if (original == nullptr) {
       std::erase_if(result.left_out, [&](const LeftOut& one) { return one.map == copy.original; });
-      const PlacedMap placed{grids[copy.original], {}};
+      const std::optional<KnownPose>& known = known_poses[copy.original];
+      const bool is_fixed = known && known->fixed;
+      const PlacedMap placed{grids[copy.original], is_fixed ? known->T_world_map : SE2{}};
       component = &result.components.emplace_back();
-      component->members.push_back({copy.original, {}, 1.0, PoseDeviation{}});  // it holds the frame
+      component->in_world_frame = is_fixed;
+      component->members.push_back(
+          {copy.original, placed.T_output_map, 1.0, PoseDeviation{}});  // it holds the frame
       component->fused = fuse({placed}, resolution > 0.0 ? resolution : finest_resolution({placed}));
       original = &component->members.front();
     }

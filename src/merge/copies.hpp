@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/prepared_map.hpp"
+#include "gridmerge/merge/known_pose.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 #include "internal_export.hpp"
 
@@ -32,9 +34,10 @@ SE2 between_copies(const PreparedMap& a, const PreparedMap& b);
 GRIDMERGE_INTERNAL_EXPORT bool is_placed(const PlacedMap& one, const std::vector<PlacedMap>& placed);
 
 /// Gives every copy its place beside its original: in the original's component, or in one of the two, and in
-/// a join with every other map that the original has one with. `grids` are all inputs; `resolution` is that
-/// of fused maps, 0 for the finest.
+/// a join with every other map that the original has one with. `grids` and `known_poses` are those of all
+/// inputs; `resolution` is that of fused maps, 0 for the finest.
 void add_copies(const std::vector<Copy>& copies, const std::vector<const OccupancyGrid*>& grids,
-                double resolution, MergeResult& result);
+                const std::vector<std::optional<KnownPose>>& known_poses, double resolution,
+                MergeResult& result);
 
 }  // namespace gridmerge::internal

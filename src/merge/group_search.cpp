@@ -174,16 +174,16 @@ class Arranger {
   double gain_of_moving(Number number, std::size_t place) const {
     const auto [rest, alone] = taken_out(groups_.at(number), place);
     const double stays = weights_.worth_of(rest, alone, {}).against_apart;
+    std::vector<const NodeGroup*> others{&rest};
+    for (const Number other : groups_near(alone)) {
+      if (other != number) others.push_back(&groups_.at(other));
+    }
     double elsewhere = 0.0;  // apart
-    const auto try_to_join = [&](const NodeGroup& group) {
+    for (const NodeGroup* other : others) {
       // What gains too little for a move need not be known.
       const std::optional<WeighedJoin> way =
-          weights_.best_way(group, alone, std::max(elsewhere, stays + kMinGain));
+          weights_.best_way(*other, alone, std::max(elsewhere, stays + kMinGain));
       if (way) elsewhere = std::max(elsewhere, way->worth.against_apart);
-    };
-    try_to_join(rest);
-    for (const Number other : groups_near(alone)) {
-      if (other != number) try_to_join(groups_.at(other));
     }
     return elsewhere - stays;
   }

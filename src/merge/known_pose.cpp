@@ -86,6 +86,31 @@ std::optional<UnusedPose> unused_of(std::size_t map, const KnownMaps& known) {
   return best;  // none where no other pose is known: it says nothing then
 }
 
+/// How far the given poses of two maps are from how the maps alone surely lie [m]; none where they agree, or
+/// the maps alone are not sure.
+std::optional<double> distance_from_match(const Join& join, const KnownMap& fixed, const KnownMap& moving) {
+  if (join.match.verdict != Verdict::accepted) return std::nullopt;
+  const SE2 T_given = inverse(fixed.pose.T_world_map) * moving.pose.T_world_map;
+  const double distance = displacement(moving.extent, T_given, join.match.T_fixed_moving);
+  double believed = agreement_tolerance(fixed.extent, moving.extent);
+  if (!fixed.pose.fixed || !moving.pose.fixed)
+    believed += kDeviationsOfKnown * sd_between(fixed.pose, moving.pose, fixed.extent, moving.extent);
+  return distance > believed ? std::optional(distance) : std::nullopt;
+}
+
+std::optional<UnusedPose> against_match(std::size_t map, const KnownMaps& known, const MergeResult& result) {
+  for (const Join& join : result.joins) {
+    if ((join.fixed != map && join.moving != map) || !known.contains(join.fixed) ||
+        !known.contains(join.moving))
+      continue;
+    if (const auto distance = distance_from_match(join, known.at(join.fixed), known.at(join.moving)))
+      return UnusedPose{map,       UnusedPose::Why::against_match,
+                        *distance, join.fixed == map ? join.moving : join.fixed,
+                        0.0,       0.0};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<UnusedPose> find_unused_poses(const std::vector<OccupancyGrid>& maps,
@@ -98,7 +123,9 @@ std::vector<UnusedPose> find_unused_poses(const std::vector<OccupancyGrid>& maps
   }
   for (const LeftOut& alone : result.left_out) {
     if (!known.contains(alone.map)) continue;
-    if (const std::optional<UnusedPose> one = unused_of(alone.map, known)) unused.push_back(*one);
+    std::optional<UnusedPose> one = against_match(alone.map, known, result);
+    if (!one) one = unused_of(alone.map, known);
+    if (one) unused.push_back(*one);
   }
   std::sort(unused.begin(), unused.end(),
             [](const UnusedPose& a, const UnusedPose& b) { return a.map < b.map; });
@@ -112,12 +139,9 @@ std::vector<ContradictedFix> find_contradicted_fixes(const std::vector<Occupancy
   const auto is_fixed = [&](std::size_t map) { return known.contains(map) && known.at(map).pose.fixed; };
   std::vector<ContradictedFix> contradicted;
   for (const Join& join : result.joins) {
-    if (join.match.verdict != Verdict::accepted || !is_fixed(join.fixed) || !is_fixed(join.moving)) continue;
-    const KnownMap &fixed = known.at(join.fixed), &moving = known.at(join.moving);
-    const SE2 T_given = inverse(fixed.pose.T_world_map) * moving.pose.T_world_map;
-    const double distance = displacement(moving.extent, T_given, join.match.T_fixed_moving);
-    if (distance > agreement_tolerance(fixed.extent, moving.extent))
-      contradicted.push_back({join.fixed, join.moving, distance});
+    if (!is_fixed(join.fixed) || !is_fixed(join.moving)) continue;
+    if (const auto distance = distance_from_match(join, known.at(join.fixed), known.at(join.moving)))
+      contradicted.push_back({join.fixed, join.moving, *distance});
   }
   return contradicted;
 }

@@ -59,6 +59,12 @@ std::vector<const OccupancyGrid*> MapStore::grids() const {
   return grids;
 }
 
+std::vector<std::optional<KnownPose>> MapStore::known_poses() const {
+  std::vector<std::optional<KnownPose>> poses;
+  for (const auto& [id, input] : inputs_) poses.push_back(known_pose(id));
+  return poses;
+}
+
 std::vector<MapStore::MapId> MapStore::in_canonical_order() const {
   std::vector<MapId> maps = ids();
   std::stable_sort(maps.begin(), maps.end(), [&](MapId a, MapId b) {

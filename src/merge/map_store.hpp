@@ -45,7 +45,8 @@ class MapStore {
 
   /// In the order in which they were added.
   std::vector<MapId> ids() const;
-  std::vector<const OccupancyGrid*> grids() const;  ///< likewise
+  std::vector<const OccupancyGrid*> grids() const;            ///< likewise
+  std::vector<std::optional<KnownPose>> known_poses() const;  ///< likewise
 
   /// An order that depends on the maps alone, so that sums are made in the same order whatever order they
   /// came in.

@@ -121,7 +121,7 @@ MergeResult make_result(const MapStore& store, const std::vector<MapId>& maps,
   result.joins = make_joins(store, maps, looks, solution);
   result.open_ways = make_open_ways(store.places_of(maps), solution.problem, solution.consistent_set);
   add_components(store.inputs_of(maps), solution, options, result);
-  add_copies(copies, store.grids(), options.resolution, result);
+  add_copies(copies, store.grids(), store.known_poses(), options.resolution, result);
   sort_components(result);
   return result;
 }

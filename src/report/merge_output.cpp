@@ -15,6 +15,7 @@
 #include "grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/io/map_file.hpp"
+#include "gridmerge/report/interchange.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/preview.hpp"
 #include "io/add_map.hpp"
@@ -64,8 +65,14 @@ std::vector<fs::path> outputs_in(const fs::path& directory) {
   return outputs;
 }
 
-// Maps of an earlier run that this one has none for.
-void remove_stale_maps(FileSet& files, const fs::path& directory, std::size_t components) {
+// Maps and exports of an earlier run that this one has none for. Who asks for an export writes it later.
+void remove_stale(FileSet& files, const fs::path& directory, std::size_t components) {
+  std::error_code absent;
+  for (const ExportFormat format : export_formats()) {
+    const char* const name = export_file(format);
+    if (fs::exists(directory / kTransforms, absent) && fs::is_regular_file(directory / name, absent))
+      files.remove(name);
+  }
   std::set<fs::path> current;
   for (std::size_t i = 0; i < components; ++i) {
     const fs::path yaml = directory / component_file(i);
@@ -157,7 +164,7 @@ void write_merge_output(const fs::path& directory, const std::vector<fs::path>& 
   files.add(kPreview, preview);
   files.add(kReport, report);
   files.add(kTransforms, transforms_json(merge.names, merge.result));
-  remove_stale_maps(files, directory, components.size());
+  remove_stale(files, directory, components.size());
   files.commit();
 }
 

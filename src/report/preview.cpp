@@ -113,7 +113,7 @@ std::vector<Canvas> legend(const std::vector<std::string>& names, std::span<cons
   using Colours = PreviewColours;
   entries.push_back(legend_entry(Colours::kSharedWall, Colours::kSharedFree, "in two maps or more", width));
   entries.push_back(legend_entry(Colours::kDisagreement, shared_colour(7, 1),
-                                 "maps disagree: half and half, or one of eight", width));
+                                 "maps disagree: half against half, or one against seven", width));
   return entries;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
+#include <fstream>
 
 #include "fixture.hpp"
 
@@ -16,6 +17,20 @@ class Export : public CliTest {
 
   const std::string output = directory.file("out");
 };
+
+TEST_F(Export, OfAnEarlierMergeIsRemoved) {
+  ASSERT_EQ(merge({"--export", "g2o", "--export", "geojson"}).exit_code, 0);
+  ASSERT_TRUE(std::filesystem::exists(output + "/merged.g2o"));
+  ASSERT_EQ(merge({"--export", "geojson"}).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(output + "/merged.g2o")) << "it tells of another merge";
+  EXPECT_TRUE(std::filesystem::exists(output + "/merged.geojson"));
+  // What lies in a folder into which nothing was merged yet is none of an earlier merge.
+  const std::string fresh = directory.file("fresh");
+  std::filesystem::create_directory(fresh);
+  std::ofstream(fresh + "/merged.g2o") << "mine";
+  ASSERT_EQ(run({"merge", left, right, "-o", fresh}).exit_code, 0);
+  EXPECT_EQ(read_file(fresh + "/merged.g2o"), "mine");
+}
 
 TEST_F(Export, IsWrittenBesideTheResultOrWhereItIsTold) {
   const std::string elsewhere = directory.file("fleet.yaml");

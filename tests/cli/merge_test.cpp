@@ -100,7 +100,7 @@ TEST_F(Merge, NamesThePairThatTheOthersContradict) {
   const Outcome outcome =
       run({"merge", left, middle, right, "--init", poses, "--fix", left, "--fix", right, "-o", output});
   EXPECT_NE(outcome.out.find("rejected: "), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find(" by themselves, but the others contradict\n"), std::string::npos)
+  EXPECT_NE(outcome.out.find(" by themselves, but other maps or fixed poses contradict\n"), std::string::npos)
       << outcome.out;
   const Json joins = Json::parse(read_file(output + "/transforms.json")).at("joins");
   const auto rejected = std::find_if(joins.begin(), joins.end(),
@@ -209,6 +209,36 @@ TEST_F(Merge, FixTakesOneMapAndNoticesACopy) {
   const std::string help = run({"merge", "--help"}).out;
   EXPECT_NE(help.find("--fix MAP "), std::string::npos) << help;
   EXPECT_EQ(help.find("--fix MAP ..."), std::string::npos) << help;
+}
+
+TEST_F(Merge, AGivenPoseThatTwoMapsContradictIsNamed) {
+  const std::string poses = directory.write(
+      "poses.tsv", "map\tx\ty\ttheta\tsd\tsd_theta\nleft.yaml\t0\t0\t0\t0.05\t0.005\nright.yaml\t" +
+                       std::to_string(T_left_right.x + 60.0) + "\t" + std::to_string(T_left_right.y) + "\t" +
+                       std::to_string(T_left_right.theta) + "\t0.05\t0.005\n");
+  const Outcome outcome = run({"merge", left, right, "--init", poses, "-o", output});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.out.find("the given pose is 60 m from where the map surely fits "), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(outcome.out.find("a lower --accept"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Merge, AFixedMapThatIsLeftOutIsNamed) {
+  const std::string blank = write_map(directory, "blank", make_grid(40, 30, 0.1));
+  const Outcome outcome = run({"merge", left, right, blank, "--fix", blank, "-o", output});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  EXPECT_NE(outcome.out.find(blank + ": --fix has no effect, as the map is left out\n"), std::string::npos)
+      << outcome.out;
+}
+
+TEST_F(Merge, NamesTheOptionsByWhichTwoMapsWouldBeJoined) {
+  const Outcome outcome =
+      run({"merge", left, right, "--accept", "0.5", "--max-false-joins", "0", "-o", output});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(
+      outcome.out.find("\n     a higher --max-false-joins asks for less: this join alone is false in 0.0"),
+      std::string::npos)
+      << outcome.out;
 }
 
 TEST_F(Merge, LeavesOutMapsWithNothingToGoBy) {

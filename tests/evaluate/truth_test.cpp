@@ -118,7 +118,8 @@ TEST_F(TruthFiles, ARefusedFileIsNamedWithItsCause) {
 }
 
 TEST_F(TruthFiles, ARefusedHeaderIsExplained) {
-  EXPECT_EQ(complaint(negatives_, "fixed moving\n"), "truth.tsv:1: names no column 'fixed'");
+  EXPECT_EQ(complaint(negatives_, "fixed moving\n"),
+            "truth.tsv:1: names no column 'fixed': tabs separate columns, not spaces");
   EXPECT_EQ(complaint(negatives_, "\nfixed\n"), "truth.tsv:2: names no column 'moving'");
   EXPECT_EQ(complaint(negatives_, "fixed\tmoving\ttier\n"),
             "truth.tsv:1: names a column 'tier' that is not known here");

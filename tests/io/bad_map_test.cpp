@@ -157,8 +157,9 @@ TEST_F(BadMap, ImageOfMoreThanAllowedCells) {
 
 TEST_F(BadMap, BareImageWithoutResolution) {
   const std::string path = directory_.write("a.pgm", "P2 1 1 255 0");
-  EXPECT_EQ(error_of(path),
-            path + ": an image without a YAML needs a resolution (metres a cell) to be given");
+  EXPECT_EQ(error_of(path), path +
+                                ": an image without a YAML needs a resolution in metres per cell: "
+                                "--resolution, or resolution= in Python");
 }
 
 TEST_F(BadMap, BareImageWithAnImpossibleResolution) {

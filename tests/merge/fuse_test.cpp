@@ -11,6 +11,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "gridmerge/grid/resample.hpp"
 #include "merge/drawing.hpp"
 
 namespace gridmerge {

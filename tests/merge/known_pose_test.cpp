@@ -118,5 +118,27 @@ TEST(UnusedPoses, OfAMapThatWasLeftOutSayWhatIsMissing) {
   EXPECT_TRUE(rooms.unused().empty()) << "the only pose says nothing";
 }
 
+TEST(UnusedPoses, OfAMapThatAloneFitsElsewhereNameTheMapThatItFits) {
+  Rooms rooms;
+  Join join;
+  join.fixed = 1;
+  join.moving = 3;
+  join.match.verdict = Verdict::accepted;
+  join.match.T_fixed_moving = inverse(Rooms::at(1)) * Rooms::at(3) * SE2{0.0, 24.0, 0.0};
+  rooms.result.joins = {join};
+  ASSERT_EQ(rooms.unused().size(), 1u);
+  const UnusedPose unused = rooms.unused()[0];
+  EXPECT_EQ(unused.map, 3u);
+  EXPECT_EQ(unused.why, Why::against_match);
+  EXPECT_EQ(unused.other, 1u);
+  EXPECT_NEAR(unused.distance, 24.0, 1e-6);
+
+  rooms.result.joins[0].match.verdict = Verdict::refused;
+  EXPECT_EQ(rooms.unused().at(0).why, Why::contradicted) << "the maps alone are not sure";
+  rooms.result.joins[0].match.verdict = Verdict::accepted;
+  for (auto& one : rooms.known) one->sd_position = 20.0;
+  EXPECT_NE(rooms.unused().at(0).why, Why::against_match) << "24 m are within what is known";
+}
+
 }  // namespace
 }  // namespace gridmerge

@@ -31,12 +31,16 @@ struct UnusedPose {
     overruled,        ///< the map lies elsewhere: the maps say so
     not_sure_enough,  ///< the map was left out, and its pose alone joins it to none
     contradicted,     ///< the map was left out, though its pose is sure enough to join it
+    against_match,    ///< the map was left out: it and another one alone surely lie elsewhere
   };
 
   std::size_t map = 0;       ///< index of the input map
   Why why = Why::overruled;  ///< why it was not followed
-  double distance = 0.0;  ///< of an overruled pose from where the map lies [m, root mean square of its cells]
-  /// Of a pose that is not sure enough: the map whose known pose goes with it best.
+  /// Of an overruled pose, or one against the match, from where the map lies, or would lie [m, root mean
+  /// square of its cells].
+  double distance = 0.0;
+  /// Of a pose that is not sure enough: the map whose known pose goes with it best. Of one against the match:
+  /// the other map.
   std::size_t other = 0;
   double sd = 0.0;          ///< how far off the two put the maps (standard deviation [m])
   double sd_allowed = 0.0;  ///< how far off they may for known poses alone to join them [m]
