@@ -237,7 +237,7 @@ TEST(Merge, SimilarityMakesOneSharpMapOfMapsOfTwoScales) {
     EXPECT_EQ(members[i].deformation.kind(), MapTransform::similarity);
   }
   EXPECT_NEAR(members[0].deformation.affine()->scale() / members[1].deformation.affine()->scale(), 1.04,
-              3e-3);
+              kClose);
 }
 
 TEST(Merge, AffineKeepsFixedMapsAndGivesCopiesTheStretchOfTheirOriginals) {
