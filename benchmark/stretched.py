@@ -156,7 +156,9 @@ def placed(team: Team, merged: Merged) -> dict[int, np.ndarray]:
 
 def largest_move(team: Team, before: dict[int, np.ndarray], after: dict[int, np.ndarray]) -> float:
     return max(
-        float(np.hypot(*(after[i] - at)[team.known[i]].T).max()) for i, at in before.items() if team.known[i].any()
+        float(np.hypot(*(after[i] - at)[team.known[i]].T).max())
+        for i, at in before.items()
+        if team.known[i].any()
     )
 
 
@@ -198,10 +200,11 @@ def main() -> None:
     work.mkdir(parents=True, exist_ok=True)
     report = [
         "# Maps of another scale",
-        "Offices mapped by four robots without drift; the second robot's map is changed. Medians over the buildings in",
-        "which it joins with a rigid merge. Between maps: how far apart they put the places that both know [m, root mean",
-        "square]. To the building: how far all maps put them from where they are, after the best rigid fit [m, root mean",
-        "square]. Moved: from the rigid merge, at most. Scale: by how much the changed map is too large, as was found.",
+        "Offices mapped by four robots without drift; the second robot's map is changed. Medians over the buildings",
+        "in which it joins with a rigid merge; of what moved, the most. Between maps: how far apart they put places",
+        "that both know [m, root mean square]. To the building: how far all maps put them from where they are, after",
+        "the best rigid fit [m, root mean square]. Moved: how far from the rigid merge, at most [m]. Scale: by how",
+        "much the changed map is too large, as was found. Seconds: with the matches of all pairs in a cache.",
         "",
         "| changed | transform | joined | between maps | to the building | lie double | scale | moved | seconds |",
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- |",

@@ -70,8 +70,8 @@ class Deformation:
 
     @property
     def matrix(self) -> NDArray[np.float64] | None:
-        """Of a deformation that does not bend the map, the affine function that it is on its lattice, in the map's frame:
-        points p go to matrix[:, :2] @ p + matrix[:, 2]; an array of shape (2, 3). None for an elastic one."""
+        """The affine function that it is on its lattice: points p of the map's frame go to
+        matrix[:, :2] @ p + matrix[:, 2]; a new array of shape (2, 3). None for an elastic one."""
         entries = self._core.matrix
         return None if entries is None else np.array(entries).reshape(2, 3)
 
