@@ -103,4 +103,5 @@ def test_deformations_that_bend_have_no_matrix() -> None:
     stretched = gridmerge.Deformation((0.0, 0.0, 0.0), 10.0, np.stack([0.2 * x, -0.1 * y], axis=-1))
     assert stretched.kind == "affine"
     assert stretched.scale == pytest.approx(np.sqrt(1.02 * 0.99))
+    assert stretched.matrix is not None
     np.testing.assert_allclose(stretched.matrix, [[1.02, 0.0, 0.0], [0.0, 0.99, 0.0]], rtol=0.0, atol=1e-12)
