@@ -29,6 +29,7 @@ CASES = {
     "3 % long": 1.03 * np.eye(2),
     "4 % short": 0.96 * np.eye(2),
     "5 % long": 1.05 * np.eye(2),
+    "8 % long": 1.08 * np.eye(2),
     "2 % of shear": np.array([[1.0, 0.02], [0.0, 1.0]]),
     "3 % along one axis": np.diag([1.03, 1.0]),
 }

@@ -138,22 +138,20 @@ std::vector<BentMember> stretch(const std::vector<RigidMember>& maps, double sd,
   for (std::size_t i = 0; i < maps.size(); ++i) {
     if (!members[i].held) parts[part_of[i]].add(i);
   }
+  std::vector<bool> is_stretched(maps.size(), false);  // by part, whose least map gives it its number
   std::vector<BentMember> stretched;
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    Part& part = parts[part_of[i]];
-    if (part_of[i] == i && gains[i] && !is_anchored[i]) part.take_out_mean_stretch();
-    if (members[i].held || !part.is_believable()) {
+    if (part_of[i] == i && gains[i]) {
+      if (!is_anchored[i]) parts[i].take_out_mean_stretch();
+      is_stretched[i] = parts[i].is_believable();
+    }
+    if (members[i].held || !is_stretched[part_of[i]]) {
       stretched.push_back({maps[i].T_group_map, {}});
       continue;
     }
     ElasticSheet& sheet = members[i].sheet;
-    stretched.push_back({sheet.T_group_map(), sheet.deformation()});
-  }
-  for (std::size_t i = 0; i < maps.size(); ++i) {
-    if (stretched[i].deformation.is_identity()) continue;
-    ElasticSheet& sheet = members[i].sheet;
     sheet.move(rigid_part(sheet, known[i]), {});
-    stretched[i] = {sheet.T_group_map(), sheet.deformation()};
+    stretched.push_back({sheet.T_group_map(), sheet.deformation()});
   }
   return stretched;
 }
