@@ -110,10 +110,13 @@ std::optional<Affine> Deformation::affine() const {
                           by_column.y / spacing_,
                           1.0 + by_row.y / spacing_,
                           {corner.x + by_column.x + by_row.x, corner.y + by_column.y + by_row.y}};
-  const SE2 T_lattice_map = inverse(T_map_lattice_);
-  const auto in_map = [&](const Point2& p) { return T_map_lattice_ * (in_lattice * (T_lattice_map * p)); };
-  const Point2 origin = in_map({0.0, 0.0}), x = in_map({1.0, 0.0}), y = in_map({0.0, 1.0});
-  return Affine{x.x - origin.x, y.x - origin.x, x.y - origin.y, y.y - origin.y, origin};
+  // The turn apart from where the lattice stands: that may be far away.
+  const SE2 turn{0.0, 0.0, T_map_lattice_.theta}, back = inverse(turn);
+  const Affine linear{in_lattice.xx, in_lattice.xy, in_lattice.yx, in_lattice.yy, {}};
+  const Point2 x = turn * (linear * (back * Point2{1.0, 0.0})),
+               y = turn * (linear * (back * Point2{0.0, 1.0}));
+  const Point2 origin = T_map_lattice_ * (in_lattice * (inverse(T_map_lattice_) * Point2{}));
+  return Affine{x.x, y.x, x.y, y.y, origin};
 }
 
 MapTransform Deformation::kind() const {

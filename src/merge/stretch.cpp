@@ -3,11 +3,11 @@
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
 
 #include "grid/parallel.hpp"
@@ -20,6 +20,7 @@ namespace gridmerge::internal {
 namespace {
 
 constexpr double kLatticeByMap = 2.0;  // side of the lattice, by that of the map
+constexpr double kLeastLattice = 1.0;  // [m]
 constexpr int kMostRoundsOfMean = 20;
 constexpr double kNoStretch = 1e-13;
 
@@ -42,11 +43,15 @@ std::vector<std::size_t> parts_of(const std::vector<std::pair<std::size_t, std::
 
 /// By how much a sheet is stretched along each direction: the logarithms, in the group's frame.
 Eigen::Matrix2d log_stretch(const ElasticSheet& sheet) {
-  const std::optional<Affine> in_map = sheet.deformation().affine();
-  if (!in_map) throw std::logic_error("a sheet that may not bend is bent");
+  const std::vector<Point2>& shifts = sheet.shifts();
+  const Point2 corner = shifts.front(), right = shifts[static_cast<std::size_t>(sheet.columns() - 1)],
+               top = shifts[shifts.size() - static_cast<std::size_t>(sheet.columns())];
+  const double along_x = (sheet.columns() - 1) * sheet.spacing(),
+               along_y = (sheet.rows() - 1) * sheet.spacing();
   Eigen::Matrix2d linear;
-  linear << in_map->xx, in_map->xy, in_map->yx, in_map->yy;
-  linear = Eigen::Rotation2Dd(sheet.T_group_map().theta).toRotationMatrix() * linear;
+  linear << 1.0 + (right.x - corner.x) / along_x, (top.x - corner.x) / along_y,
+      (right.y - corner.y) / along_x, 1.0 + (top.y - corner.y) / along_y;
+  linear = Eigen::Rotation2Dd(sheet.direction()).toRotationMatrix() * linear;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> squared(linear * linear.transpose());
   const Eigen::Vector2d logarithms = 0.5 * squared.eigenvalues().array().log();
   return squared.eigenvectors() * logarithms.asDiagonal() * squared.eigenvectors().transpose();
@@ -116,8 +121,9 @@ std::vector<BentMember> stretch(const std::vector<RigidMember>& maps, double sd,
   std::vector<std::vector<Point2>> known(maps.size());
   for (const RigidMember& one : maps) {
     const OccupancyGrid& map = one.map->known();
-    members.push_back({ElasticSheet(map, kLatticeByMap * longer_side(map), one.T_group_map),
-                       ElasticWalls(DrawnWalls::of(*one.map, cell)), one.held, transform});
+    members.push_back(
+        {ElasticSheet(map, std::max(kLeastLattice, kLatticeByMap * longer_side(map)), one.T_group_map),
+         ElasticWalls(DrawnWalls::of(*one.map, cell)), one.held, transform});
   }
   parallel_for(maps.size(), [&](std::size_t i) { known[i] = sample_known(maps[i].map->known()); });
 

@@ -167,7 +167,8 @@ RC_GTEST_PROP(Deformation, IsTheAffineFunctionThatItsShiftsAre, ()) {
   if (is_similar) change = {change.xx, -change.yx, change.yx, change.xx, change.shift};
   const int columns = *rc::gen::inRange(4, 8), rows = *rc::gen::inRange(4, 8);
   const double spacing = *rc::gen::inRange(10, 5000) / 100.0;
-  const SE2 frame{100.0 * entry(), 100.0 * entry(), 20.0 * entry()};
+  const double far = *rc::gen::element(100.0, 1e7);  // as coordinates of a country are
+  const SE2 frame{far * entry(), far * entry(), 20.0 * entry()};
   std::vector<Point2> shifts;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column)
@@ -180,7 +181,7 @@ RC_GTEST_PROP(Deformation, IsTheAffineFunctionThatItsShiftsAre, ()) {
   const Point2 p = frame * Point2{*rc::gen::inRange(0, 1001) / 1000.0 * spacing * (columns - 3),
                                   *rc::gen::inRange(0, 1001) / 1000.0 * spacing * (rows - 3)};
   const Point2 expected = deformation.bend(p), found = *affine * p;
-  RC_ASSERT(std::hypot(found.x - expected.x, found.y - expected.y) < 1e-9 * (1.0 + spacing));
+  RC_ASSERT(std::hypot(found.x - expected.x, found.y - expected.y) < 1e-9 * (1.0 + spacing) + 1e-14 * far);
   RC_ASSERT(std::abs((1.0 + change.xx) * (1.0 + change.yy) - change.xy * change.yx -
                      affine->scale() * affine->scale()) < 1e-9);
   const bool may_be_similar = std::abs(change.xx - change.yy) + std::abs(change.xy + change.yx) < 1e-9;
