@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What `merge --elastic` makes of bent maps: marks of the Halmstad maps, thickness of walls, simulated maps.
 
+The marks are also those of maps that have a scale of their own, or shear: `merge --transform`.
+
 Writes bent.md. The marks are for this program alone: the engine never sees them.
 """
 
@@ -21,6 +23,7 @@ import numpy as np
 from matplotlib import image
 
 SETS = ("E5", "HIH")
+TRANSFORMS = ("rigid", "similarity", "affine", "elastic")
 DRIFTS = (0.0, 0.5, 1.0, 2.0)
 FARTHEST = 2.0  # [m]: a wall farther from every true one is no wall of the building
 
@@ -180,17 +183,18 @@ def halmstad(gridmerge: Path, data: Path, output: Path, report: list[str]) -> No
         "Sound marks: without those more than 1 m from a robust quadratic fit of the pair's marks. Thickness: twice",
         "the area of the walls by their outline [m], of the inputs the median.",
         "",
-        "| | E5 rigid | E5 elastic | HIH rigid | HIH elastic |",
-        "| --- | --- | --- | --- | --- |",
+        "| | " + " | ".join(f"{name} {kind}" for name in SETS for kind in TRANSFORMS) + " |",
+        "| --- |" + " --- |" * len(SETS) * len(TRANSFORMS),
     ]
     columns: dict[str, list[str]] = collections.defaultdict(list)
     for name in SETS:
         maps = sorted((data / "halmstad").glob(f"{name}_[0-9]*.yaml"))
         inputs = [thickness(*read_map(path)[:2]) for path in maps]
-        rigid = merge(gridmerge, maps, output / f"{name}_rigid")
-        elastic = merge(gridmerge, maps, output / f"{name}_elastic", "--elastic")
-        of_rigid = mark_residuals(marks, rigid.members())
-        for merged in (rigid, elastic):
+        merges = [
+            merge(gridmerge, maps, output / f"{name}_{kind}", "--transform", kind) for kind in TRANSFORMS
+        ]
+        of_rigid = mark_residuals(marks, merges[0].members())
+        for merged in merges:
             of = mark_residuals(marks, merged.members())
             worst = max(a / b for a, b in zip(of.all, of_rigid.all, strict=True))
             columns["marks"].append(f"{statistics.median(of.all):.3f}")

@@ -27,6 +27,12 @@ KnownPoses draw_known_poses(FuzzedDataProvider& bytes, std::size_t count) {
   return poses;
 }
 
+/// A map has no more freedom than was asked for.
+bool is_allowed(const Deformation& deformation, MapTransform asked) {
+  const MapTransform kind = deformation.kind();
+  return kind <= asked;
+}
+
 void require_sound(const MergeResult& result, const std::vector<OccupancyGrid>& maps,
                    const MergeOptions& options) {
   std::set<std::size_t> seen;
@@ -37,7 +43,7 @@ void require_sound(const MergeResult& result, const std::vector<OccupancyGrid>& 
     for (const Member& member : component.members) {
       fuzz::require(member.map < maps.size() && seen.insert(member.map).second);
       fuzz::require(fuzz::is_finite(member.T_component_map));
-      fuzz::require(options.elastic || member.deformation.is_identity());
+      fuzz::require(is_allowed(member.deformation, options.transform));
       fuzz::require(member.deformation.strain_bound() <= Deformation::kMostStrain);
       fuzz::require(member.probability && *member.probability >= 0.0 && *member.probability <= 1.0);
       fuzz::require(member.sd && member.sd->position >= 0.0 && member.sd->theta >= 0.0);
@@ -79,7 +85,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto count = bytes.ConsumeIntegralInRange(std::size_t{2}, std::size_t{4});
   const KnownPoses known = draw_known_poses(bytes, count);
   const std::vector<OccupancyGrid> maps = fuzz::draw_maps(bytes, count);
-  options.elastic = bytes.ConsumeBool();
+  options.transform = bytes.PickValueInArray(
+      {MapTransform::rigid, MapTransform::elastic, MapTransform::similarity, MapTransform::affine});
   MergeResult result;
   try {
     result = merge(maps, options, known);

@@ -29,6 +29,7 @@
 #include "plan.hpp"
 #include "scale_hint.hpp"
 #include "search_options.hpp"
+#include "transform_options.hpp"
 
 namespace gridmerge::cli {
 
@@ -43,7 +44,7 @@ struct MergeCommandOptions {
   LoadOptions load;
   double output_resolution = 0.0;
   double max_false_joins = MergeOptions{}.max_false_joins;
-  bool elastic = false;
+  std::string transform = name_of(MapTransform::rigid);
   double max_missed = MergeOptions{}.max_missed;
   SearchOptions search;
   KnownPoseOptions known;
@@ -121,7 +122,7 @@ MergeOptions merge_options(const MergeCommandOptions& options, Console& console)
   engine.match = match_options(options.common, options.search);
   engine.resolution = options.output_resolution;
   engine.max_false_joins = options.max_false_joins;
-  engine.elastic = options.elastic;
+  engine.transform = map_transform(options.transform).value();
   engine.max_missed = options.max_missed;
   engine.progress = [&console](std::size_t done, std::size_t total) {
     if (done < total) {
@@ -210,7 +211,8 @@ int run_merge(const MergeCommandOptions& options) {
     write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   });
   matcher.write_trace();
-  const AskedMerge asked{options.maps, options.search, options.elastic, options.max_false_joins};
+  const AskedMerge asked{options.maps, options.search, map_transform(options.transform).value(),
+                         options.max_false_joins};
   const std::string hints = scale_hints(options, inputs.maps, result, console) +
                             describe_doubled(asked, inputs.maps, result, options.common.verbose);
   console.clear();
@@ -268,11 +270,7 @@ void add_merge(CLI::App& app, Action& action) {
           "--all-pairs", [options] { options->max_missed = 0.0; },
           "Match all pairs, however many maps there are: --max-missed 0")
       ->excludes(missed);
-  command->add_flag(
-      "--elastic", options->elastic,
-      "Bend the maps so that walls that several have seen come to lie on each other: for maps that "
-      "drift has bent. A map that --fix holds stays straight. It changes neither which maps join nor "
-      "how sure that is");
+  const TransformOptions freedom = add_transform_options(*command, options->transform);
   add_trace_option(*command, options->search);
   add_cache_option(*command, options->cache);
   add_shard_option(*command, options->cache);
@@ -299,14 +297,14 @@ void add_merge(CLI::App& app, Action& action) {
       "  gridmerge merge robot1.yaml robot2.yaml -o merged --export g2o --export open-rmf=fleet.yaml\n"
       "  gridmerge merge robot1.mcap team.mcap#/tb2/map team.mcap#/tb3/map -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --plan layout.yaml -o merged\n"
+      "  gridmerge merge robot1.yaml robot2.yaml --transform similarity -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged\n"
       "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml --fix robot2.yaml -o "
       "merged");
-  command->callback([options, budget, missed, &action] {
+  command->callback([options, budget, missed, freedom, &action] {
     if (budget->count() > 0 && options->search.up_the_tree())
       throw CLI::ValidationError("--max-false-joins", "needs --strategy joint");
-    if (options->elastic && options->search.up_the_tree())
-      throw CLI::ValidationError("--elastic", "needs --strategy joint");
+    settle_transform(freedom, options->search.up_the_tree(), options->transform);
     if (options->max_missed >= 1.0)
       throw CLI::ValidationError("--max-missed", "all joins may not be missed: give less than 1");
     if (missed->count() > 0 && options->search.up_the_tree())

@@ -89,8 +89,37 @@ double most_bent(const OccupancyGrid& map, const Deformation& deformation) {
   return most;
 }
 
-/// Whether any map is bent.
-bool is_bent(const MergeResult& result) {
+/// What was done to a map before it was placed; "" if nothing was.
+std::string describe_change(const OccupancyGrid& map, const Deformation& deformation) {
+  const std::optional<Affine> affine = deformation.affine();
+  switch (deformation.kind()) {
+    case MapTransform::rigid:
+      break;
+    case MapTransform::similarity:
+      return fmt::format(", scale {:.4f}", affine->scale());
+    case MapTransform::affine: {
+      // By how much more it is stretched along one direction than across it (singular values).
+      const double mean = std::hypot(affine->xx + affine->yy, affine->yx - affine->xy) / 2.0;
+      const double apart = std::hypot(affine->xx - affine->yy, affine->yx + affine->xy) / 2.0;
+      return fmt::format(", scale {:.4f} ({:.4f} to {:.4f} by direction)", affine->scale(), mean - apart,
+                         mean + apart);
+    }
+    case MapTransform::elastic:
+      return fmt::format(", bent by up to {:.1f} m", most_bent(map, deformation));
+  }
+  return {};
+}
+
+/// Why no map was changed although that was asked for.
+const char* explain_no_change(MapTransform asked) {
+  return asked == MapTransform::elastic
+             ? "no map is bent: by what they say, bending would bring their walls no nearer\n"
+             : "no map is stretched: by what they say, scales of their own would bring their walls no "
+               "nearer\n";
+}
+
+/// Whether any map is bent or stretched.
+bool is_changed(const MergeResult& result) {
   return std::any_of(result.components.begin(), result.components.end(), [](const Component& component) {
     return std::any_of(component.members.begin(), component.members.end(),
                        [](const Member& member) { return !member.deformation.is_identity(); });
@@ -120,16 +149,13 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
     const Component& component = result.components[i];
     fmt::format_to(out, "{}: {} of {} maps\n", component_file(i), component.members.size(), names.size());
     for (const Member& member : component.members) {
-      const std::string bent =
-          member.deformation.is_identity()
-              ? std::string()
-              : fmt::format(", bent by up to {:.1f} m", most_bent(maps[member.map], member.deformation));
       fmt::format_to(out, "  {}: {}{}\n", escape_controls(names[member.map]),
-                     describe_pose(member.T_component_map), bent);
+                     describe_pose(member.T_component_map),
+                     describe_change(maps[member.map], member.deformation));
     }
   }
-  if (asked.elastic && !result.components.empty() && !is_bent(result))
-    text += "no map is bent: by what they say, bending would bring their walls no nearer\n";
+  if (asked.transform != MapTransform::rigid && !result.components.empty() && !is_changed(result))
+    text += explain_no_change(asked.transform);
   if (result.expected_false_joins && !result.components.empty())
     fmt::format_to(out, "of these joins, {:.3f} are expected to be false\n", *result.expected_false_joins);
   for (const LeftOut& one : result.left_out)
@@ -157,7 +183,7 @@ std::string describe_doubled(const AskedMerge& asked, const std::vector<Occupanc
   std::string text;
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     const double share = measure_doubled_walls(maps, result.components[i]).share();
-    const bool may_help = !asked.elastic && share >= kManyDoubled;
+    const bool may_help = asked.transform != MapTransform::elastic && share >= kManyDoubled;
     if (!may_help && !is_asked_for) continue;
     fmt::format_to(std::back_inserter(text), "{}: {:.1f} % of the walls that several maps saw lie double{}\n",
                    component_file(i), 100.0 * share,

@@ -13,7 +13,7 @@ namespace gridmerge::cli {
 struct AskedMerge {
   const std::vector<std::string>& names;  ///< of the maps
   const SearchOptions& search;
-  bool elastic = false;
+  MapTransform transform = MapTransform::rigid;
   double max_false_joins = MergeOptions{}.max_false_joins;
 };
 

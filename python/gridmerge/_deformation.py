@@ -64,6 +64,23 @@ class Deformation:
         return np.asarray(self._core.shifts).reshape(self._core.rows, self._core.columns, 2)
 
     @property
+    def kind(self) -> str:
+        """What it does to a map: "similarity", "affine" or "elastic"."""
+        return self._core.kind
+
+    @property
+    def matrix(self) -> NDArray[np.float64] | None:
+        """The affine function that it is on its lattice: points p of the map's frame go to
+        matrix[:, :2] @ p + matrix[:, 2]; a new array of shape (2, 3). None for an elastic one."""
+        entries = self._core.matrix
+        return None if entries is None else np.array(entries).reshape(2, 3)
+
+    @property
+    def scale(self) -> float | None:
+        """By how much it enlarges lengths, the geometric mean over both axes; None for an elastic one."""
+        return self._core.scale
+
+    @property
     def strain_bound(self) -> float:
         """An upper bound of the shift's derivative (Frobenius norm); at most 0.5."""
         return self._core.strain_bound

@@ -286,7 +286,7 @@ class _Answers:
                 _core.DEFAULT_MAX_FALSE_JOINS,
                 _core.DEFAULT_MAX_MISSED,
                 0.0,
-                False,
+                "rigid",
                 "exhaustive",
             )
             shared = {merger.add(self._load(member), None): self._share(member) for member in members}

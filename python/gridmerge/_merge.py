@@ -29,6 +29,7 @@ def merge(
     max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
     max_missed: float = _core.DEFAULT_MAX_MISSED,
     output_resolution: float | None = None,
+    transform: str | None = None,
     elastic: bool = False,
     plan: MapLike | None = None,
     plan_scale: tuple[float, float] | None = None,
@@ -55,9 +56,11 @@ def merge(
         max_missed: of more than 50 maps match likely pairs only: the others may hide this share of all joins, 0.25 or
             so. Up to 0.2 all pairs are matched. "tree" does not use it.
         output_resolution: of the merged maps [m]; None = the finest of the maps'.
-        elastic: whether maps are bent so that walls that several have seen come to lie on each other: for maps that
-            drift has bent. See Member.deformation. Fixed maps stay straight. It changes neither which maps join nor
-            how sure that is, and needs the strategy "joint".
+        transform: what may be done to maps so that walls that several have seen come to lie on each other: "rigid",
+            which is the default, turns and shifts them; "similarity" gives each a scale of its own, "affine" scales
+            along two axes, and shear; "elastic" bends them, as drift has. See Member.deformation. Fixed maps stay as
+            they are. It changes neither which maps join nor how sure that is.
+        elastic: True is the transform "elastic".
         plan: an architect's plan of unknown scale, a line drawing or a map, that the maps are hung on: see
             MergeResult.plan. Maps that nothing else joins are joined by it. The component on the plan is in the plan's
             frame, in the maps' metres, and holds the maps alone. Not for "tree", and not together with `fix`.
@@ -85,8 +88,9 @@ def merge(
         raise ValueError(
             "search: 'random-walk' needs the strategy 'tree': it has one pose per pair, no probability"
         )
-    if elastic and up_the_tree:
-        raise ValueError("strategy: elastic needs 'joint'")
+    chosen_transform = to_transform(transform, elastic)
+    if chosen_transform != "rigid" and up_the_tree:
+        raise ValueError(f"strategy: {chosen_transform} needs 'joint'")
     if _executor.check(executor) is not None and up_the_tree:
         raise ValueError("executor: needs the strategy 'joint': a tree's matches wait for each other")
     chosen = choose_plan(grids, plan, plan_scale, up_the_tree, fix is not None, search)
@@ -111,7 +115,7 @@ def merge(
             max_missed,
             resolution,
             up_the_tree,
-            bool(elastic),
+            chosen_transform,
             search,
             told,
         )
@@ -122,7 +126,7 @@ def merge(
             max_false_joins,
             max_missed,
             resolution,
-            bool(elastic),
+            chosen_transform,
             search,
         )
         ids = [merger.add(grid._core, pose) for grid, pose in zip(grids, known, strict=True)]
@@ -163,6 +167,15 @@ def to_names(names: Sequence[str] | None, grids: Sequence[OccupancyGrid]) -> lis
     if len(called) != len(grids):
         raise ValueError(f"names: there are {len(called)} for {len(grids)} maps")
     return called
+
+
+def to_transform(transform: str | None, elastic: bool) -> str:
+    if transform is None:
+        return "elastic" if elastic else "rigid"
+    chosen = _arguments.choice("transform", transform, tuple(_core.map_transforms()))
+    if elastic and chosen != "elastic":
+        raise ValueError(f"elastic: contradicts the transform {chosen!r}")
+    return chosen
 
 
 def to_output_resolution(value: float | None) -> float:

@@ -44,8 +44,8 @@ class Member:
     sd_theta: float | None
     """Standard deviation of the direction [rad]; 0 for what holds the frame, None up the tree."""
     deformation: Deformation | None = None
-    """How the map is bent, in its own frame, before the transform takes it to the component's. None for a straight map,
-    as all are without ``elastic=True``."""
+    """How the map is bent or stretched, in its own frame, before the transform takes it to the component's. None for a
+    map that is not, as all are with the transform "rigid"."""
 
     def to_component(self, points: ArrayLike) -> NDArray[np.float64]:
         """Where points of the map's frame lie in the component's [m]: an array of shape (..., 2), and so is the result.

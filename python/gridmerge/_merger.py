@@ -15,7 +15,7 @@ from ._arguments import Progress
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map
 from ._known_poses import CoreKnown, InitialPose, to_core
-from ._merge import to_output_resolution
+from ._merge import to_output_resolution, to_transform
 from ._merge_result import MergeResult, to_merge_result
 from ._repr import count
 from ._transform import PoseLike, Transform
@@ -39,6 +39,7 @@ class Merger:
         max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
         max_missed: float = _core.DEFAULT_MAX_MISSED,
         output_resolution: float | None = None,
+        transform: str | None = None,
         elastic: bool = False,
     ) -> None:
         self._set_up(
@@ -48,11 +49,11 @@ class Merger:
                 _arguments.not_negative("max_false_joins", max_false_joins),
                 _arguments.share("max_missed", max_missed),
                 to_output_resolution(output_resolution),
-                bool(elastic),
+                to_transform(transform, elastic),
             )
         )
 
-    def _set_up(self, options: tuple[int, float, float, float, float, bool]) -> None:
+    def _set_up(self, options: tuple[int, float, float, float, float, str]) -> None:
         self._options = options
         self._core = _core.Merger(*options, "exhaustive")
         self._maps: dict[int, tuple[OccupancyGrid, str]] = {}

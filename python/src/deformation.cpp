@@ -2,7 +2,10 @@
 #include "gridmerge/grid/deformation.hpp"
 
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 
+#include <array>
+#include <optional>
 #include <utility>
 
 #include "bindings.hpp"
@@ -63,6 +66,19 @@ void bind_deformation(nb::module_& module) {
       .def_prop_ro(
           "shifts", [](const Deformation& one) { return to_numpy(one.shifts()); },
           nb::rv_policy::move)  // it owns its values
+      .def_prop_ro("kind", [](const Deformation& one) { return name_of(one.kind()); })
+      .def_prop_ro("matrix",
+                   [](const Deformation& one) -> std::optional<std::array<double, 6>> {
+                     const std::optional<Affine> affine = one.affine();
+                     if (!affine) return std::nullopt;
+                     return std::array{affine->xx, affine->xy, affine->shift.x,
+                                       affine->yx, affine->yy, affine->shift.y};
+                   })
+      .def_prop_ro("scale",
+                   [](const Deformation& one) -> std::optional<double> {
+                     const std::optional<Affine> affine = one.affine();
+                     return affine ? std::optional(affine->scale()) : std::nullopt;
+                   })
       .def_prop_ro("strain_bound", &Deformation::strain_bound)
       .def(
           "bend",

@@ -42,8 +42,8 @@ MergeResult merge_grids(const std::vector<OccupancyGrid>& grids,
 
 Merged merge_maps(std::vector<Map> maps, const std::vector<std::optional<Known>>& known, int threads,
                   std::optional<double> accept, double max_false_joins, double max_missed,
-                  double output_resolution, bool up_the_tree, bool elastic, const std::string& search,
-                  const nb::object& progress) {
+                  double output_resolution, bool up_the_tree, const std::string& transform,
+                  const std::string& search, const nb::object& progress) {
   std::vector<std::optional<KnownPose>> known_poses;
   known_poses.reserve(known.size());
   for (const std::optional<Known>& one : known) known_poses.push_back(to_known_pose(one));
@@ -53,7 +53,7 @@ Merged merge_maps(std::vector<Map> maps, const std::vector<std::optional<Known>>
   options.max_false_joins = max_false_joins;
   options.max_missed = max_missed;
   options.resolution = output_resolution;
-  options.elastic = elastic;
+  options.transform = map_transform(transform).value();
   MergeResult result = compute_in_worker(progress, [&](const Report& report) {
     options.progress = [&report](std::size_t done, std::size_t total) {
       report(static_cast<double>(done) / static_cast<double>(total));
@@ -192,7 +192,7 @@ void bind_merge(nb::module_& module) {
       "validate_known_pose", [](const Known& known) { validate(*to_known_pose(known)); }, nb::arg("known"));
   module.def("merge", &merge_maps, nb::arg("maps"), nb::arg("known"), nb::arg("threads"),
              nb::arg("accept").none(), nb::arg("max_false_joins"), nb::arg("max_missed"),
-             nb::arg("output_resolution"), nb::arg("up_the_tree"), nb::arg("elastic"), nb::arg("search"),
+             nb::arg("output_resolution"), nb::arg("up_the_tree"), nb::arg("transform"), nb::arg("search"),
              nb::arg("progress").none());
   module.def(
       "bent_map",
@@ -201,6 +201,11 @@ void bind_merge(nb::module_& module) {
         return Map{std::make_shared<const OccupancyGrid>(bent_map(*map.grid, deformation)), {}, {}};
       },
       nb::arg("map"), nb::arg("deformation"));
+  module.def("map_transforms", [] {
+    std::vector<std::string> names;
+    for (const MapTransformName& one : map_transforms()) names.emplace_back(one.name);
+    return names;
+  });
   module.def("export_formats", [] {
     std::vector<std::string> names;
     for (const ExportFormat format : export_formats()) names.emplace_back(name_of(format));

@@ -17,9 +17,9 @@ namespace {
 class MapMerger {
  public:
   MapMerger(int threads, double accept, double max_false_joins, double max_missed, double output_resolution,
-            bool elastic, const std::string& search)
-      : merger_(make_options(threads, accept, max_false_joins, max_missed, output_resolution, elastic, search,
-                             share_)) {}
+            const std::string& transform, const std::string& search)
+      : merger_(make_options(threads, accept, max_false_joins, max_missed, output_resolution, transform,
+                             search, share_)) {}
 
   std::size_t add(const Map& map, const std::optional<Known>& known) {
     std::optional<std::size_t> id;
@@ -114,15 +114,15 @@ class MapMerger {
   }
 
   static MergeOptions make_options(int threads, double accept, double max_false_joins, double max_missed,
-                                   double output_resolution, bool elastic, const std::string& search,
-                                   std::shared_ptr<Report> share) {
+                                   double output_resolution, const std::string& transform,
+                                   const std::string& search, std::shared_ptr<Report> share) {
     MergeOptions options;
     options.match.threads = threads;
     set_search(options.match, search, accept);
     options.max_false_joins = max_false_joins;
     options.max_missed = max_missed;
     options.resolution = output_resolution;
-    options.elastic = elastic;
+    options.transform = map_transform(transform).value();
     options.progress = [share = std::move(share)](std::size_t done, std::size_t total) {
       (*share)(static_cast<double>(done) / static_cast<double>(total));
     };
@@ -138,9 +138,9 @@ class MapMerger {
 
 void bind_merger(nb::module_& module) {
   nb::class_<MapMerger>(module, "Merger")
-      .def(nb::init<int, double, double, double, double, bool, const std::string&>(), nb::arg("threads"),
-           nb::arg("accept"), nb::arg("max_false_joins"), nb::arg("max_missed"), nb::arg("output_resolution"),
-           nb::arg("elastic"), nb::arg("search"))
+      .def(nb::init<int, double, double, double, double, const std::string&, const std::string&>(),
+           nb::arg("threads"), nb::arg("accept"), nb::arg("max_false_joins"), nb::arg("max_missed"),
+           nb::arg("output_resolution"), nb::arg("transform"), nb::arg("search"))
       .def("add", &MapMerger::add, nb::arg("map"), nb::arg("known").none())
       .def("update", &MapMerger::update, nb::arg("id"), nb::arg("map"))
       .def("grow", &MapMerger::grow, nb::arg("id"), nb::arg("map"))

@@ -85,6 +85,47 @@ Point2 Deformation::straighten(const Point2& bent) const {
   return T_map_lattice_ * q;
 }
 
+std::optional<Affine> Deformation::affine() const {
+  if (is_identity()) return Affine{};
+  // Of the lattice: from one corner to the two next to it.
+  const double tolerance = 1e-9 * spacing_;
+  const Point2 corner = shifts_.front(), right = shifts_[static_cast<std::size_t>(columns_ - 1)],
+               top = shifts_[shifts_.size() - static_cast<std::size_t>(columns_)];
+  const double along_x = columns_ - 1, along_y = rows_ - 1;
+  const Point2 by_column{(right.x - corner.x) / along_x, (right.y - corner.y) / along_x};
+  const Point2 by_row{(top.x - corner.x) / along_y, (top.y - corner.y) / along_y};
+  std::size_t i = 0;
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column, ++i) {
+      const Point2 expected{corner.x + column * by_column.x + row * by_row.x,
+                            corner.y + column * by_column.y + row * by_row.y};
+      if (std::abs(shifts_[i].x - expected.x) > tolerance || std::abs(shifts_[i].y - expected.y) > tolerance)
+        return std::nullopt;
+    }
+  }
+  // The first point stands one spacing before the origin on both axes, and a spline whose points are an
+  // affine function of their places is that function.
+  const Affine in_lattice{1.0 + by_column.x / spacing_,
+                          by_row.x / spacing_,
+                          by_column.y / spacing_,
+                          1.0 + by_row.y / spacing_,
+                          {corner.x + by_column.x + by_row.x, corner.y + by_column.y + by_row.y}};
+  // The turn apart from where the lattice stands: that may be far away.
+  const SE2 turn{0.0, 0.0, T_map_lattice_.theta}, back = inverse(turn);
+  const Affine linear{in_lattice.xx, in_lattice.xy, in_lattice.yx, in_lattice.yy, {}};
+  const Point2 x = turn * (linear * (back * Point2{1.0, 0.0})),
+               y = turn * (linear * (back * Point2{0.0, 1.0}));
+  const Point2 origin = T_map_lattice_ * (in_lattice * (inverse(T_map_lattice_) * Point2{}));
+  return Affine{x.x, y.x, x.y, y.y, origin};
+}
+
+MapTransform Deformation::kind() const {
+  if (is_identity()) return MapTransform::rigid;
+  const std::optional<Affine> as_affine = affine();
+  if (!as_affine) return MapTransform::elastic;
+  return as_affine->is_similarity() ? MapTransform::similarity : MapTransform::affine;
+}
+
 Deformation seen_from(const SE2& T_a_b, const Deformation& deformation) {
   if (deformation.is_identity()) return deformation;
   return {T_a_b * deformation.T_map_lattice(), deformation.spacing(), deformation.columns(),

@@ -7,6 +7,7 @@
 #include "merge/alignment.hpp"
 #include "merge/elastic.hpp"
 #include "merge/joins.hpp"
+#include "merge/stretch.hpp"
 
 namespace gridmerge::internal {
 
@@ -63,11 +64,13 @@ Component make_component(const NodeGroup& group, const JoinProblem& problem,
   const std::vector<std::optional<PoseDeviation>> deviations = find_deviations(maps, measured, first);
 
   std::vector<Deformation> deformations(group.size());
-  if (options.elastic) {
+  if (options.transform != MapTransform::rigid) {
     std::vector<RigidMember> rigid;
     for (std::size_t i = 0; i < group.size(); ++i)
       rigid.push_back({maps[i].map, poses[i], maps[i].is_fixed()});
-    const std::vector<BentMember> bent = bend(rigid, usual_deviation(measured));
+    const double sd = usual_deviation(measured);
+    const std::vector<BentMember> bent =
+        options.transform == MapTransform::elastic ? bend(rigid, sd) : stretch(rigid, sd, options.transform);
     for (std::size_t i = 0; i < group.size(); ++i) {
       poses[i] = bent[i].T_group_map;
       deformations[i] = bent[i].deformation;

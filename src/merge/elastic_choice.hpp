@@ -18,4 +18,14 @@ namespace gridmerge::internal {
 /// `options.fold` is not used. Costs two fits to half of the walls.
 std::vector<bool> find_gains(const ElasticFit& options, const std::vector<ElasticMember>& members);
 
+/// Which parts gain by the freedom of their maps; `part_of[i]` is that of map i, and no pair joins two parts.
+///
+/// By the same cross-validation with squares of twice `spacing` metres, part by part: the fit of each half is
+/// compared with that of maps that are turned and shifted alone, to the same walls. A gap of a quarter of a
+/// cell is worth something here: so few freedoms gain little by chance. By part; false where
+/// it has no pair. Costs four fits to half of the walls.
+std::vector<bool> find_parts_that_gain(const ElasticFit& options, double spacing,
+                                       const std::vector<ElasticMember>& members,
+                                       const std::vector<std::size_t>& part_of);
+
 }  // namespace gridmerge::internal

@@ -26,6 +26,18 @@ constexpr double kBendingLength = 1.5;  // [m]: over so much a map may well bend
 constexpr double kStrainLength = 0.3;   // [m]
 constexpr double kTiedDown = 1e-3;      // of a shift [1/m^2]: next to nothing, where nothing else holds it
 constexpr double kMostStrainOfStep = 0.35;
+// Of a map that is not bent, whose scale and shear are of the whole map [1]: what a sensor or a drawing may
+// well be off by.
+constexpr double kUsualStrain = 0.03;
+
+/// Of a map: as `stiffness`, or with the strain's weight shared among the squares of a lattice that is one
+/// map.
+Stiffness stiffness_of(const ElasticMember& member, const Stiffness& stiffness) {
+  if (member.freedom == MapTransform::elastic) return stiffness;
+  const ElasticSheet& sheet = member.sheet;
+  const double squares = (sheet.columns() - 1.0) * (sheet.rows() - 1.0);
+  return {0.0, 1.0 / (squares * std::pow(kUsualStrain * sheet.spacing(), 2))};
+}
 
 double reach_of(const Round& round, double sd) {
   return std::max(kLeastReach, round.reach * sd);
@@ -37,7 +49,7 @@ std::vector<Eigen::SparseMatrix<double>> energies_of(const std::vector<ElasticMe
   const Stiffness stiffness{round.stiffer * std::pow(kBendingLength / sd, 2),
                             std::pow(kStrainLength / sd, 2)};
   parallel_for(members.size(), [&](std::size_t i) {
-    energies[i] = members[i].sheet.energy(stiffness);
+    energies[i] = members[i].sheet.energy(stiffness_of(members[i], stiffness));
     for (Eigen::Index k = 0; k < energies[i].rows(); ++k) energies[i].coeffRef(k, k) += kTiedDown;
   });
   return energies;

@@ -20,9 +20,9 @@ struct ElasticFit {
   WallFold fold;                                           ///< the walls that are tied
 };
 
-/// Bends the maps that are not held, round by round: ties walls, and solves for the shifts of all sheets
-/// together. Which walls are tied follows from how the maps lie after the round before. Returns which maps
-/// were tied.
+/// Bends the maps that are not held, as far as their freedom goes, round by round: ties walls, and solves for
+/// the shifts of all sheets together. Which walls are tied follows from how the maps lie after the round
+/// before. Returns which maps were tied.
 std::vector<bool> fit(const ElasticFit& options, std::vector<ElasticMember>& members);
 
 }  // namespace gridmerge::internal

@@ -15,7 +15,8 @@ namespace gridmerge::internal {
 struct ElasticMember {
   ElasticSheet sheet;
   ElasticWalls walls;
-  bool held = false;  ///< it stays as it is
+  bool held = false;                             ///< it stays as it is
+  MapTransform freedom = MapTransform::elastic;  ///< what the sheet may become
 };
 
 /// A square of the floor, by column and row, in the group frame.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "grid/spline.hpp"
+#include "gridmerge/grid/affine.hpp"
 #include "gridmerge/grid/deformation.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 
@@ -23,22 +24,13 @@ class ElasticSheet {
   /// Over the cells of `map`, with shifts `spacing` metres apart.
   ElasticSheet(const OccupancyGrid& map, double spacing, const SE2& T_group_map);
 
-  /// A linear map of the group's frame: straight points go to matrix * p + shift.
-  struct Affine {
-    double xx = 1.0, xy = 0.0, yx = 0.0, yy = 1.0;
-    Point2 shift;
-
-    Point2 operator*(const Point2& p) const {
-      return {xx * p.x + xy * p.y + shift.x, yx * p.x + yy * p.y + shift.y};
-    }
-  };
-
   std::size_t size() const { return shifts_.size(); }
   const std::vector<Point2>& shifts() const { return shifts_; }
   const SE2& T_group_map() const { return T_group_map_; }
   /// From the directions of the shifts to those of the group.
   double direction() const { return T_group_map_.theta + T_map_lattice_.theta; }
   int columns() const { return columns_; }
+  int rows() const { return rows_; }
   double spacing() const { return spacing_; }  ///< [m]
 
   /// On which shifts a point of the map frame depends.
@@ -55,7 +47,8 @@ class ElasticSheet {
   /// `most_strain`.
   void step_to(const std::vector<Point2>& shifts, double most_strain);
 
-  /// Another pose, with the shifts changed so that `change` is done to where each point lies.
+  /// Another pose, with the shifts changed so that `change`, of the group's frame, is done to where each
+  /// point lies.
   void move(const SE2& T_group_map, const Affine& change);
 
   /// The lattice as it is; shifts whose strain bound is too large are made smaller.

@@ -4,9 +4,11 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "grid/parallel.hpp"
 #include "gridmerge/grid/cancellation.hpp"
+#include "merge/elastic_span.hpp"
 
 namespace gridmerge::internal {
 
@@ -88,6 +90,7 @@ class System {
     for (std::size_t i = 0; i < pairs.size(); ++i)
       pulls_[i] = {Eigen::VectorXd::Zero(unknowns_of(members[pairs[i].first])),
                    Eigen::VectorXd::Zero(unknowns_of(members[pairs[i].second]))};
+    for (const ElasticMember& member : members) spans_.push_back(span_of(member.sheet, member.freedom));
     factors_.resize(members.size());
     parallel_for(members.size(), [&](std::size_t i) { factorise(i); });
   }
@@ -96,7 +99,7 @@ class System {
   Vectors forces(const Vectors& shifts) {
     Vectors force = collect([](const WallTie& tie, std::size_t) { return pull(tie, tie.gap); });
     for (std::size_t i = 0; i < members_.size(); ++i) force[i] = -(force[i] + energies_[i] * shifts[i]);
-    hold(force);
+    confine(force);
     return force;
   }
 
@@ -109,14 +112,20 @@ class System {
       return pull(tie, {first.x - second.x, first.y - second.y});
     });
     for (std::size_t i = 0; i < members_.size(); ++i) product[i] += energies_[i] * change[i];
-    hold(product);
+    confine(product);
     return product;
   }
 
   Vectors preconditioned(const Vectors& residual) const {
     Vectors result(residual.size());
     parallel_for(residual.size(), [&](std::size_t i) {
-      result[i] = members_[i].held ? residual[i] : Eigen::VectorXd(factors_[i].solve(residual[i]));
+      if (members_[i].held) {
+        result[i] = residual[i];
+      } else if (spans_[i]) {
+        result[i] = *spans_[i] * factors_[i].solve(spans_[i]->transpose() * residual[i]);
+      } else {
+        result[i] = factors_[i].solve(residual[i]);
+      }
     });
     return result;
   }
@@ -151,9 +160,14 @@ class System {
     return sums;
   }
 
-  void hold(Vectors& vectors) const {
+  /// To what each sheet may become.
+  void confine(Vectors& vectors) const {
     for (std::size_t i = 0; i < members_.size(); ++i) {
-      if (members_[i].held) vectors[i].setZero();
+      if (members_[i].held) {
+        vectors[i].setZero();
+      } else if (spans_[i]) {
+        vectors[i] = *spans_[i] * (spans_[i]->transpose() * vectors[i]);
+      }
     }
   }
 
@@ -164,6 +178,10 @@ class System {
       if (pair.first != map && pair.second != map) continue;
       throw_if_cancelled();
       for (const WallTie& tie : pair.ties) add_stiffness(tie, map, pair.first == map, matrix);
+    }
+    if (spans_[map]) {
+      const Eigen::MatrixXd& span = *spans_[map];
+      matrix = (span.transpose() * (matrix.selfadjointView<Eigen::Lower>() * span)).eval();
     }
     factors_[map].compute(matrix);
   }
@@ -193,6 +211,7 @@ class System {
   const std::vector<Eigen::SparseMatrix<double>>& energies_;
   std::vector<Turn> turns_;
   std::vector<std::pair<Eigen::VectorXd, Eigen::VectorXd>> pulls_;  // of each pair, at its two maps
+  std::vector<std::optional<Eigen::MatrixXd>> spans_;               // of what each sheet may become
   std::vector<Eigen::LLT<Eigen::MatrixXd>> factors_;
 };
 

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "report/deformation_json.hpp"
 #include "report/json_values.hpp"
 #include "report/plan_json.hpp"
 #include "report/told_joins.hpp"

@@ -67,17 +67,4 @@ std::string text_of(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-Json deformation_json(const Deformation& deformation) {
-  Json shifts = Json::array();
-  for (const Point2& shift : deformation.shifts()) {
-    shifts.push_back(number_json(shift.x));
-    shifts.push_back(number_json(shift.y));
-  }
-  return {{"frame", transform_json(deformation.T_map_lattice())},
-          {"spacing", number_json(deformation.spacing())},
-          {"columns", deformation.columns()},
-          {"rows", deformation.rows()},
-          {"shifts", std::move(shifts)}};
-}
-
 }  // namespace gridmerge::internal

@@ -17,8 +17,6 @@ using Json = nlohmann::ordered_json;
 
 Json number_json(double value);
 Json transform_json(const SE2& T);
-/// A lattice, as docs/merging.md describes it.
-Json deformation_json(const Deformation& deformation);
 Json hypotheses_json(const std::vector<Hypothesis>& hypotheses);
 
 /// What two maps have in common at a pose: four keys, from "acceptance_index" to "overlap".

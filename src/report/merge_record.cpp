@@ -16,6 +16,7 @@
 #include "gridmerge/report/json.hpp"
 #include "io/file_reader.hpp"
 #include "merge/copies.hpp"
+#include "report/deformation_json.hpp"
 #include "report/json_reader.hpp"
 #include "report/json_values.hpp"
 #include "report/plan_json.hpp"
@@ -121,30 +122,6 @@ class RecordReader {
     return omega;
   }
 
-  /// Not of a map that is straight.
-  static Deformation read_deformation(const JsonReader& json) {
-    const auto points = [&](const char* key) {
-      const std::int64_t count = json.at(key).count();
-      if (count < 4 || count > Deformation::kMostPoints) json.at(key).fail("is no number from 4 to 4096");
-      return static_cast<int>(count);
-    };
-    const int columns = points("columns"), rows = points("rows");
-    const JsonReader numbers = json.at("shifts");
-    if (numbers.size() != 2 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows))
-      numbers.fail("does not hold two numbers for each of columns x rows points");
-    std::vector<Point2> shifts;
-    for (std::size_t i = 0; i < numbers.size(); i += 2)
-      shifts.push_back({numbers.at(i).number_in(-kFarthest, kFarthest),
-                        numbers.at(i + 1).number_in(-kFarthest, kFarthest)});
-    const SE2 frame = json.at("frame").transform(kFarthest);
-    const double spacing = json.at("spacing").number_in(0.0, kFarthest);
-    try {
-      return {frame, spacing, columns, rows, std::move(shifts)};
-    } catch (const std::invalid_argument& error) {
-      json.fail(std::string("is none: ") + error.what());
-    }
-  }
-
   Member read_member(const JsonReader& json, std::size_t from) {
     Member member;
     member.map = place(json.at("source"), from);
@@ -153,7 +130,7 @@ class RecordReader {
     const JsonReader sd = json.at("sd");
     if (!sd.is_null())
       member.sd = {sd.at("position").number_in(0.0, kInfinity), sd.at("theta").number_in(0.0, kInfinity)};
-    if (json.has("deformation")) member.deformation = read_deformation(json.at("deformation"));
+    if (json.has("deformation")) member.deformation = read_deformation(json.at("deformation"), kFarthest);
     return member;
   }
 

@@ -13,6 +13,7 @@
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/preview.hpp"
 #include "gridmerge/version.hpp"
+#include "report/deformation_json.hpp"
 #include "report/shown_map.hpp"
 #include "report/told_joins.hpp"
 #include "report/wording.hpp"

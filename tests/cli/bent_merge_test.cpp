@@ -76,7 +76,8 @@ TEST_F(BentMerge, ItsDeformationsAreReadAgain) {
   ASSERT_EQ(members.size(), 3u);
   for (const Json& member : members) {
     expect_keys(member, {"source", "transform", "probability", "sd", "deformation"});
-    expect_keys(member.at("deformation"), {"frame", "spacing", "columns", "rows", "shifts"});
+    expect_keys(member.at("deformation"), {"kind", "frame", "spacing", "columns", "rows", "shifts"});
+    EXPECT_EQ(member.at("deformation").at("kind"), "elastic");
   }
   EXPECT_TRUE(json.at("components").at(0).at("omega").is_null());
   // What was written is what comes of the maps and the record.

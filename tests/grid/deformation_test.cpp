@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace gridmerge {
@@ -155,6 +157,53 @@ TEST(Deformation, RefusesLatticesThatAreNone) {
   one[5].y = 0.35;
   EXPECT_NO_THROW(Deformation({}, 1.0, 4, 4, one));
   EXPECT_DOUBLE_EQ(Deformation({}, 1.0, 4, 4, one).shift_bound(), 0.35);
+}
+
+// A lattice whose shifts are an affine function of their places is that function, seen from any frame.
+RC_GTEST_PROP(Deformation, IsTheAffineFunctionThatItsShiftsAre, ()) {
+  const auto entry = [] { return *rc::gen::inRange(-150, 151) / 1000.0; };
+  const bool is_similar = *rc::gen::arbitrary<bool>();
+  Affine change{entry(), entry(), entry(), entry(), {10.0 * entry(), 10.0 * entry()}};
+  if (is_similar) change = {change.xx, -change.yx, change.yx, change.xx, change.shift};
+  const int columns = *rc::gen::inRange(4, 8), rows = *rc::gen::inRange(4, 8);
+  const double spacing = *rc::gen::inRange(10, 5000) / 100.0;
+  const double far = *rc::gen::element(100.0, 1e7);  // as coordinates of a country are
+  const SE2 frame{far * entry(), far * entry(), 20.0 * entry()};
+  std::vector<Point2> shifts;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column)
+      shifts.push_back(change * Point2{(column - 1) * spacing, (row - 1) * spacing});
+  }
+  const Deformation deformation(frame, spacing, columns, rows, shifts);
+  const std::optional<Affine> affine = deformation.affine();
+  RC_ASSERT(affine.has_value());
+  RC_ASSERT(affine->determinant() > 0.0);
+  const Point2 p = frame * Point2{*rc::gen::inRange(0, 1001) / 1000.0 * spacing * (columns - 3),
+                                  *rc::gen::inRange(0, 1001) / 1000.0 * spacing * (rows - 3)};
+  const Point2 expected = deformation.bend(p), found = *affine * p;
+  RC_ASSERT(std::hypot(found.x - expected.x, found.y - expected.y) < 1e-9 * (1.0 + spacing) + 1e-14 * far);
+  RC_ASSERT(std::abs((1.0 + change.xx) * (1.0 + change.yy) - change.xy * change.yx -
+                     affine->scale() * affine->scale()) < 1e-9);
+  const bool may_be_similar = std::abs(change.xx - change.yy) + std::abs(change.xy + change.yx) < 1e-9;
+  RC_ASSERT(deformation.kind() == (may_be_similar ? MapTransform::similarity : MapTransform::affine));
+  // One shift that is not of the function bends the map.
+  shifts[static_cast<std::size_t>(*rc::gen::inRange(0, columns * rows))].y += 1e-3 * spacing;
+  RC_ASSERT(Deformation(frame, spacing, columns, rows, shifts).kind() == MapTransform::elastic);
+}
+
+TEST(Deformation, OfNoLatticeIsRigid) {
+  EXPECT_EQ(Deformation().kind(), MapTransform::rigid);
+  EXPECT_EQ(Deformation().affine(), Affine{});
+}
+
+TEST(MapTransform, HasOneNameEach) {
+  EXPECT_EQ(map_transforms().size(), 4u);
+  for (const MapTransformName& one : map_transforms()) {
+    EXPECT_EQ(name_of(one.transform), std::string(one.name));
+    EXPECT_EQ(map_transform(one.name), one.transform);
+  }
+  EXPECT_EQ(map_transform("projective"), std::nullopt);
+  EXPECT_EQ(map_transform(""), std::nullopt);
 }
 
 }  // namespace

@@ -171,7 +171,7 @@ RC_GTEST_PROP(ElasticSheet, AnotherPoseWithAnAffineChangeDoesThatChangeToEachPoi
   ElasticSheet sheet(some_map(), 2.0, {-2.0, 5.0, 1.1});
   sheet.step_to(random_shifts(sheet, seed, 0.1), 0.4);
   const auto number = [] { return *rc::gen::inRange(-100, 101) / 1000.0; };
-  ElasticSheet::Affine change;
+  Affine change;
   change.xx += number();
   change.xy += number();
   change.yx += number();

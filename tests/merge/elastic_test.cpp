@@ -193,7 +193,7 @@ TEST(Merge, ElasticMakesOneSharpMapOfBentOnes) {
   const BentTeam team(0.5);
   MergeOptions options;
   const MergeResult rigid = merge(team.maps, options);
-  options.elastic = true;
+  options.transform = MapTransform::elastic;
   const MergeResult elastic = merge(team.maps, options);
   ASSERT_EQ(rigid.components.size(), 1u);
   ASSERT_EQ(elastic.components.size(), 1u);
@@ -218,7 +218,7 @@ TEST(Merge, ElasticMakesOneSharpMapOfBentOnes) {
 TEST(Merge, ElasticDoesNotDependOnTheOrderOfTheMaps) {
   const BentTeam team(0.5);
   MergeOptions options;
-  options.elastic = true;
+  options.transform = MapTransform::elastic;
   const std::vector<OccupancyGrid> turned{team.maps[2], team.maps[0], team.maps[1]};
   const std::vector<Point2> a = places(merge(team.maps, options), {6.0, 5.0}, 3);
   const std::vector<Point2> b = places(merge(turned, options), {6.0, 5.0}, 3);
@@ -230,7 +230,7 @@ TEST(Merge, ElasticDoesNotDependOnTheOrderOfTheMaps) {
 TEST(Merge, ElasticKeepsFixedMapsStraight) {
   const BentTeam team(0.5);
   MergeOptions options;
-  options.elastic = true;
+  options.transform = MapTransform::elastic;
   const SE2 T_world{3.0, -2.0, 0.4};
   const MergeResult result = merge(team.maps, options, {std::nullopt, KnownPose{T_world, 0.0, 0.0, true}});
   ASSERT_EQ(result.components.size(), 1u);
@@ -248,7 +248,7 @@ TEST(Merge, ElasticBendsACopyAsItsOriginal) {
   const SE2 T_copy_original{4.0, 1.0, 0.9};
   team.maps.back().origin = T_copy_original * team.maps[1].origin;
   MergeOptions options;
-  options.elastic = true;
+  options.transform = MapTransform::elastic;
   const MergeResult result = merge(team.maps, options);
   ASSERT_EQ(result.components.size(), 1u);
   ASSERT_EQ(result.components[0].members.size(), 4u);

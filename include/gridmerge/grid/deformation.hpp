@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "gridmerge/export.hpp"
+#include "gridmerge/grid/affine.hpp"
+#include "gridmerge/grid/map_transform.hpp"
 #include "gridmerge/grid/se2.hpp"
 
 namespace gridmerge {
@@ -46,6 +49,13 @@ class GRIDMERGE_EXPORT Deformation {
   /// Where a point comes from: bend(straighten(p)) is p to 10^-9 of the lattice's size. O(1): some ten times
   /// bend().
   Point2 straighten(const Point2& bent) const;
+
+  /// The affine function of the map frame that it is on its lattice, as the lattices of maps that have a
+  /// scale or shear alone are; none if it bends. The identity without a lattice. O(shifts).
+  std::optional<Affine> affine() const;
+  /// What it does to a map: rigid without a lattice, similarity or affine if it has that form on its lattice,
+  /// elastic otherwise. O(shifts).
+  MapTransform kind() const;
 
   /// An upper bound of the shift's derivative (Frobenius norm of its Jacobian matrix); 0 without a lattice.
   double strain_bound() const { return strain_bound_; }

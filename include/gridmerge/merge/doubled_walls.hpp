@@ -22,7 +22,7 @@ struct DoubledWalls {
   double share() const { return compared > 0.0 ? doubled / compared : 0.0; }
 };
 
-/// From this share on, MergeOptions::elastic is likely to make the merged map sharper.
+/// From this share on, MapTransform::elastic is likely to make the merged map sharper.
 inline constexpr double kManyDoubled = 0.15;
 
 /// Of the maps of a component, bent as its members say. `maps` as given to merge(). O(cells + members^2).

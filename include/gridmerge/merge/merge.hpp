@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gridmerge/export.hpp"
+#include "gridmerge/grid/map_transform.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/merge/known_pose.hpp"
@@ -27,9 +28,10 @@ struct MergeOptions {
   /// this share of all joins. Up to 0.2, and of fewer maps, all pairs are matched. In [0, 1).
   double max_missed = 0.0;
   double resolution = 0.0;  ///< of the merged maps [m]; 0 = the finest among a map's inputs
-  /// Whether maps are bent so that walls that are one come to lie on each other: for maps that drift has
-  /// bent. See Member::deformation.
-  bool elastic = false;
+  /// What is done to maps so that walls that are one come to lie on each other: `similarity` and `affine` are
+  /// for maps of a false scale or sheared axes, `elastic` is for maps that drift has bent. It changes neither
+  /// which maps join nor how sure that is. See Member::deformation.
+  MapTransform transform = MapTransform::rigid;
   /// Called with the numbers of pairs that are matched and to be matched, never from two threads at once. The
   /// numbers begin anew with each round: with the second look, and of many maps with each choice of pairs.
   /// Matches of maps with merged groups are not told.

@@ -62,8 +62,9 @@ struct Member {
   std::optional<double> probability = {};
   /// Relative to what holds the component's frame, which has none. The tree does not know.
   std::optional<PoseDeviation> sd = {};
-  /// How the map is bent, in its own frame, before the transform takes it to the component's: none unless
-  /// MergeOptions::elastic asks for it. It holds no rigid part, which is all in T_component_map.
+  /// How the map is bent or stretched, in its own frame, before the transform takes it to the component's:
+  /// none unless MergeOptions::transform asks for it. It holds no rigid part, which is all in
+  /// T_component_map.
   Deformation deformation = {};
 
   /// Where a point of the map's frame lies in the component's [m].
