@@ -34,8 +34,8 @@ MapExtent extent_of(const OccupancyGrid& map) {
 }  // namespace
 
 void add_news(RobotNews& earlier, RobotNews later) {
-  if (later.is_gone) {
-    earlier.map.reset();
+  if (later.is_gone) {  // with all that was heard before: later news begin anew
+    earlier = RobotNews{};
     earlier.is_gone = true;
   }
   if (later.map) earlier.map = std::move(later.map);

@@ -21,14 +21,14 @@ struct RobotNews {
   std::shared_ptr<const OccupancyGrid> map;  ///< the newest; null where there is none
   std::uint64_t maps_heard = 0;
   std::optional<TeamTime> since;                       ///< when it was heard first, by the oldest account
-  bool is_gone = false;                                ///< before the map, if there is one, came
+  bool is_gone = false;                                ///< before all the rest of this
   std::optional<std::optional<KnownPose>> known_pose;  ///< what is known now, where that has changed
 };
 
 /// All that was heard, by robot.
 using News = std::map<std::string, RobotNews>;
 
-/// Adds later news to earlier ones.
+/// Adds later news to earlier ones. Of a robot that is gone nothing earlier counts.
 void add_news(RobotNews& earlier, RobotNews later);
 
 /// The team without its thread: takes news, and says what follows from them. The same news in the same steps

@@ -233,6 +233,49 @@ TEST(TeamSolver, TheFrameIsThatOfTheRobotHeardFirstForAsLongAsItLives) {
   EXPECT_EQ(answer.components.at(0).anchor, "carl");
 }
 
+RobotNews gone_news() {
+  RobotNews news;
+  news.is_gone = true;
+  return news;
+}
+
+TEST(TeamSolver, NothingIsLeftOfARobotThatIsHeardAndForgottenAtOnce) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  News news;
+  RobotNews& anna = news["anna"];
+  add_news(anna, map_news(explorers.map(0, 3)));
+  RobotNews known;
+  known.known_pose = KnownPose{{1.0, 2.0, 0.0}, 0.0, 0.0, true};
+  add_news(anna, known);
+  add_news(anna, gone_news());
+  solver.take(news);
+  EXPECT_TRUE(solver.solve(Effort::full).robots.empty());
+  // News of one robot may wait in the solver too.
+  for (const RobotNews& one : {map_news(explorers.map(0, 3)), gone_news()}) solver.take({{"anna", one}});
+  EXPECT_TRUE(solver.solve(Effort::full).robots.empty());
+}
+
+TEST(TeamSolver, ARobotThatComesBackIsAsOldAsItsNewMap) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  News news;
+  news["bert"] = map_news(explorers.map(1, 5), 20);
+  RobotNews& anna = news["anna"];
+  for (int step = 3; step <= 5; ++step) add_news(anna, map_news(explorers.map(0, step), 10));
+  RobotNews known;
+  known.known_pose = KnownPose{{1.0, 2.0, 0.0}, 0.0, 0.0, true};
+  add_news(anna, known);
+  add_news(anna, gone_news());
+  add_news(anna, map_news(explorers.map(0, 5), 30));
+  solver.take(news);
+  const TeamAnswer answer = solver.solve(Effort::full);
+  EXPECT_EQ(status_of(answer, "anna").heard_first, TeamTime(std::chrono::seconds(30)));
+  EXPECT_EQ(status_of(answer, "anna").maps_heard, 1u);
+  ASSERT_EQ(answer.components.size(), 1u);
+  EXPECT_EQ(answer.components[0].anchor, "bert");
+}
+
 TEST(TeamSolver, NewsAndOrderGiveTheSameAnswer) {
   const Explorers explorers;
   TeamSolver together({}), apart({});
