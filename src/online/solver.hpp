@@ -49,6 +49,7 @@ class TeamSolver {
   };
 
   /// The answer with all news. May be cancelled: nothing of the news is lost then, nor what was searched.
+  /// Where it fails otherwise, the answer is the one before, and says why; it is not settled then.
   TeamAnswer solve(Effort effort);
 
   /// Whether Effort::further has nothing to do.
@@ -70,6 +71,8 @@ class TeamSolver {
     std::optional<KnownPose> known_pose;
   };
 
+  void find_out(Effort effort, TeamAnswer& answer);
+  TeamAnswer answer_before() const;
   void apply(const std::string& name, RobotNews& news);
   void set_map(const std::string& name, std::shared_ptr<const OccupancyGrid> map);
   void remove(const std::string& name);
@@ -91,8 +94,9 @@ class TeamSolver {
   std::set<std::string> fresh_;      // with newer maps since the last proposal
   std::set<std::string> restarted_;  // since the last answer
   std::map<std::string, Reason> left_out_;
-  std::vector<RobotGroup> told_;  // by the last answer
+  std::vector<RobotGroup> told_;  // by the last answer that had no problem, as what follows
   std::vector<TeamComponent> told_components_;
+  std::map<std::string, RobotStatus> told_robots_;  // without those whose map is another one since
   std::shared_ptr<const TeamMerge> told_merge_ = std::make_shared<const TeamMerge>();
   std::uint64_t answers_ = 0;
 };

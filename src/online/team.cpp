@@ -169,6 +169,11 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
                              [&] { return news_.empty() && !is_at_work_ && answer_->settled; });
   }
 
+  bool is_at_rest() const {
+    const std::lock_guard lock(mutex_);
+    return news_.empty() && !is_at_work_ && !has_unfinished_ && is_all_done_;
+  }
+
  private:
   static void draw(const OccupancyGrid& part, int column, int row, OccupancyGrid& map) {
     if (part.probability.empty()) map.probability.clear();
@@ -320,6 +325,10 @@ std::vector<TeamEvent> Team::take_events() {
 
 bool Team::wait_until_settled(std::chrono::milliseconds longest) const {
   return worker_->wait_until_settled(longest);
+}
+
+bool Team::is_at_rest() const {
+  return worker_->is_at_rest();
 }
 
 }  // namespace gridmerge

@@ -87,6 +87,10 @@ class GRIDMERGE_EXPORT Team {
   /// Waits until all that was heard is settled, or for so long; says whether it is.
   bool wait_until_settled(std::chrono::milliseconds longest) const;
 
+  /// Whether nothing more follows from what was heard: answer() is settled, or stays as TeamAnswer::problem
+  /// says until there is something new.
+  bool is_at_rest() const;
+
  private:
   class Worker;
   std::unique_ptr<Worker> worker_;
