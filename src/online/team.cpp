@@ -221,7 +221,8 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
     std::unique_lock lock(mutex_);
     while (!ends_) {
       bool is_quiet = false;
-      const bool goes_further = news_.empty() && !has_unfinished_ && !solver_.is_complete();
+      // What failed would fail again: once more in full, when all is quiet, is enough.
+      const bool goes_further = news_.empty() && !has_unfinished_ && !has_failed_ && !solver_.is_complete();
       if (news_.empty() && !has_unfinished_ && !goes_further) {
         const auto wakes = [&] { return ends_ || !news_.empty(); };
         if (is_all_done_) {
@@ -244,6 +245,7 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
       may_be_cancelled_ = answer != nullptr;
       has_unfinished_ = !answer;
       if (answer) {
+        has_failed_ = !answer->problem.empty();
         is_all_done_ = answer->settled || is_quiet;
         keep_events(answer->events);
         answer_ = without_forgotten(std::move(answer), news_);
@@ -281,7 +283,8 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
   std::set<std::string> known_;   // robots that were named
   std::chrono::steady_clock::time_point heard_ = std::chrono::steady_clock::now();
   std::shared_ptr<const TeamAnswer> answer_ = std::make_shared<const TeamAnswer>();
-  bool ends_ = false, is_at_work_ = false, may_be_cancelled_ = true, has_unfinished_ = false;
+  bool ends_ = false, is_at_work_ = false, may_be_cancelled_ = true, has_unfinished_ = false,
+       has_failed_ = false;
   bool is_all_done_ = true;  // until something is heard
   std::atomic<bool> is_cancelled_ = false;
 

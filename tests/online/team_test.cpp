@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstddef>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "explorers.hpp"
+#include "scarce_memory.hpp"
 #include "support/effort.hpp"
 
 namespace gridmerge {
@@ -130,6 +133,40 @@ TEST(Team, EndsWhileItIsAtWork) {
       team.hear(kNames[static_cast<std::size_t>(robot)], explorers.map(robot, 5));
     std::this_thread::sleep_for(std::chrono::milliseconds(7 * i));
   }
+}
+
+/// Thorough looks fail for want of memory, one as the other: nothing is gained by trying on and on.
+TEST(Team, RestsWhereItsWorkFailsForGood) {
+  if (!test::kMemoryCanBeScarce) GTEST_SKIP() << "memory is never scarce under ThreadSanitizer";
+  std::vector<OccupancyGrid> strangers;  // more pairs of them than are looked at again at a time
+  for (unsigned building = 1; building <= 4; ++building)
+    strangers.push_back(test::map_part(test::draw_building(building), {0, 0, 9, 9}, {}));
+  TeamOptions options;
+  options.quiet = 20ms;
+  std::atomic<int> failures = 0;
+  std::atomic<bool> has_enough = true;
+  Team team(options, [&](const std::shared_ptr<const TeamAnswer>& answer) {
+    if (!answer->problem.empty()) ++failures;
+    const bool all_were_looked_at_quickly = answer->robots.size() == strangers.size();
+    if (all_were_looked_at_quickly && has_enough.exchange(false)) test::scarce_from = std::size_t{1} << 16;
+  });
+  for (std::size_t i = 0; i < strangers.size(); ++i) team.hear(kNames[i], strangers[i]);
+  constexpr int kFarTooMany = 100;
+  while (!team.is_at_rest() && failures < kFarTooMany) std::this_thread::sleep_for(1ms);
+  std::this_thread::sleep_for(200ms);  // in which nothing comes any more
+  test::scarce_from = 0;
+  EXPECT_GE(failures, 1);
+  EXPECT_LE(failures, 2);  // a further look, and all in full
+  EXPECT_TRUE(team.is_at_rest());
+  EXPECT_FALSE(team.wait_until_settled(0ms));
+  EXPECT_NE(team.answer()->problem, "");
+  EXPECT_FALSE(team.answer()->settled);
+  // It is not the end: with memory and news it goes on from there.
+  strangers[0].cells.front() = Cell::occupied;
+  team.hear(kNames[0], strangers[0]);
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  EXPECT_EQ(team.answer()->problem, "");
+  for (const RobotStatus& robot : team.answer()->robots) EXPECT_EQ(robot.state, RobotState::left_out);
 }
 
 TEST(Team, ForgetsRobots) {
