@@ -21,6 +21,9 @@ namespace {
 
 /// A team that nobody asks keeps so many events. Each is a line for people: more than they read at once.
 constexpr std::size_t kEventsKept = 1000;
+/// Beyond it no wait is distinguishable from one for ever. Added to any time of a clock, it does not
+/// overflow.
+constexpr std::chrono::hours kLongestWait{365 * 24};
 
 }  // namespace
 
@@ -55,6 +58,7 @@ void validate(const TeamOptions& options) {
     throw std::invalid_argument("search_again must lie in [0, 1]");
   if (options.confirmations < 1) throw std::invalid_argument("confirmations must be at least 1");
   if (options.quiet.count() < 0) throw std::invalid_argument("quiet must not be negative");
+  if (options.quiet > kLongestWait) throw std::invalid_argument("quiet must be at most 31536000 s, a year");
   if (options.max_robots < 1) throw std::invalid_argument("max_robots must be at least 1");
 }
 
@@ -165,8 +169,8 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
 
   bool wait_until_settled(std::chrono::milliseconds longest) const {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, longest,
-                             [&] { return news_.empty() && !is_at_work_ && answer_->settled; });
+    const auto wait = std::clamp<std::chrono::milliseconds>(longest, {}, kLongestWait);
+    return changed_.wait_for(lock, wait, [&] { return news_.empty() && !is_at_work_ && answer_->settled; });
   }
 
   bool is_at_rest() const {

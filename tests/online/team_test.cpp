@@ -235,9 +235,41 @@ TEST(Team, RefusesWhatMakesNoSense) {
   refuses([](TeamOptions& o) { o.search_again = -0.1; });
   refuses([](TeamOptions& o) { o.confirmations = 0; });
   refuses([](TeamOptions& o) { o.quiet = -1ms; });
+  refuses([](TeamOptions& o) { o.quiet = std::chrono::milliseconds::max(); });
+  refuses([](TeamOptions& o) { o.quiet = std::chrono::hours(365 * 24) + 1ms; });
   refuses([](TeamOptions& o) { o.max_robots = 0; });
   refuses([](TeamOptions& o) { o.merge.max_false_joins = -1.0; });
   refuses([](TeamOptions& o) { o.merge.match.search = SearchMethod::random_walk; });
+}
+
+TEST(Team, WaitsForEverAndForNoTimeAtAll) {
+  constexpr auto kEver = std::chrono::milliseconds::max();
+  const Explorers explorers;
+  TeamOptions options;
+  options.quiet = std::chrono::hours(365 * 24);
+  Team team(options);
+  EXPECT_TRUE(team.wait_until_settled(kEver));  // nothing was heard
+  team.hear("anna", explorers.map(0, 5));
+  EXPECT_TRUE(team.wait_until_settled(kEver));
+  // A little of it changes: nothing is searched before it is quiet, which it is in a year.
+  OccupancyGrid changed = explorers.map(0, 5);
+  changed.cells.front() = Cell::occupied;
+  team.hear("anna", changed);
+  EXPECT_FALSE(team.wait_until_settled(kEver.min()));
+  const auto has_answered = [&] { return team.answer()->robots.at(0).maps_heard == 2; };
+  while (!has_answered()) std::this_thread::sleep_for(1ms);
+  EXPECT_FALSE(team.wait_until_settled(20ms));
+  EXPECT_FALSE(team.is_at_rest());
+  // To wait for ever is to wait, not to find that the time is over.
+  std::atomic<bool> is_over = false;
+  std::thread waits([&] {
+    EXPECT_TRUE(team.wait_until_settled(kEver));
+    is_over = true;
+  });
+  std::this_thread::sleep_for(50ms);
+  EXPECT_FALSE(is_over);
+  team.forget("anna");
+  waits.join();
 }
 
 }  // namespace

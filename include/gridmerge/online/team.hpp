@@ -25,7 +25,8 @@ struct TeamOptions {
   /// A robot that was placed is moved elsewhere, or taken out, when so many answers in a row, each with newer
   /// maps, say so in the same way.
   int confirmations = 3;
-  /// With no newer map for so long, all that is left is searched, and what that says is taken at once.
+  /// With no newer map for so long, all that is left is searched, and what that says is taken at once. From 0
+  /// to a year.
   std::chrono::milliseconds quiet{3000};
   std::size_t max_robots = 256;  ///< Team::hear() refuses more
 };
@@ -84,7 +85,7 @@ class GRIDMERGE_EXPORT Team {
   /// nobody asked for. Of more than 1000 the newest are kept. For whoever has no callback.
   std::vector<TeamEvent> take_events();
 
-  /// Waits until all that was heard is settled, or for so long; says whether it is.
+  /// Waits until all that was heard is settled, or for so long, a year at most; says whether it is.
   bool wait_until_settled(std::chrono::milliseconds longest) const;
 
   /// Whether nothing more follows from what was heard: answer() is settled, or stays as TeamAnswer::problem
