@@ -238,6 +238,7 @@ TEST(Team, RefusesWhatMakesNoSense) {
   refuses([](TeamOptions& o) { o.quiet = std::chrono::milliseconds::max(); });
   refuses([](TeamOptions& o) { o.quiet = std::chrono::hours(365 * 24) + 1ms; });
   refuses([](TeamOptions& o) { o.max_robots = 0; });
+  refuses([](TeamOptions& o) { o.merge.elastic = true; });
   refuses([](TeamOptions& o) { o.merge.max_false_joins = -1.0; });
   refuses([](TeamOptions& o) { o.merge.match.search = SearchMethod::random_walk; });
 }

@@ -18,7 +18,7 @@ namespace gridmerge {
 
 /// How a team works.
 struct TeamOptions {
-  MergeOptions merge;  ///< as of merge(); its progress callback is not used
+  MergeOptions merge;  ///< as of merge(); not `elastic`, and its progress callback is not used
   /// A map is searched anew when this share of its known cells differs from when it was searched last. A
   /// quarter of it is enough for a robot that lies nowhere yet. In between, the pose follows the map.
   double search_again = 0.1;
