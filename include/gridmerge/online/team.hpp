@@ -62,8 +62,9 @@ class GRIDMERGE_EXPORT Team {
   void hear(const std::string& robot, OccupancyGrid map);
 
   /// New cells of a rectangle of the robot's newest map, with cell (`column`, `row`) at its lower left
-  /// corner; `part.resolution` and `part.origin` play no role. Returns false, and does nothing, where there
-  /// is no map that holds them. O(cells of the map).
+  /// corner; `part.resolution` and `part.origin` have to be valid, and play no role beyond that. Returns
+  /// false, and does nothing, where there is no map that holds them. Throws std::invalid_argument for an
+  /// invalid part. O(cells of the map).
   bool hear_part(const std::string& robot, int column, int row, const OccupancyGrid& part);
 
   /// Another node of the same team has heard the robot since then (RobotStatus::heard_first of its answer).
