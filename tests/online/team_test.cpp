@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <future>
+#include <iterator>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -125,14 +127,33 @@ TEST(Team, PartsThatDoNotFitAreRefused) {
   EXPECT_THROW(team.hear_part("anna", 0, 0, broken), std::invalid_argument);
 }
 
+/// Work that goes on to its end has an answer. The end of a team is no moment for one, unless the two meet.
 TEST(Team, EndsWhileItIsAtWork) {
   const Explorers explorers;
-  for (int i = 0; i < test::repeats(20, 3); ++i) {
-    Team team;
-    for (int robot = 0; robot < test::repeats(4, 3); ++robot)
-      team.hear(kNames[static_cast<std::size_t>(robot)], explorers.map(robot, 5));
-    std::this_thread::sleep_for(std::chrono::milliseconds(7 * i));
+  const int robots[] = {0, 1, 3};  // a stranger last, at whom a second look is due
+  const int rounds = test::repeats(20, 3);
+  int late = 0;
+  for (int i = 0; i < rounds; ++i) {
+    std::promise<void> is_busy;
+    std::atomic<bool> was_told = false;
+    std::atomic<int> answers = 0;
+    int answers_at_the_end = 0;
+    {
+      Team team({}, [&](const std::shared_ptr<const TeamAnswer>& answer) {
+        ++answers;
+        // Looks are left to be made, and are begun as soon as this returns.
+        const bool goes_on = answer->robots.size() == std::size(robots) && !answer->settled;
+        if (goes_on && !was_told.exchange(true)) is_busy.set_value();
+      });
+      for (const int robot : robots)
+        team.hear(kNames[static_cast<std::size_t>(robot)], explorers.map(robot, 5));
+      is_busy.get_future().wait();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1 + i % 5));
+      answers_at_the_end = answers;
+    }
+    if (answers > answers_at_the_end) ++late;
   }
+  EXPECT_LE(late, rounds / 3);
 }
 
 /// Thorough looks fail for want of memory, one as the other: nothing is gained by trying on and on.
