@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "grid/equal_grids.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/merge/fuse.hpp"
