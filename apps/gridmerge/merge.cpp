@@ -18,13 +18,13 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "exports.hpp"
+#include "grid/equal_grids.hpp"
 #include "grid/parallel.hpp"
 #include "gridmerge/bag/any_map.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "known_poses.hpp"
-#include "merge/copies.hpp"
 #include "merge_summary.hpp"
 #include "plan.hpp"
 #include "scale_hint.hpp"
@@ -66,7 +66,7 @@ void tell_of_copies(const MergeCommandOptions& options, const std::vector<Occupa
   std::vector<std::string> twice;   // named before
   std::vector<std::string> copies;  // of another file's cells
   const auto is_copy = [&](std::size_t i, std::size_t j) {
-    return internal::has_equal_cells(maps[i], maps[j]) && !(known_poses[i] && known_poses[j]);
+    return has_equal_cells(maps[i], maps[j]) && !(known_poses[i] && known_poses[j]);
   };
   for (std::size_t i = 1; i < maps.size(); ++i) {
     bool is_twice = false;

@@ -121,7 +121,8 @@ class Team:
             a quarter of it is enough for a robot that lies nowhere yet.
         confirmations: a robot that was placed moves when so many answers in a row, each with newer maps, say so in the
             same way.
-        quiet: with no newer map for so long [s], all that is left is searched, and what that says is taken at once.
+        quiet: with no newer map for so long [s], all that is left is searched, and what that says is taken at once. At
+            most a year.
         max_robots: hear() refuses more.
     """
 

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
+#include "grid/equal_grids.hpp"
 #include "gridmerge/grid/message_values.hpp"
 #include "worker.hpp"
 
@@ -178,15 +179,6 @@ View<Value> view(const Map& map, const void* values) {
           owner};
 }
 
-bool is_equal(const Map& a, const Map& b) {
-  const auto same_probability = [](float p, float q) { return p == q || (std::isnan(p) && std::isnan(q)); };
-  return a.grid->width == b.grid->width && a.grid->height == b.grid->height &&
-         a.grid->resolution == b.grid->resolution && a.grid->origin == b.grid->origin &&
-         a.grid->cells == b.grid->cells &&
-         std::equal(a.grid->probability.begin(), a.grid->probability.end(), b.grid->probability.begin(),
-                    b.grid->probability.end(), same_probability);
-}
-
 }  // namespace
 
 void bind_grid(nb::module_& module) {
@@ -226,7 +218,10 @@ void bind_grid(nb::module_& module) {
                         ? std::nullopt
                         : std::optional(view<float>(map, map.grid->probability.data()));
            })
-      .def("equals", &is_equal, nb::arg("other"));
+      .def(
+          "equals",
+          [](const Map& map, const Map& other) { return internal::are_equal(*map.grid, *other.grid); },
+          nb::arg("other"));
 }
 
 }  // namespace gridmerge::python

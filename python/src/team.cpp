@@ -2,6 +2,9 @@
 #include "gridmerge/online/team.hpp"
 
 #include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "merge.hpp"
@@ -32,6 +35,14 @@ std::vector<ComponentOf> components_of(const HeldAnswer& held) {
   return components;
 }
 
+/// Of the clocks' time, which ends after 292 years. Throws std::invalid_argument beyond 285 years.
+std::chrono::duration<double> time_of(const char* name, double seconds) {
+  constexpr double kMost = 9e9;
+  if (!(std::abs(seconds) <= kMost))
+    throw std::invalid_argument(std::string(name) + ": must lie within 9e9 s");
+  return std::chrono::duration<double>(seconds);
+}
+
 class PythonTeam {
  public:
   explicit PythonTeam(const TeamOptions& options) : team_(options) {}
@@ -48,9 +59,8 @@ class PythonTeam {
   }
 
   void hear_age(const std::string& robot, double seconds) {
-    team_.hear_age(
-        robot,
-        TeamTime(std::chrono::duration_cast<TeamTime::duration>(std::chrono::duration<double>(seconds))));
+    const auto since = time_of("heard_first", seconds);
+    team_.hear_age(robot, TeamTime(std::chrono::duration_cast<TeamTime::duration>(since)));
   }
 
   void forget(const std::string& robot) { team_.forget(robot); }
@@ -73,8 +83,9 @@ class PythonTeam {
   }
 
   bool wait_until_settled(double seconds) const {
+    const auto longest = std::chrono::duration_cast<std::chrono::milliseconds>(time_of("seconds", seconds));
     const OthersRun meanwhile;
-    return team_.wait_until_settled(std::chrono::milliseconds(static_cast<int>(1000.0 * seconds)));
+    return team_.wait_until_settled(longest);
   }
 
  private:
@@ -120,7 +131,7 @@ void bind_team(nb::module_& module) {
           "quiet",
           [](const TeamOptions& options) { return std::chrono::duration<double>(options.quiet).count(); },
           [](TeamOptions& options, double seconds) {
-            options.quiet = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * seconds));
+            options.quiet = std::chrono::duration_cast<std::chrono::milliseconds>(time_of("quiet", seconds));
           })
       .def_rw("search_again", &TeamOptions::search_again)
       .def_rw("confirmations", &TeamOptions::confirmations)

@@ -123,6 +123,11 @@ def test_bad_input(team: gridmerge.Team, explored: gridmerge.Simulation) -> None
         gridmerge.Team(confirmations=0)
     with pytest.raises(ValueError, match="quiet"):
         gridmerge.Team(quiet=-1.0)
+    for longest in (31_536_001.0, 1e10, 1e300):
+        with pytest.raises(ValueError, match="quiet"):
+            gridmerge.Team(quiet=longest)
+    with pytest.raises(ValueError, match="heard_first"):
+        team.hear_age("tb0", 1e10)
     with pytest.raises(ValueError, match="column"):
         team.hear_part("tb0", -1, 0, explored.maps[0].grid)
     small = gridmerge.Team(max_robots=1)

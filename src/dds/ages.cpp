@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::int32_t kMessagesKept = 64;    // of all programs that diagnose themselves, between two looks
 constexpr std::size_t kDigitsOfFraction = 9;  // nanoseconds
-constexpr std::size_t kMaxDigits = 10;        // of the seconds: up to the year 2286
+constexpr std::size_t kMaxDigits = 10;        // of the seconds
+constexpr std::int64_t kMaxSeconds = 9'000'000'000;  // the year 2255: the clock's own end is in 2262
 
 /// A number of digits alone.
 std::optional<std::int64_t> read_digits(std::string_view text) {
@@ -60,7 +61,7 @@ std::optional<TeamTime> read_time(std::string_view text) {
   if (fraction.size() != kDigitsOfFraction) return std::nullopt;
   const std::optional<std::int64_t> seconds = read_digits(text.substr(0, point));
   const std::optional<std::int64_t> nanoseconds = read_digits(fraction);
-  if (!seconds || !nanoseconds) return std::nullopt;
+  if (!seconds || !nanoseconds || *seconds > kMaxSeconds) return std::nullopt;
   return TeamTime(std::chrono::duration_cast<TeamTime::duration>(std::chrono::seconds(*seconds) +
                                                                  std::chrono::nanoseconds(*nanoseconds)));
 }

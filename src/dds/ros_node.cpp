@@ -350,9 +350,10 @@ std::optional<RosNode::End> RosNode::State::check_once() {
   const bool is_over = player_.is_over() && seconds() >= options_.wait.value_or(kWaitOnce);
   // From now on nothing newer is heard: robots that map on would keep the team from ever being settled.
   enough_ = enough_ || is_over || (is_complete() && Clock::now() - news_at_ >= kQuiet);
-  if (!enough_ || !team_.wait_until_settled(milliseconds(0))) return std::nullopt;
+  if (!enough_ || !team_.is_at_rest()) return std::nullopt;
   const std::shared_ptr<const TeamAnswer> answer = team_.answer();
   if (answer->number != told_answer_) return std::nullopt;  // it is published first
+  if (!answer->problem.empty()) throw std::runtime_error("the maps cannot be merged: " + answer->problem);
   const bool all =
       answer->components.size() == 1 && answer->components.front().robots.size() == answer->robots.size();
   return all ? End::merged : End::refused;

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "grid/equal_grids.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "merge/joins.hpp"
 
@@ -57,10 +58,6 @@ Member* find_member(MergeResult& result, std::size_t map, Component*& of) {
 }
 
 }  // namespace
-
-bool has_equal_cells(const OccupancyGrid& a, const OccupancyGrid& b) {
-  return a.width == b.width && a.resolution == b.resolution && a.cells == b.cells;
-}
 
 bool is_copy(const PreparedMap& a, const PreparedMap& b) {
   return a.counts().occupied > 0 && a.counts().occupied == b.counts().occupied &&

@@ -20,10 +20,6 @@ struct Copy {
   SE2 T_original_map;        ///< from the copy's frame to the original's
 };
 
-/// Whether two maps have the same cells, of one size, wherever their origins are. O(cells) if they do, mostly
-/// O(1) if not.
-bool has_equal_cells(const OccupancyGrid& a, const OccupancyGrid& b);
-
 /// Whether two maps hold the same cells, walls among them. O(cells) if they do, mostly O(1) if not.
 bool is_copy(const PreparedMap& a, const PreparedMap& b);
 

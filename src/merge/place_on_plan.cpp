@@ -7,11 +7,11 @@
 #include <string>
 #include <utility>
 
+#include "grid/equal_grids.hpp"
 #include "grid/parallel.hpp"
 #include "gridmerge/merge/plan.hpp"
 #include "match/drawing.hpp"
 #include "merge/consistent_set.hpp"
-#include "merge/copies.hpp"
 #include "merge/joins.hpp"
 #include "merge/on_plan.hpp"
 #include "merge/plan_ways.hpp"

@@ -2,7 +2,6 @@
 #include "online/robot_map.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "similarity/agreement.hpp"
@@ -35,15 +34,6 @@ MapChange change_between(const OccupancyGrid& before, const OccupancyGrid& after
   const double equal = static_cast<double>(counts.agreement) * cell;
   const double share = 1.0 - equal / std::max(known_before, known_after);
   return {std::clamp(share, 0.0, 1.0), both < kMinKept * known_before || equal < kMinAgreement * both};
-}
-
-bool are_equal(const OccupancyGrid& a, const OccupancyGrid& b) {
-  // A probability that is not known is not a number, which equals nothing.
-  const auto same = [](float p, float q) { return p == q || (std::isnan(p) && std::isnan(q)); };
-  return a.width == b.width && a.height == b.height && a.resolution == b.resolution && a.origin == b.origin &&
-         a.cells == b.cells &&
-         std::equal(a.probability.begin(), a.probability.end(), b.probability.begin(), b.probability.end(),
-                    same);
 }
 
 }  // namespace gridmerge::internal

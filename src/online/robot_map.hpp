@@ -14,7 +14,4 @@ struct MapChange {
 /// From `before` to `after`, both in the robot's map frame. O(cells).
 MapChange change_between(const OccupancyGrid& before, const OccupancyGrid& after);
 
-/// Whether the two are the same, cells and frame. O(cells).
-bool are_equal(const OccupancyGrid& a, const OccupancyGrid& b);
-
 }  // namespace gridmerge::internal

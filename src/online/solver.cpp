@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "grid/equal_grids.hpp"
+#include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "merge/joins.hpp"
@@ -34,8 +36,8 @@ MapExtent extent_of(const OccupancyGrid& map) {
 }  // namespace
 
 void add_news(RobotNews& earlier, RobotNews later) {
-  if (later.is_gone) {
-    earlier.map.reset();
+  if (later.is_gone) {  // with all that was heard before: later news begin anew
+    earlier = RobotNews{};
     earlier.is_gone = true;
   }
   if (later.map) earlier.map = std::move(later.map);
@@ -55,6 +57,22 @@ void TeamSolver::take(News news) {
 
 TeamAnswer TeamSolver::solve(Effort effort) {
   const auto start = std::chrono::steady_clock::now();
+  TeamAnswer answer;
+  try {
+    find_out(effort, answer);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::exception& error) {  // a merged map would be too large, or there is no memory for it
+    answer = answer_before();
+    answer.problem = error.what();
+  }
+  answer.number = ++answers_;
+  answer.settled = answer.problem.empty() && is_settled();
+  answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return answer;
+}
+
+void TeamSolver::find_out(Effort effort, TeamAnswer& answer) {
   while (!pending_.empty()) {
     // In the order of their names; each is done with before it is forgotten.
     const auto next = pending_.begin();
@@ -63,27 +81,36 @@ TeamAnswer TeamSolver::solve(Effort effort) {
   }
   const bool in_full = effort == Effort::full;
   if (in_full) search_what_changed();
-  TeamAnswer answer;
-  MergeResult result;
-  try {
-    result = in_full ? merger_.solve() : merger_.solve_soon(effort == Effort::soon ? 0 : kPairsAtATime);
-    using Weight = Placements::Weight;
-    propose(result, in_full ? Weight::conclusive : is_complete() ? Weight::full : Weight::partial);
-    tell_components(std::move(result), answer);
-  } catch (const std::invalid_argument& error) {  // a merged map would be too large
-    answer.problem = error.what();
-    answer.components = told_components_;
-    answer.merge = told_merge_;
-  }
+  MergeResult result =
+      in_full ? merger_.solve() : merger_.solve_soon(effort == Effort::soon ? 0 : kPairsAtATime);
+  using Weight = Placements::Weight;
+  propose(result, in_full ? Weight::conclusive : is_complete() ? Weight::full : Weight::partial);
+  tell_components(std::move(result), answer);
   for (const auto& [name, robot] : robots_) answer.robots.push_back(status_of(name, robot, answer));
   tell_events(answer);
   told_ = placements_.groups();
   told_components_ = answer.components;
   told_merge_ = answer.merge;
+  told_robots_.clear();
+  for (const RobotStatus& robot : answer.robots) told_robots_[robot.name] = robot;
   restarted_.clear();
-  answer.number = ++answers_;
-  answer.settled = is_settled();
-  answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Components and poses that were told last, which belong together; of what has changed since, nothing. A map
+/// that is gone has no pose any more. Events are told by the answer that knows what came of them.
+TeamAnswer TeamSolver::answer_before() const {
+  TeamAnswer answer;
+  answer.components = told_components_;
+  answer.merge = told_merge_;
+  for (const auto& [name, robot] : robots_) {
+    RobotStatus status;
+    status.why = "what was heard of it could not be merged yet";
+    if (const auto told = told_robots_.find(name); told != told_robots_.end()) status = told->second;
+    status.name = name;
+    status.maps_heard = robot.maps_heard;
+    status.heard_first = robot.since;
+    answer.robots.push_back(std::move(status));
+  }
   return answer;
 }
 
@@ -147,6 +174,7 @@ void TeamSolver::set_map(const std::string& name, std::shared_ptr<const Occupanc
   fresh_.insert(name);
   if (!other_frame) return;
   placements_.forget(name);
+  told_robots_.erase(name);
   restarted_.insert(name);
 }
 
@@ -161,6 +189,7 @@ void TeamSolver::remove(const std::string& name) {
   left_out_.erase(name);
   fresh_.erase(name);
   restarted_.erase(name);
+  told_robots_.erase(name);
   robots_.erase(robot);
 }
 

@@ -21,14 +21,14 @@ struct RobotNews {
   std::shared_ptr<const OccupancyGrid> map;  ///< the newest; null where there is none
   std::uint64_t maps_heard = 0;
   std::optional<TeamTime> since;                       ///< when it was heard first, by the oldest account
-  bool is_gone = false;                                ///< before the map, if there is one, came
+  bool is_gone = false;                                ///< before all the rest of this
   std::optional<std::optional<KnownPose>> known_pose;  ///< what is known now, where that has changed
 };
 
 /// All that was heard, by robot.
 using News = std::map<std::string, RobotNews>;
 
-/// Adds later news to earlier ones.
+/// Adds later news to earlier ones. Of a robot that is gone nothing earlier counts.
 void add_news(RobotNews& earlier, RobotNews later);
 
 /// The team without its thread: takes news, and says what follows from them. The same news in the same steps
@@ -49,6 +49,7 @@ class TeamSolver {
   };
 
   /// The answer with all news. May be cancelled: nothing of the news is lost then, nor what was searched.
+  /// Where it fails otherwise, the answer is the one before, and says why; it is not settled then.
   TeamAnswer solve(Effort effort);
 
   /// Whether Effort::further has nothing to do.
@@ -70,6 +71,8 @@ class TeamSolver {
     std::optional<KnownPose> known_pose;
   };
 
+  void find_out(Effort effort, TeamAnswer& answer);
+  TeamAnswer answer_before() const;
   void apply(const std::string& name, RobotNews& news);
   void set_map(const std::string& name, std::shared_ptr<const OccupancyGrid> map);
   void remove(const std::string& name);
@@ -91,8 +94,9 @@ class TeamSolver {
   std::set<std::string> fresh_;      // with newer maps since the last proposal
   std::set<std::string> restarted_;  // since the last answer
   std::map<std::string, Reason> left_out_;
-  std::vector<RobotGroup> told_;  // by the last answer
+  std::vector<RobotGroup> told_;  // by the last answer that had no problem, as what follows
   std::vector<TeamComponent> told_components_;
+  std::map<std::string, RobotStatus> told_robots_;  // without those whose map is another one since
   std::shared_ptr<const TeamMerge> told_merge_ = std::make_shared<const TeamMerge>();
   std::uint64_t answers_ = 0;
 };

@@ -21,6 +21,9 @@ namespace {
 
 /// A team that nobody asks keeps so many events. Each is a line for people: more than they read at once.
 constexpr std::size_t kEventsKept = 1000;
+/// Beyond it no wait is distinguishable from one for ever. Added to any time of a clock, it does not
+/// overflow.
+constexpr std::chrono::hours kLongestWait{365 * 24};
 
 }  // namespace
 
@@ -55,6 +58,9 @@ void validate(const TeamOptions& options) {
     throw std::invalid_argument("search_again must lie in [0, 1]");
   if (options.confirmations < 1) throw std::invalid_argument("confirmations must be at least 1");
   if (options.quiet.count() < 0) throw std::invalid_argument("quiet must not be negative");
+  if (options.quiet > kLongestWait) throw std::invalid_argument("quiet must be at most 31536000 s, a year");
+  if (options.merge.transform != MapTransform::rigid)
+    throw std::invalid_argument("a transform other than rigid is for merge() alone: a team does not bend maps");
   if (options.max_robots < 1) throw std::invalid_argument("max_robots must be at least 1");
 }
 
@@ -165,8 +171,13 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
 
   bool wait_until_settled(std::chrono::milliseconds longest) const {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, longest,
-                             [&] { return news_.empty() && !is_at_work_ && answer_->settled; });
+    const auto wait = std::clamp<std::chrono::milliseconds>(longest, {}, kLongestWait);
+    return changed_.wait_for(lock, wait, [&] { return news_.empty() && !is_at_work_ && answer_->settled; });
+  }
+
+  bool is_at_rest() const {
+    const std::lock_guard lock(mutex_);
+    return news_.empty() && !is_at_work_ && !has_unfinished_ && is_all_done_;
   }
 
  private:
@@ -216,7 +227,8 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
     std::unique_lock lock(mutex_);
     while (!ends_) {
       bool is_quiet = false;
-      const bool goes_further = news_.empty() && !has_unfinished_ && !solver_.is_complete();
+      // What failed would fail again: once more in full, when all is quiet, is enough.
+      const bool goes_further = news_.empty() && !has_unfinished_ && !has_failed_ && !solver_.is_complete();
       if (news_.empty() && !has_unfinished_ && !goes_further) {
         const auto wakes = [&] { return ends_ || !news_.empty(); };
         if (is_all_done_) {
@@ -239,6 +251,7 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
       may_be_cancelled_ = answer != nullptr;
       has_unfinished_ = !answer;
       if (answer) {
+        has_failed_ = !answer->problem.empty();
         is_all_done_ = answer->settled || is_quiet;
         keep_events(answer->events);
         answer_ = without_forgotten(std::move(answer), news_);
@@ -276,7 +289,8 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
   std::set<std::string> known_;   // robots that were named
   std::chrono::steady_clock::time_point heard_ = std::chrono::steady_clock::now();
   std::shared_ptr<const TeamAnswer> answer_ = std::make_shared<const TeamAnswer>();
-  bool ends_ = false, is_at_work_ = false, may_be_cancelled_ = true, has_unfinished_ = false;
+  bool ends_ = false, is_at_work_ = false, may_be_cancelled_ = true, has_unfinished_ = false,
+       has_failed_ = false;
   bool is_all_done_ = true;  // until something is heard
   std::atomic<bool> is_cancelled_ = false;
 
@@ -320,6 +334,10 @@ std::vector<TeamEvent> Team::take_events() {
 
 bool Team::wait_until_settled(std::chrono::milliseconds longest) const {
   return worker_->wait_until_settled(longest);
+}
+
+bool Team::is_at_rest() const {
+  return worker_->is_at_rest();
 }
 
 }  // namespace gridmerge

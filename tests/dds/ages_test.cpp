@@ -13,7 +13,7 @@ namespace gridmerge::internal {
 namespace {
 
 RC_GTEST_PROP(Times, AreReadAsTheyWereWritten, ()) {
-  const auto nanoseconds = *rc::gen::inRange<std::int64_t>(0, std::int64_t{4'000'000'000} * 1'000'000'000);
+  const auto nanoseconds = *rc::gen::inRange<std::int64_t>(0, std::int64_t{9'000'000'000} * 1'000'000'000);
   const TeamTime time{std::chrono::duration_cast<TeamTime::duration>(std::chrono::nanoseconds(nanoseconds))};
   RC_ASSERT(read_time(format_time(time)) == time);
 }
@@ -26,7 +26,8 @@ TEST(Times, AreWrittenInSeconds) {
 TEST(Times, AreNothingElse) {
   for (const std::string text :
        {"", ".", "1", "1.", "1.0", "-1.000000000", "1.-00000000", " 1.000000000", "1.0000000000",
-        "99999999999.000000000", "1e3.000000000", "nan", "1.000000000 ", "+1.000000000"})
+        "99999999999.000000000", "9000000001.000000000", "9999999999.999999999", "1e3.000000000", "nan",
+        "1.000000000 ", "+1.000000000"})
     EXPECT_FALSE(read_time(text)) << text;
 }
 

@@ -413,6 +413,27 @@ TEST_F(NodeTest, EndsOnceNotAllCanBeMerged) {
   EXPECT_NE(node->describe().find("b: left out: "), std::string::npos) << node->describe();
 }
 
+TEST_F(NodeTest, EndsOnceThoughMapsCannotBeMerged) {
+  options.once = true;
+  options.wait = 30.0;
+  options.robots = {{"left", "/tb1/map"}, {"right", "/x/y"}};
+  options.patterns = {};
+  // Fixed robots lie together, however large the merged map would be.
+  options.known_poses["left"] = KnownPose{{0.0, 0.0, 0.0}, 0.0, 0.0, true};
+  options.known_poses["right"] = KnownPose{{9e6, 9e6, 0.0}, 0.0, 0.0, true};
+  start();
+  const MapTopic left = peer->maps("/tb1/map");
+  const MapTopic right = peer->maps("/x/y");
+  left.publish(map_of(0, "l"));
+  right.publish(map_of(1, "r"));
+  try {
+    node->end();
+    FAIL() << node->describe();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "the maps cannot be merged: the merged map would exceed 2^28 cells");
+  }
+}
+
 TEST_F(NodeTest, EndsOnceThoughRobotsMapOn) {
   options.once = true;
   options.wait = 30.0;

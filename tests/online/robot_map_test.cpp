@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "explorers.hpp"
+#include "grid/equal_grids.hpp"
 #include "gridmerge/grid/resample.hpp"
 
 namespace gridmerge::internal {
@@ -86,17 +87,6 @@ TEST(RobotMap, BlankMapsBeginAnything) {
   EXPECT_EQ(change_between(blank, map).share, 1.0);
   EXPECT_TRUE(change_between(map, blank).other_frame);
   EXPECT_EQ(change_between(blank, blank).share, 0.0);
-}
-
-TEST(RobotMap, ProbabilitiesCountAndUnknownOnesAreEqual) {
-  OccupancyGrid map = make_grid(2, 1, 0.05, {}, Cell::free);
-  map.probability = {0.1f, std::nanf("")};
-  OccupancyGrid other = map;
-  EXPECT_TRUE(are_equal(map, other));
-  other.probability[0] = 0.2f;
-  EXPECT_FALSE(are_equal(map, other));
-  other.probability.clear();
-  EXPECT_FALSE(are_equal(map, other));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <stdexcept>
@@ -233,6 +234,49 @@ TEST(TeamSolver, TheFrameIsThatOfTheRobotHeardFirstForAsLongAsItLives) {
   EXPECT_EQ(answer.components.at(0).anchor, "carl");
 }
 
+RobotNews gone_news() {
+  RobotNews news;
+  news.is_gone = true;
+  return news;
+}
+
+TEST(TeamSolver, NothingIsLeftOfARobotThatIsHeardAndForgottenAtOnce) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  News news;
+  RobotNews& anna = news["anna"];
+  add_news(anna, map_news(explorers.map(0, 3)));
+  RobotNews known;
+  known.known_pose = KnownPose{{1.0, 2.0, 0.0}, 0.0, 0.0, true};
+  add_news(anna, known);
+  add_news(anna, gone_news());
+  solver.take(news);
+  EXPECT_TRUE(solver.solve(Effort::full).robots.empty());
+  // News of one robot may wait in the solver too.
+  for (const RobotNews& one : {map_news(explorers.map(0, 3)), gone_news()}) solver.take({{"anna", one}});
+  EXPECT_TRUE(solver.solve(Effort::full).robots.empty());
+}
+
+TEST(TeamSolver, ARobotThatComesBackIsAsOldAsItsNewMap) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  News news;
+  news["bert"] = map_news(explorers.map(1, 5), 20);
+  RobotNews& anna = news["anna"];
+  for (int step = 3; step <= 5; ++step) add_news(anna, map_news(explorers.map(0, step), 10));
+  RobotNews known;
+  known.known_pose = KnownPose{{1.0, 2.0, 0.0}, 0.0, 0.0, true};
+  add_news(anna, known);
+  add_news(anna, gone_news());
+  add_news(anna, map_news(explorers.map(0, 5), 30));
+  solver.take(news);
+  const TeamAnswer answer = solver.solve(Effort::full);
+  EXPECT_EQ(status_of(answer, "anna").heard_first, TeamTime(std::chrono::seconds(30)));
+  EXPECT_EQ(status_of(answer, "anna").maps_heard, 1u);
+  ASSERT_EQ(answer.components.size(), 1u);
+  EXPECT_EQ(answer.components[0].anchor, "bert");
+}
+
 TEST(TeamSolver, NewsAndOrderGiveTheSameAnswer) {
   const Explorers explorers;
   TeamSolver together({}), apart({});
@@ -311,25 +355,98 @@ TEST(TeamSolver, SaysWhatItWaitsFor) {
   EXPECT_TRUE(answer.components.empty());
 }
 
-TEST(TeamSolver, AMapTooLargeToMergeIsAProblemNotTheEnd) {
-  const Explorers explorers;
-  TeamOptions options;
-  TeamSolver solver(options);
-  solver.take(news_at(explorers, 5));
-  const TeamAnswer before = solver.solve(Effort::further);
-  EXPECT_EQ(before.problem, "");
+/// Two fixed robots lie together however far apart they are.
+News too_far_apart() {
   News news;
-  // Two fixed robots lie together however far apart they are.
   news["anna"].known_pose = KnownPose{{0.0, 0.0, 0.0}, 0.0, 0.0, true};
   news["bert"].known_pose = KnownPose{{9e6, 9e6, 0.0}, 0.0, 0.0, true};
+  return news;
+}
+
+/// Components and robots tell one story, whichever of the two is read.
+void expect_consistent(const TeamAnswer& answer) {
+  for (const RobotStatus& robot : answer.robots) {
+    EXPECT_EQ(robot.state == RobotState::placed, robot.component.has_value()) << robot.name;
+    if (!robot.component) continue;
+    const std::vector<std::string>& members = answer.components.at(*robot.component).robots;
+    EXPECT_EQ(std::count(members.begin(), members.end(), robot.name), 1) << robot.name;
+    for (const Component& component : answer.merge->result.components) {
+      for (const Member& member : component.members) {
+        if (answer.merge->names.at(member.map) != robot.name) continue;
+        EXPECT_EQ(member.T_component_map, robot.T_world_map) << robot.name;
+      }
+    }
+  }
+}
+
+TEST(TeamSolver, AMapTooLargeToMergeIsAProblemNotTheEnd) {
+  const Explorers explorers;
+  for (const Effort effort : {Effort::soon, Effort::further, Effort::full}) {
+    TeamSolver solver({});
+    solver.take(news_at(explorers, 5));
+    const TeamAnswer before = solver.solve(Effort::full);
+    EXPECT_EQ(before.problem, "");
+    EXPECT_TRUE(before.settled);
+    expect_consistent(before);
+    News news = too_far_apart();
+    solver.take(news);
+    TeamAnswer answer = solver.solve(effort);
+    EXPECT_NE(answer.problem, "");
+    EXPECT_FALSE(answer.settled);
+    EXPECT_EQ(answer.number, before.number + 1);
+    EXPECT_TRUE(answer.events.empty());
+    ASSERT_EQ(answer.components.size(), before.components.size());
+    EXPECT_EQ(answer.components[0].map, before.components[0].map);
+    ASSERT_EQ(answer.robots.size(), before.robots.size());
+    for (const RobotStatus& robot : before.robots) {
+      EXPECT_EQ(status_of(answer, robot.name).T_world_map, robot.T_world_map);
+      EXPECT_EQ(status_of(answer, robot.name).component, robot.component);
+    }
+    expect_consistent(answer);
+    news["bert"].known_pose = std::optional<KnownPose>();
+    news["anna"].known_pose = std::optional<KnownPose>();
+    solver.take(news);
+    answer = solver.solve(Effort::full);
+    EXPECT_EQ(answer.problem, "");
+    EXPECT_TRUE(answer.settled);
+    expect_consistent(answer);
+  }
+}
+
+TEST(TeamSolver, AnAnswerThatIsMadeAgainHasNoPosesOfMapsThatAreGone) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  solver.take(news_at(explorers, 5));
+  ASSERT_EQ(solver.solve(Effort::full).components.size(), 1u);
+  News news = too_far_apart();
+  news["carl"] = gone_news();
+  add_news(news["carl"], map_news(explorers.map(2, 5), 9));
+  news["dora"] = map_news(explorers.map(3, 5), 10);
   solver.take(news);
-  const TeamAnswer answer = solver.solve(Effort::further);
+  TeamAnswer answer = solver.solve(Effort::further);
   EXPECT_NE(answer.problem, "");
-  EXPECT_EQ(answer.components.size(), before.components.size());
-  news["bert"].known_pose = std::optional<KnownPose>();
-  news["anna"].known_pose = std::optional<KnownPose>();
+  expect_consistent(answer);
+  for (const char* name : {"carl", "dora"}) {
+    EXPECT_EQ(status_of(answer, name).state, RobotState::waiting);
+    EXPECT_EQ(status_of(answer, name).why, "what was heard of it could not be merged yet");
+    EXPECT_EQ(status_of(answer, name).maps_heard, 1u);
+  }
+  // In another frame, that a robot takes by itself.
+  OccupancyGrid map = explorers.map(1, 4);
+  map.origin = SE2{5.0, 7.0, 2.0} * map.origin;
+  solver.take({{"bert", map_news(map, 1)}});
+  answer = solver.solve(Effort::further);
+  EXPECT_NE(answer.problem, "");
+  EXPECT_EQ(status_of(answer, "bert").component, std::nullopt);
+  EXPECT_TRUE(answer.events.empty());
+  // Who is asked next tells what happened in between.
+  news = {};
+  news["anna"] = news["bert"] = gone_news();
   solver.take(news);
-  EXPECT_EQ(solver.solve(Effort::further).problem, "");
+  answer = solver.solve(Effort::full);
+  EXPECT_EQ(answer.problem, "");
+  EXPECT_TRUE(has_event(answer, TeamEvent::Kind::left, "anna"));
+  expect_consistent(answer);
 }
 
 }  // namespace

@@ -4,12 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <future>
+#include <iterator>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "explorers.hpp"
+#include "scarce_memory.hpp"
 #include "support/effort.hpp"
 
 namespace gridmerge {
@@ -122,14 +127,67 @@ TEST(Team, PartsThatDoNotFitAreRefused) {
   EXPECT_THROW(team.hear_part("anna", 0, 0, broken), std::invalid_argument);
 }
 
+/// Work that goes on to its end has an answer. The end of a team is no moment for one, unless the two meet.
 TEST(Team, EndsWhileItIsAtWork) {
   const Explorers explorers;
-  for (int i = 0; i < test::repeats(20, 3); ++i) {
-    Team team;
-    for (int robot = 0; robot < test::repeats(4, 3); ++robot)
-      team.hear(kNames[static_cast<std::size_t>(robot)], explorers.map(robot, 5));
-    std::this_thread::sleep_for(std::chrono::milliseconds(7 * i));
+  const int robots[] = {0, 1, 3};  // a stranger last, at whom a second look is due
+  const int rounds = test::repeats(20, 3);
+  int late = 0;
+  for (int i = 0; i < rounds; ++i) {
+    std::promise<void> is_busy;
+    std::atomic<bool> was_told = false;
+    std::atomic<int> answers = 0;
+    int answers_at_the_end = 0;
+    {
+      Team team({}, [&](const std::shared_ptr<const TeamAnswer>& answer) {
+        ++answers;
+        // Looks are left to be made, and are begun as soon as this returns.
+        const bool goes_on = answer->robots.size() == std::size(robots) && !answer->settled;
+        if (goes_on && !was_told.exchange(true)) is_busy.set_value();
+      });
+      for (const int robot : robots)
+        team.hear(kNames[static_cast<std::size_t>(robot)], explorers.map(robot, 5));
+      is_busy.get_future().wait();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1 + i % 5));
+      answers_at_the_end = answers;
+    }
+    if (answers > answers_at_the_end) ++late;
   }
+  EXPECT_LE(late, rounds / 3);
+}
+
+/// Thorough looks fail for want of memory, one as the other: nothing is gained by trying on and on.
+TEST(Team, RestsWhereItsWorkFailsForGood) {
+  if (!test::kMemoryCanBeScarce) GTEST_SKIP() << "memory is never scarce under ThreadSanitizer";
+  std::vector<OccupancyGrid> strangers;  // more pairs of them than are looked at again at a time
+  for (unsigned building = 1; building <= 4; ++building)
+    strangers.push_back(test::map_part(test::draw_building(building), {0, 0, 9, 9}, {}));
+  TeamOptions options;
+  options.quiet = 20ms;
+  std::atomic<int> failures = 0;
+  std::atomic<bool> has_enough = true;
+  Team team(options, [&](const std::shared_ptr<const TeamAnswer>& answer) {
+    if (!answer->problem.empty()) ++failures;
+    const bool all_were_looked_at_quickly = answer->robots.size() == strangers.size();
+    if (all_were_looked_at_quickly && has_enough.exchange(false)) test::scarce_from = std::size_t{1} << 16;
+  });
+  for (std::size_t i = 0; i < strangers.size(); ++i) team.hear(kNames[i], strangers[i]);
+  constexpr int kFarTooMany = 100;
+  while (!team.is_at_rest() && failures < kFarTooMany) std::this_thread::sleep_for(1ms);
+  std::this_thread::sleep_for(200ms);  // in which nothing comes any more
+  test::scarce_from = 0;
+  EXPECT_GE(failures, 1);
+  EXPECT_LE(failures, 2);  // a further look, and all in full
+  EXPECT_TRUE(team.is_at_rest());
+  EXPECT_FALSE(team.wait_until_settled(0ms));
+  EXPECT_NE(team.answer()->problem, "");
+  EXPECT_FALSE(team.answer()->settled);
+  // It is not the end: with memory and news it goes on from there.
+  strangers[0].cells.front() = Cell::occupied;
+  team.hear(kNames[0], strangers[0]);
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  EXPECT_EQ(team.answer()->problem, "");
+  for (const RobotStatus& robot : team.answer()->robots) EXPECT_EQ(robot.state, RobotState::left_out);
 }
 
 TEST(Team, ForgetsRobots) {
@@ -198,9 +256,42 @@ TEST(Team, RefusesWhatMakesNoSense) {
   refuses([](TeamOptions& o) { o.search_again = -0.1; });
   refuses([](TeamOptions& o) { o.confirmations = 0; });
   refuses([](TeamOptions& o) { o.quiet = -1ms; });
+  refuses([](TeamOptions& o) { o.quiet = std::chrono::milliseconds::max(); });
+  refuses([](TeamOptions& o) { o.quiet = std::chrono::hours(365 * 24) + 1ms; });
   refuses([](TeamOptions& o) { o.max_robots = 0; });
+  refuses([](TeamOptions& o) { o.merge.transform = MapTransform::elastic; });
   refuses([](TeamOptions& o) { o.merge.max_false_joins = -1.0; });
   refuses([](TeamOptions& o) { o.merge.match.search = SearchMethod::random_walk; });
+}
+
+TEST(Team, WaitsForEverAndForNoTimeAtAll) {
+  constexpr auto kEver = std::chrono::milliseconds::max();
+  const Explorers explorers;
+  TeamOptions options;
+  options.quiet = std::chrono::hours(365 * 24);
+  Team team(options);
+  EXPECT_TRUE(team.wait_until_settled(kEver));  // nothing was heard
+  team.hear("anna", explorers.map(0, 5));
+  EXPECT_TRUE(team.wait_until_settled(kEver));
+  // A little of it changes: nothing is searched before it is quiet, which it is in a year.
+  OccupancyGrid changed = explorers.map(0, 5);
+  changed.cells.front() = Cell::occupied;
+  team.hear("anna", changed);
+  EXPECT_FALSE(team.wait_until_settled(kEver.min()));
+  const auto has_answered = [&] { return team.answer()->robots.at(0).maps_heard == 2; };
+  while (!has_answered()) std::this_thread::sleep_for(1ms);
+  EXPECT_FALSE(team.wait_until_settled(20ms));
+  EXPECT_FALSE(team.is_at_rest());
+  // To wait for ever is to wait, not to find that the time is over.
+  std::atomic<bool> is_over = false;
+  std::thread waits([&] {
+    EXPECT_TRUE(team.wait_until_settled(kEver));
+    is_over = true;
+  });
+  std::this_thread::sleep_for(50ms);
+  EXPECT_FALSE(is_over);
+  team.forget("anna");
+  waits.join();
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ class GRIDMERGE_EXPORT RosNode {
   RosNode& operator=(const RosNode&) = delete;
 
   /// Hears and publishes until it ends. Throws std::runtime_error when no map came in within `wait`, saying
-  /// which topics are there that come near.
+  /// which topics are there that come near, and with `once` when maps cannot be merged, saying why.
   End run();
 
   /// Ends run() soon, from any thread, also before it begins.

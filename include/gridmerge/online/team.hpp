@@ -18,14 +18,15 @@ namespace gridmerge {
 
 /// How a team works.
 struct TeamOptions {
-  MergeOptions merge;  ///< as of merge(); its progress callback is not used
+  MergeOptions merge;  ///< as of merge(); only rigid, and its progress callback is not used
   /// A map is searched anew when this share of its known cells differs from when it was searched last. A
   /// quarter of it is enough for a robot that lies nowhere yet. In between, the pose follows the map.
   double search_again = 0.1;
   /// A robot that was placed is moved elsewhere, or taken out, when so many answers in a row, each with newer
   /// maps, say so in the same way.
   int confirmations = 3;
-  /// With no newer map for so long, all that is left is searched, and what that says is taken at once.
+  /// With no newer map for so long, all that is left is searched, and what that says is taken at once. From 0
+  /// to a year.
   std::chrono::milliseconds quiet{3000};
   std::size_t max_robots = 256;  ///< Team::hear() refuses more
 };
@@ -61,8 +62,9 @@ class GRIDMERGE_EXPORT Team {
   void hear(const std::string& robot, OccupancyGrid map);
 
   /// New cells of a rectangle of the robot's newest map, with cell (`column`, `row`) at its lower left
-  /// corner; `part.resolution` and `part.origin` play no role. Returns false, and does nothing, where there
-  /// is no map that holds them. O(cells of the map).
+  /// corner; `part.resolution` and `part.origin` have to be valid, and play no role beyond that. Returns
+  /// false, and does nothing, where there is no map that holds them. Throws std::invalid_argument for an
+  /// invalid part. O(cells of the map).
   bool hear_part(const std::string& robot, int column, int row, const OccupancyGrid& part);
 
   /// Another node of the same team has heard the robot since then (RobotStatus::heard_first of its answer).
@@ -84,8 +86,12 @@ class GRIDMERGE_EXPORT Team {
   /// nobody asked for. Of more than 1000 the newest are kept. For whoever has no callback.
   std::vector<TeamEvent> take_events();
 
-  /// Waits until all that was heard is settled, or for so long; says whether it is.
+  /// Waits until all that was heard is settled, or for so long, a year at most; says whether it is.
   bool wait_until_settled(std::chrono::milliseconds longest) const;
+
+  /// Whether nothing more follows from what was heard: answer() is settled, or stays as TeamAnswer::problem
+  /// says until there is something new.
+  bool is_at_rest() const;
 
  private:
   class Worker;

@@ -88,7 +88,8 @@ struct TeamAnswer {
   /// are those of merge() with these maps, in the order of first hearing.
   bool settled = true;
   std::shared_ptr<const TeamMerge> merge = std::make_shared<const TeamMerge>();  ///< never null
-  std::string problem;  ///< why this is the answer before, made again; empty where there is none
+  /// Why this is the answer before, made again; empty where there is none. Such an answer is never settled.
+  std::string problem;
 };
 
 /// TeamAnswer::merge with the fused grids: as merge() would give it, for outputs. O(cells of the merged

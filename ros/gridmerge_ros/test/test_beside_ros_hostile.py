@@ -184,6 +184,7 @@ def test_lifecycle(peer: Peer, explored: gridmerge.Simulation) -> None:
         ({"transforms": "both"}, "transforms: is one of static, dynamic, none"),
         ({"accept": 1.5}, "accept"),
         ({"quiet": "soon"}, "quiet: is a number"),
+        ({"quiet": 1e9}, "quiet must be at most 31536000 s"),
         ({"autostart": 3}, "autostart: is true or false"),
         ({"merged_map_topic": "a b"}, "merged_map_topic: no topic is called"),
         ({"fixed_robots": ["tb0", "tb1"]}, "tb0: is one of several fixed_robots"),
