@@ -60,7 +60,8 @@ void validate(const TeamOptions& options) {
   if (options.quiet.count() < 0) throw std::invalid_argument("quiet must not be negative");
   if (options.quiet > kLongestWait) throw std::invalid_argument("quiet must be at most 31536000 s, a year");
   if (options.merge.transform != MapTransform::rigid)
-    throw std::invalid_argument("a transform other than rigid is for merge() alone: a team does not bend maps");
+    throw std::invalid_argument(
+        "a transform other than rigid is for merge() alone: a team does not bend maps");
   if (options.max_robots < 1) throw std::invalid_argument("max_robots must be at least 1");
 }
 
