@@ -36,13 +36,6 @@ struct MatchCommandOptions {
   bool scaled() const { return !search.scales.empty(); }
 };
 
-/// Whether the second hypothesis alone would keep the first from being accepted.
-bool has_near_rival(const MatchResult& result, double accept_from) {
-  if (result.hypotheses.size() < 2) return false;
-  const double first = result.hypotheses[0].probability, second = result.hypotheses[1].probability;
-  return first < accept_from * (first + second);
-}
-
 std::string describe_verdict(const MatchResult& result, const SearchOptions& search) {
   if (search.random_walk() && !result.hypotheses.empty()) {
     if (result.verdict == Verdict::refused && result.acceptance_index >= search.accept_from())
@@ -65,7 +58,9 @@ std::string describe_verdict(const MatchResult& result, const SearchOptions& sea
         return refused(
             fmt::format("the maps are free to slide along {:.0f} degrees",
                         180.0 / std::numbers::pi * result.hypotheses.front().figures.free_direction));
-      if (has_near_rival(result, search.accept_from()))
+      if (result.hypotheses.size() > 1 &&
+          is_near_rival(result.hypotheses[0].probability, result.hypotheses[1].probability,
+                        search.accept_from()))
         return refused("two ways to lay the maps explain them nearly equally well");
       return refused("this way to lay the maps hardly stands out from all others");
     case Reason::contradiction:

@@ -192,6 +192,10 @@ bool slides(const PoseFigures& figures) {
   return how_held(figures) < kSlides;
 }
 
+bool is_near_rival(double best, double next, double accept_probability) {
+  return 1.0 - next / (best + next) < accept_probability;
+}
+
 Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_probability,
                        const VerdictModel& model) {
   if (hypotheses.empty()) return Reason::nothing_to_compare;
@@ -214,9 +218,9 @@ Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_pr
   const bool stands_out = logistic(hypotheses[0].stands_out) >= accept_probability;
   if (!stands_out && with_rivals([](TermKind) { return false; })) return Reason::ambiguous;
   const bool agrees = with_rivals([](TermKind kind) { return kind == TermKind::amount; });
-  // Nearly as good: the better one of the two would be refused however much the maps had in common.
-  const double rival = hypotheses.size() > 1 ? probabilities[1] / (probabilities[0] + probabilities[1]) : 0.0;
-  if (agrees && 1.0 - rival < accept_probability) return Reason::ambiguous;
+  if (agrees && probabilities.size() > 1 &&
+      is_near_rival(probabilities[0], probabilities[1], accept_probability))
+    return Reason::ambiguous;
   if (agrees && slides(hypotheses[0])) return Reason::ambiguous;
   if (agrees) return Reason::too_little_overlap;
   if (with_rivals([](TermKind kind) { return kind == TermKind::quality; })) return Reason::contradiction;

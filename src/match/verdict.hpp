@@ -97,6 +97,10 @@ std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses,
 /// PoseFigures::free_direction says which way.
 GRIDMERGE_INTERNAL_EXPORT bool slides(const PoseFigures& figures);
 
+/// Whether the second of two hypotheses, by their probabilities, is nearly as good: the better one would be
+/// refused however much the maps had in common.
+GRIDMERGE_INTERNAL_EXPORT bool is_near_rival(double best, double next, double accept_probability);
+
 /// Why the first of these hypotheses, which is the best, is refused where `accept_probability` is asked for;
 /// `none` if it is not, `nothing_to_compare` if there is no hypothesis.
 Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_probability,

@@ -169,7 +169,8 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
   std::vector<Witness> witnesses;
   const bool know_coverage = !problem_.coverage.empty();
   std::vector<ManyPointsTransform> poses_b = poses_of(b);  // in the frame of a
-  for (ManyPointsTransform& pose : poses_b) pose = ManyPointsTransform(T_a_b) * pose;
+  const ManyPointsTransform from_b(T_a_b);
+  for (ManyPointsTransform& pose : poses_b) pose = from_b * pose;
   for (const PlacedNode& in_a : a) {
     const ManyPointsTransform T_a_map(in_a.T_group_map), T_map_a = T_a_map.inverse();
     for (std::size_t i = 0; i < b.size(); ++i) {
