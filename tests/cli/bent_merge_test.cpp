@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <regex>
-#include <sstream>
 
 #include "fixture.hpp"
+#include "g2o_vertices.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "gridmerge/report/merge_record.hpp"
@@ -111,20 +111,13 @@ TEST_F(BentMerge, ExportsTheBestRigidPoses) {
   ASSERT_EQ(run(merge_call({"--elastic", "--export", "g2o", "--export", "geojson"})).exit_code, 0);
   const Json members =
       Json::parse(read_file(output + "/transforms.json")).at("components").at(0).at("members");
-  std::istringstream lines(read_file(output + "/merged.g2o"));
-  std::size_t vertices = 0;
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string kind;
-    std::size_t id = 0;
-    double x = 0.0, y = 0.0, theta = 0.0;
-    if (!(words >> kind >> id >> x >> y >> theta) || kind != "VERTEX_SE2") continue;
-    ++vertices;
-    EXPECT_NEAR(x, members.at(id).at("transform").at("x").get<double>(), 1e-6);
-    EXPECT_NEAR(y, members.at(id).at("transform").at("y").get<double>(), 1e-6);
-    EXPECT_NEAR(theta, members.at(id).at("transform").at("theta").get<double>(), 1e-6);
+  const std::map<std::size_t, SE2> vertices = g2o_vertices(read_file(output + "/merged.g2o"));
+  for (const auto& [id, pose] : vertices) {
+    EXPECT_NEAR(pose.x, members.at(id).at("transform").at("x").get<double>(), 1e-6);
+    EXPECT_NEAR(pose.y, members.at(id).at("transform").at("y").get<double>(), 1e-6);
+    EXPECT_NEAR(pose.theta, members.at(id).at("transform").at("theta").get<double>(), 1e-6);
   }
-  EXPECT_EQ(vertices, 3u);
+  EXPECT_EQ(vertices.size(), 3u);
 }
 
 // Straight maps are merged as without it, to the byte.

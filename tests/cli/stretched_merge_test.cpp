@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
-#include <sstream>
 
 #include "fixture.hpp"
+#include "g2o_vertices.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/report/merge_record.hpp"
 
@@ -177,18 +177,9 @@ TEST_F(StretchedMerge, AFixedMapHasTheTrueScale) {
 TEST_F(StretchedMerge, ExportsTheBestRigidPoses) {
   ASSERT_EQ(run(merge_call({"--transform", "similarity", "--export", "g2o"})).exit_code, 0);
   const Json found = members();
-  std::istringstream lines(read_file(output + "/merged.g2o"));
-  std::size_t vertices = 0;
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string kind;
-    std::size_t id = 0;
-    double x = 0.0, y = 0.0, theta = 0.0;
-    if (!(words >> kind >> id >> x >> y >> theta) || kind != "VERTEX_SE2") continue;
-    ++vertices;
-    expect_near(found.at(id).at("transform"), {x, y, theta}, 1e-6, 1e-6);
-  }
-  EXPECT_EQ(vertices, 3u);
+  const std::map<std::size_t, SE2> vertices = g2o_vertices(read_file(output + "/merged.g2o"));
+  for (const auto& [id, pose] : vertices) expect_near(found.at(id).at("transform"), pose, 1e-6, 1e-6);
+  EXPECT_EQ(vertices.size(), 3u);
 }
 
 // The stretched maps hang on the plan, which has the only scale that is drawn.
