@@ -110,14 +110,6 @@ CellBox box_on_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, dou
           static_cast<int>(std::floor(box.max_x)) + 1, static_cast<int>(std::floor(box.max_y)) + 1};
 }
 
-CellBox intersect(const CellBox& a, const CellBox& b) {
-  CellBox common{std::max(a.left, b.left), std::max(a.bottom, b.bottom), std::min(a.right, b.right),
-                 std::min(a.top, b.top)};
-  common.right = std::max(common.left, common.right);
-  common.top = std::max(common.bottom, common.top);
-  return common;
-}
-
 void draw_nearest_cells(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution,
                         const CellBox& box, std::size_t stride_multiple, CellsOnLattice& result) {
   result.box = box;

@@ -4,20 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "grid/cell_box.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge::internal {
-
-/// A rectangle of cells.
-struct CellBox {
-  int left = 0;
-  int bottom = 0;
-  int right = 0;  ///< one past the last column
-  int top = 0;    ///< one past the last row
-
-  int width() const { return right - left; }
-  int height() const { return top - bottom; }
-};
 
 /// A grid drawn on another grid's lattice: cell (column, row) of `box` is
 /// cells[(row - box.bottom) * stride + column - box.left], unknown where the grid has no cell.
@@ -52,9 +42,6 @@ bool is_within_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, dou
 /// `T_lattice_grid` is between the lower-left corners, in metres; the lattice's cells have sides of
 /// `lattice_resolution` metres. Throws std::invalid_argument unless is_within_lattice(). O(1).
 CellBox box_on_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution);
-
-/// The cells of both boxes; empty, but not negative in size, if there are none.
-CellBox intersect(const CellBox& a, const CellBox& b);
 
 /// Gives every cell of `box` on the lattice the value of the cell of `grid` under its centre. `stride` of the
 /// result is a multiple of `stride_multiple`. Fixed-point arithmetic with 40 fractional bits of a cell, so
