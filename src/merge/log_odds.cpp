@@ -113,17 +113,16 @@ std::int16_t cell_log_odds(const OccupancyGrid& map, std::size_t index) {
   return cell == Cell::occupied ? std::max<std::int16_t>(stated, 1) : std::min<std::int16_t>(stated, -1);
 }
 
-// A map's log-odds, to be looked up at points. A border of one unknown cell lets neighbours be read without a
-// check.
+// The log-odds of a map's cells in a box, to be looked up at points that lie at least a cell from a side of the
+// box where the map goes on. A border of one unknown cell lets neighbours be read without a check.
 class LogOddsSource {
  public:
-  explicit LogOddsSource(const OccupancyGrid& map)
-      : width_(map.width),
-        height_(map.height),
-        stride_(static_cast<std::size_t>(map.width) + 2),
-        log_odds_(stride_ * (static_cast<std::size_t>(map.height) + 2), 0) {
-    parallel_rows(0, height_, [&](int row) {
-      for (int column = 0; column < width_; ++column)
+  LogOddsSource(const OccupancyGrid& map, const CellBox& box)
+      : box_(box),
+        stride_(static_cast<std::size_t>(box.width()) + 2),
+        log_odds_(stride_ * (static_cast<std::size_t>(box.height()) + 2), 0) {
+    parallel_rows(box.bottom, box.top, [&](int row) {
+      for (int column = box.left; column < box.right; ++column)
         log_odds_[offset(column, row)] = cell_log_odds(map, map.index(column, row));
     });
   }
@@ -132,7 +131,7 @@ class LogOddsSource {
   std::int16_t at(double x, double y) const {
     x += kSlack;
     y += kSlack;
-    if (!(x >= 0.0 && x < width_ && y >= 0.0 && y < height_)) return 0;
+    if (!(x >= box_.left && x < box_.right && y >= box_.bottom && y < box_.top)) return 0;
     const int column = static_cast<int>(x);
     const int row = static_cast<int>(y);
     const std::size_t here = offset(column, row);
@@ -144,7 +143,8 @@ class LogOddsSource {
 
  private:
   std::size_t offset(int column, int row) const {
-    return (static_cast<std::size_t>(row) + 1) * stride_ + static_cast<std::size_t>(column) + 1;
+    return static_cast<std::size_t>(row - box_.bottom + 1) * stride_ +
+           static_cast<std::size_t>(column - box_.left + 1);
   }
 
   // The log-odds of the band that joins two occupied neighbours of this cell across one of its corners, if
@@ -166,24 +166,33 @@ class LogOddsSource {
     return strongest;
   }
 
-  int width_;
-  int height_;
+  CellBox box_;
   std::size_t stride_;
   std::vector<std::int16_t> log_odds_;
 };
 
-// The lattice cells that a box touches, as an empty patch.
-LogOddsPatch patch_over(const Box& box, const Lattice& lattice) {
+CellBox whole(const OccupancyGrid& map) {
+  return {0, 0, map.width, map.height};
+}
+
+// The lattice cells within `limits` that a box touches, as an empty patch.
+LogOddsPatch patch_over(const Box& box, const Lattice& lattice, const CellBox& limits) {
   LogOddsPatch patch;
   if (box.empty()) return patch;
   const auto cell_range = [&](double low, double high, double corner, int size) {
     const auto clip = [&](double cell) { return static_cast<int>(std::fmin(std::fmax(cell, 0.0), size)); };
     const int first = clip(std::floor((low - corner) / lattice.resolution - kSlack));
     const int end = clip(std::ceil((high - corner) / lattice.resolution + kSlack));
-    return std::pair(first, std::max(0, end - first));
+    return std::pair(first, end);
   };
-  std::tie(patch.column, patch.width) = cell_range(box.min_x, box.max_x, lattice.corner.x, lattice.width);
-  std::tie(patch.row, patch.height) = cell_range(box.min_y, box.max_y, lattice.corner.y, lattice.height);
+  CellBox touched;
+  std::tie(touched.left, touched.right) = cell_range(box.min_x, box.max_x, lattice.corner.x, lattice.width);
+  std::tie(touched.bottom, touched.top) = cell_range(box.min_y, box.max_y, lattice.corner.y, lattice.height);
+  const CellBox drawn = intersect(touched, limits);
+  patch.column = drawn.left;
+  patch.row = drawn.bottom;
+  patch.width = drawn.width();
+  patch.height = drawn.height();
   patch.log_odds.assign(static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height), 0);
   return patch;
 }
@@ -192,9 +201,29 @@ void keep_strongest(std::int16_t& target, std::int16_t value) {
   if (value != 0 && (target == 0 || value > target)) target = value;
 }
 
+// The map's cells under a patch, with a rim.
+CellBox cells_under(const LogOddsPatch& patch, const Lattice& lattice, const PlacedMap& input) {
+  const SE2 T_grid_output = inverse(input.T_output_map * input.map->origin);
+  Box under;  // [cells]
+  for (const int column : {patch.column, patch.column + patch.width}) {
+    for (const int row : {patch.row, patch.row + patch.height}) {
+      const Point2 corner = T_grid_output * Point2{lattice.corner.x + column * lattice.resolution,
+                                                   lattice.corner.y + row * lattice.resolution};
+      under.add(Point2{corner.x / input.map->resolution, corner.y / input.map->resolution});
+    }
+  }
+  constexpr double kRim = 2.0;  // for neighbours across a corner, and rounding
+  const auto clip = [](double cell, int size) {
+    return static_cast<int>(std::clamp<double>(std::floor(cell), 0.0, size));
+  };
+  const OccupancyGrid& map = *input.map;
+  return {clip(under.min_x - kRim, map.width), clip(under.min_y - kRim, map.height),
+          clip(under.max_x + kRim + 1.0, map.width), clip(under.max_y + kRim + 1.0, map.height)};
+}
+
 // Looks up the map under `samples` x `samples` points of every cell of the patch.
 void sample_map(const PlacedMap& input, const Lattice& lattice, int samples, LogOddsPatch& patch) {
-  const LogOddsSource source(*input.map);
+  const LogOddsSource source(*input.map, cells_under(patch, lattice, input));
   const SE2 T_grid_output = inverse(input.T_output_map * input.map->origin);
   const double map_resolution = input.map->resolution;
   const double c = std::cos(T_grid_output.theta) / map_resolution;
@@ -257,7 +286,7 @@ class StraightenedGrid {
 // As sample_map() for a bent map.
 void sample_bent_map(const PlacedMap& input, const Deformation& deformation, const Lattice& lattice,
                      int samples, LogOddsPatch& patch) {
-  const LogOddsSource source(*input.map);
+  const LogOddsSource source(*input.map, whole(*input.map));
   const StraightenedGrid straightened(input, deformation, lattice, patch);
   parallel_rows(0, patch.height, [&](int row) {
     std::size_t target = patch.index(0, row);
@@ -279,8 +308,9 @@ void splat_map(const PlacedMap& input, const Lattice& lattice, LogOddsPatch& pat
   const double scale = map.resolution / lattice.resolution;
   const double c = std::cos(T_output_grid.theta) * scale;
   const double s = std::sin(T_output_grid.theta) * scale;
-  const double shift_x = (T_output_grid.x - lattice.corner.x) / lattice.resolution - patch.column + kSlack;
-  const double shift_y = (T_output_grid.y - lattice.corner.y) / lattice.resolution - patch.row + kSlack;
+  const double shift_x = (T_output_grid.x - lattice.corner.x) / lattice.resolution + kSlack;
+  const double shift_y = (T_output_grid.y - lattice.corner.y) / lattice.resolution + kSlack;
+  const int right = patch.column + patch.width, top = patch.row + patch.height;
   for (int row = 0; row < map.height; ++row) {
     throw_if_cancelled();
     for (int column = 0; column < map.width; ++column) {
@@ -288,10 +318,10 @@ void splat_map(const PlacedMap& input, const Lattice& lattice, LogOddsPatch& pat
       if (value == 0) continue;
       const double x = c * (column + 0.5) - s * (row + 0.5) + shift_x;
       const double y = s * (column + 0.5) + c * (row + 0.5) + shift_y;
-      if (!(x >= 0.0 && x < patch.width && y >= 0.0 && y < patch.height)) continue;
-      keep_strongest(patch.log_odds[static_cast<std::size_t>(y) * static_cast<std::size_t>(patch.width) +
-                                    static_cast<std::size_t>(x)],
-                     value);
+      if (!(x >= patch.column && x < right && y >= patch.row && y < top)) continue;
+      keep_strongest(
+          patch.log_odds[patch.index(static_cast<int>(x) - patch.column, static_cast<int>(y) - patch.row)],
+          value);
     }
   }
 }
@@ -322,8 +352,13 @@ Lattice cover(const std::vector<PlacedMap>& inputs, double resolution,
 }
 
 LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice, const Deformation& deformation) {
+  return draw_log_odds(input, lattice, deformation, lattice.whole());
+}
+
+LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice, const Deformation& deformation,
+                           const CellBox& within) {
   validate_input(input);
-  LogOddsPatch patch = patch_over(known_box(input, deformation), lattice);
+  LogOddsPatch patch = patch_over(known_box(input, deformation), lattice, within);
   if (patch.log_odds.empty()) return patch;
   // A square of side a holds a point of any square grid of spacing a / sqrt(2), however that is rotated. So
   // from that ratio on, every lattice cell meets the centre of a map cell; below it, two samples a side meet

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "grid/cell_box.hpp"
 #include "gridmerge/grid/deformation.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "internal_export.hpp"
@@ -17,6 +18,9 @@ struct Lattice {
   int height = 0;           ///< rows
   double resolution = 1.0;  ///< metres per cell side
   Point2 corner;            ///< lower-left corner of cell (0, 0) in the output frame [m]
+
+  CellBox whole() const { return {0, 0, width, height}; }
+  friend bool operator==(const Lattice&, const Lattice&) = default;
 };
 
 /// The lattice of `resolution` [m] that just covers the known cells of all inputs; one cell when there is
@@ -65,5 +69,10 @@ struct LogOddsPatch {
 /// for an invalid grid or a transform that is not finite.
 GRIDMERGE_INTERNAL_EXPORT LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice,
                                                      const Deformation& deformation = {});
+
+/// The same of the lattice cells in a box alone. They are what they are of the whole lattice, except that
+/// those of a bent map may take another cell next to it. O(map cells + lattice cells in the box).
+LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice, const Deformation& deformation,
+                           const CellBox& within);
 
 }  // namespace gridmerge::internal

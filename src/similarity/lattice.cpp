@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gridmerge/grid/resample.hpp"
+#include "similarity/equal_cells.hpp"
 #include "similarity/lattice_frames.hpp"
 #include "similarity/nearest_cells.hpp"
 
@@ -14,15 +15,19 @@ using namespace internal;
 
 namespace {
 
-/// The map's cells on the lattice, where the lattice has cells. Empty if there are none.
-CellsOnLattice draw_within(const OccupancyGrid& lattice, const PlacedMap& map) {
+CellBox whole(const OccupancyGrid& lattice) {
+  return {0, 0, lattice.width, lattice.height};
+}
+
+/// The map's cells on the lattice, where the box has cells. Empty if there are none.
+CellsOnLattice draw_within(const OccupancyGrid& lattice, const CellBox& limits, const PlacedMap& map) {
   validate(lattice);
   validate(*map.map);
   check_finite(map.T_output_map);
   check_resolutions(lattice, *map.map);
   const SE2 T_lattice_grid = between_grids(lattice, *map.map, map.T_output_map);
   const CellBox box = intersect(box_on_lattice(*map.map, T_lattice_grid, lattice.resolution),
-                                {0, 0, lattice.width, lattice.height});
+                                intersect(limits, whole(lattice)));
   CellsOnLattice drawn;
   if (box.width() > 0 && box.height() > 0)
     draw_nearest_cells(*map.map, T_lattice_grid, lattice.resolution, box, 1, drawn);
@@ -32,7 +37,7 @@ CellsOnLattice draw_within(const OccupancyGrid& lattice, const PlacedMap& map) {
 }  // namespace
 
 OccupancyGrid draw_on_lattice(const OccupancyGrid& lattice, const PlacedMap& map) {
-  const CellsOnLattice drawn = draw_within(lattice, map);
+  const CellsOnLattice drawn = draw_within(lattice, whole(lattice), map);
   OccupancyGrid grid = make_grid(lattice.width, lattice.height, lattice.resolution, lattice.origin);
   for (int row = drawn.box.bottom; row < drawn.box.top; ++row) {
     for (int column = drawn.box.left; column < drawn.box.right; ++column)
@@ -42,26 +47,33 @@ OccupancyGrid draw_on_lattice(const OccupancyGrid& lattice, const PlacedMap& map
 }
 
 std::int64_t count_equal_cells(const OccupancyGrid& lattice, std::span<const PlacedMap> maps) {
+  return internal::count_equal_cells(lattice, maps, whole(lattice));
+}
+
+std::int64_t internal::count_equal_cells(const OccupancyGrid& lattice, std::span<const PlacedMap> maps,
+                                         const CellBox& box) {
   if (maps.empty()) return 0;
   constexpr auto kUnknown = static_cast<std::uint8_t>(Cell::unknown);
   constexpr std::uint8_t kDiffer = 0xff;  // no value of a cell
-  const OccupancyGrid first = draw_on_lattice(lattice, maps.front());
-  std::vector<std::uint8_t> values(first.cells.size());  // that all maps so far have
-  std::transform(first.cells.begin(), first.cells.end(), values.begin(),
-                 [](Cell cell) { return static_cast<std::uint8_t>(cell); });
-  for (const PlacedMap& map : maps.subspan(1)) {
-    const CellsOnLattice drawn = draw_within(lattice, map);
-    for (int row = 0; row < lattice.height; ++row) {
-      std::uint8_t* const of_row = values.data() + lattice.index(0, row);
+  const auto width = static_cast<std::size_t>(box.width());
+  std::vector<std::uint8_t> values(width * static_cast<std::size_t>(box.height()),
+                                   kUnknown);  // of all so far
+  for (const PlacedMap& map : maps) {
+    const bool is_first = &map == &maps.front();
+    const CellsOnLattice drawn = draw_within(lattice, box, map);
+    for (int row = box.bottom; row < box.top; ++row) {
+      std::uint8_t* const of_row = values.data() + static_cast<std::size_t>(row - box.bottom) * width;
       const bool inside = row >= drawn.box.bottom && row < drawn.box.top;
-      const int left = inside ? drawn.box.left : lattice.width;
-      const int right = inside ? drawn.box.right : lattice.width;
+      const int left = inside ? drawn.box.left : box.right;
+      const int right = inside ? drawn.box.right : box.right;
       const auto compare = [&](int column, std::uint8_t value) {
-        if (of_row[column] != value) of_row[column] = kDiffer;
+        std::uint8_t& before = of_row[column - box.left];
+        if (is_first) before = value;
+        if (before != value) before = kDiffer;
       };
-      for (int column = 0; column < left; ++column) compare(column, kUnknown);
+      for (int column = box.left; column < left; ++column) compare(column, kUnknown);
       for (int column = left; column < right; ++column) compare(column, *drawn.at(column, row));
-      for (int column = right; column < lattice.width; ++column) compare(column, kUnknown);
+      for (int column = right; column < box.right; ++column) compare(column, kUnknown);
     }
   }
   return std::count_if(values.begin(), values.end(), [](std::uint8_t value) { return value != kDiffer; });
@@ -77,7 +89,7 @@ bool lie_on_each_other(const OccupancyGrid& fixed, const OccupancyGrid& moving, 
   if (!is_within_lattice(known_moving, between_grids(known_fixed, known_moving, T_fixed_moving),
                          known_fixed.resolution))
     return false;
-  const CellsOnLattice drawn = draw_within(known_fixed, {&known_moving, T_fixed_moving});
+  const CellsOnLattice drawn = draw_within(known_fixed, whole(known_fixed), {&known_moving, T_fixed_moving});
   return std::any_of(drawn.spans.begin(), drawn.spans.end(),
                      [](const CellsOnLattice::Span& span) { return span.left < span.right; });
 }
