@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "grid/changed_cells.hpp"
 #include "similarity/agreement.hpp"
 
 namespace gridmerge::internal {
@@ -34,6 +35,17 @@ MapChange change_between(const OccupancyGrid& before, const OccupancyGrid& after
   const double equal = static_cast<double>(counts.agreement) * cell;
   const double share = 1.0 - equal / std::max(known_before, known_after);
   return {std::clamp(share, 0.0, 1.0), both < kMinKept * known_before || equal < kMinAgreement * both};
+}
+
+std::optional<std::size_t> count_changed_cells(const OccupancyGrid& before, const OccupancyGrid& after) {
+  const std::optional<CellBox> box = changed_cells(before, after);
+  if (!box) return std::nullopt;
+  std::size_t count = 0;
+  for (int row = box->bottom; row < box->top; ++row) {
+    for (int column = box->left; column < box->right; ++column)
+      count += before.at(column, row) != after.at(column, row) ? 1 : 0;
+  }
+  return count;
 }
 
 }  // namespace gridmerge::internal

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <optional>
+
 #include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge::internal {
@@ -13,5 +16,9 @@ struct MapChange {
 
 /// From `before` to `after`, both in the robot's map frame. O(cells).
 MapChange change_between(const OccupancyGrid& before, const OccupancyGrid& after);
+
+/// In how many cells a map has another value than the one before; none where they do not have the same cells,
+/// as of changed_cells(). O(cells).
+std::optional<std::size_t> count_changed_cells(const OccupancyGrid& before, const OccupancyGrid& after);
 
 }  // namespace gridmerge::internal

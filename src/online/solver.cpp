@@ -9,10 +9,7 @@
 #include "grid/equal_grids.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/merge/fuse.hpp"
-#include "merge/joins.hpp"
 #include "online/robot_map.hpp"
-#include "online/status.hpp"
 
 namespace gridmerge::internal {
 
@@ -22,15 +19,15 @@ namespace {
 constexpr double kSooner = 0.25;
 /// Thorough looks until the next answer, which newer maps may wait for: a second or two on two cores.
 constexpr std::size_t kPairsAtATime = 4;
+/// A placed map of which a smaller share of the known cells has changed since it was weighed is drawn where
+/// it lies. A pose is a mean over a map's walls: such a share moves it by a fiftieth of its own error at
+/// most, a centimetre for half a metre.
+constexpr double kDrawnOnly = 0.02;
 
 MergeOptions without_progress(MergeOptions options) {
   options.progress = nullptr;
   options.match.progress = nullptr;
   return options;
-}
-
-MapExtent extent_of(const OccupancyGrid& map) {
-  return count_cells(map).known() == 0 ? MapExtent{} : Coverage(crop_to_known(map)).extent();
 }
 
 }  // namespace
@@ -53,6 +50,14 @@ TeamSolver::TeamSolver(const TeamOptions& options)
 
 void TeamSolver::take(News news) {
   for (auto& entry : news) add_news(pending_[entry.first], std::move(entry.second));
+}
+
+TeamSolver::Weighed TeamSolver::to_be_weighed(std::shared_ptr<const OccupancyGrid> map) {
+  Weighed weighed;
+  weighed.known_cells = count_cells(*map).known();
+  if (weighed.known_cells > 0) weighed.extent = Coverage(crop_to_known(*map)).extent();
+  weighed.map = std::move(map);
+  return weighed;
 }
 
 TeamAnswer TeamSolver::solve(Effort effort) {
@@ -79,13 +84,11 @@ void TeamSolver::find_out(Effort effort, TeamAnswer& answer) {
     apply(next->first, next->second);
     pending_.erase(next);
   }
-  const bool in_full = effort == Effort::full;
-  if (in_full) search_what_changed();
-  MergeResult result =
-      in_full ? merger_.solve() : merger_.solve_soon(effort == Effort::soon ? 0 : kPairsAtATime);
-  using Weight = Placements::Weight;
-  propose(result, in_full ? Weight::conclusive : is_complete() ? Weight::full : Weight::partial);
-  tell_components(std::move(result), answer);
+  if (effort == Effort::soon && is_weighed_) {
+    draw_again(answer);
+  } else {
+    weigh_again(effort, answer);
+  }
   for (const auto& [name, robot] : robots_) answer.robots.push_back(status_of(name, robot, answer));
   tell_events(answer);
   told_ = placements_.groups();
@@ -94,24 +97,18 @@ void TeamSolver::find_out(Effort effort, TeamAnswer& answer) {
   told_robots_.clear();
   for (const RobotStatus& robot : answer.robots) told_robots_[robot.name] = robot;
   restarted_.clear();
+  is_weighed_ = true;
 }
 
-/// Components and poses that were told last, which belong together; of what has changed since, nothing. A map
-/// that is gone has no pose any more. Events are told by the answer that knows what came of them.
-TeamAnswer TeamSolver::answer_before() const {
-  TeamAnswer answer;
-  answer.components = told_components_;
-  answer.merge = told_merge_;
-  for (const auto& [name, robot] : robots_) {
-    RobotStatus status;
-    status.why = "what was heard of it could not be merged yet";
-    if (const auto told = told_robots_.find(name); told != told_robots_.end()) status = told->second;
-    status.name = name;
-    status.maps_heard = robot.maps_heard;
-    status.heard_first = robot.since;
-    answer.robots.push_back(std::move(status));
-  }
-  return answer;
+void TeamSolver::weigh_again(Effort effort, TeamAnswer& answer) {
+  const bool in_full = effort == Effort::full;
+  if (effort != Effort::further) weigh_what_changed();
+  if (in_full) search_what_changed();
+  MergeResult result =
+      in_full ? merger_.solve() : merger_.solve_soon(effort == Effort::soon ? 0 : kPairsAtATime);
+  using Weight = Placements::Weight;
+  propose(result, in_full ? Weight::conclusive : is_complete() ? Weight::full : Weight::partial);
+  tell_components(std::move(result), answer);
 }
 
 bool TeamSolver::is_settled() const {
@@ -130,10 +127,12 @@ void TeamSolver::apply(const std::string& name, RobotNews& news) {
     robot.known_pose = *news.known_pose;
     if (robot.id) merger_.set_known_pose(*robot.id, robot.known_pose);
     placements_.forget(name);
+    is_weighed_ = false;
     news.known_pose.reset();
   }
   if (news.since) {
     Robot& robot = robots_.try_emplace(name, Robot{}).first->second;
+    if (*news.since < robot.since) is_weighed_ = false;  // frames follow from who was heard first
     robot.since = std::min(robot.since, *news.since);
   }
   if (news.map) set_map(name, news.map);
@@ -144,38 +143,58 @@ void TeamSolver::apply(const std::string& name, RobotNews& news) {
 void TeamSolver::set_map(const std::string& name, std::shared_ptr<const OccupancyGrid> map) {
   Robot& robot = robots_[name];
   if (!robot.id) {
-    const MapExtent extent = extent_of(*map);
+    Weighed weighed = to_be_weighed(map);
     robot.id = merger_.add(*map, robot.known_pose);
     names_[*robot.id] = name;
     robot.searched = map;
-    robot.map = std::move(map);
-    robot.extent = extent;
-    fresh_.insert(name);
+    set_weighed(name, robot, std::move(weighed));
     return;
   }
   if (are_equal(*robot.map, *map)) return;
-  const MapChange change = change_between(*robot.map, *map);
-  const bool other_frame = change.other_frame;
+  const std::optional<std::size_t> changed = count_changed_cells(*robot.weighed.map, *map);
+  const bool is_drawn_only =
+      changed && static_cast<double>(*changed) < kDrawnOnly * static_cast<double>(robot.weighed.known_cells);
+  if (is_drawn_only && is_placed(name)) {
+    robot.map = std::move(map);
+  } else {
+    weigh(name, robot, std::move(map));
+  }
+}
+
+/// Gives the merger the robot's newest map. May be cancelled: all is as before then.
+void TeamSolver::weigh(const std::string& name, Robot& robot, std::shared_ptr<const OccupancyGrid> map) {
+  const MapChange change = change_between(*robot.weighed.map, *map);
   const double searched_from = options_.search_again * (is_placed(name) ? 1.0 : kSooner);
   // Mostly the map before is the one that was searched last.
   const double unsearched =
-      robot.searched == robot.map ? change.share : change_between(*robot.searched, *map).share;
-  const bool searches = other_frame || unsearched >= searched_from;
-  const MapExtent extent = extent_of(*map);
-  if (other_frame) {
+      robot.searched == robot.weighed.map ? change.share : change_between(*robot.searched, *map).share;
+  const bool searches = change.other_frame || unsearched >= searched_from;
+  Weighed weighed = to_be_weighed(map);
+  if (change.other_frame) {
     merger_.update(*robot.id, *map);
   } else {
     merger_.grow(*robot.id, *map);
     if (searches) merger_.search_again(*robot.id);
   }
   if (searches) robot.searched = map;
-  robot.map = std::move(map);
-  robot.extent = extent;
-  fresh_.insert(name);
-  if (!other_frame) return;
+  set_weighed(name, robot, std::move(weighed));
+  if (!change.other_frame) return;
   placements_.forget(name);
   told_robots_.erase(name);
   restarted_.insert(name);
+}
+
+void TeamSolver::set_weighed(const std::string& name, Robot& robot, Weighed weighed) {
+  robot.map = weighed.map;
+  robot.weighed = std::move(weighed);
+  fresh_.insert(name);
+  is_weighed_ = false;
+}
+
+void TeamSolver::weigh_what_changed() {
+  for (auto& [name, robot] : robots_) {
+    if (robot.map != robot.weighed.map) weigh(name, robot, robot.map);
+  }
 }
 
 void TeamSolver::remove(const std::string& name) {
@@ -191,6 +210,7 @@ void TeamSolver::remove(const std::string& name) {
   restarted_.erase(name);
   told_robots_.erase(name);
   robots_.erase(robot);
+  is_weighed_ = false;
 }
 
 bool TeamSolver::is_placed(const std::string& name) const {
@@ -227,132 +247,10 @@ void TeamSolver::propose(const MergeResult& result, Placements::Weight weight) {
   for (const LeftOut& one : result.left_out) left_out_[names[one.map]] = one.reason;
   std::map<std::string, MapExtent> extents;
   for (const auto& [name, robot] : robots_) {
-    if (robot.id) extents[name] = robot.extent;
+    if (robot.id) extents[name] = robot.weighed.extent;
   }
   placements_.propose(std::move(proposed), fresh_, extents, weight);
   fresh_.clear();
-}
-
-void TeamSolver::tell_components(MergeResult result, TeamAnswer& answer) const {
-  const std::vector<MapId> ids = merger_.maps();
-  std::map<std::string, std::size_t> places;  // in the result
-  for (std::size_t i = 0; i < ids.size(); ++i) places[names_.at(ids[i])] = i;
-  struct Told {
-    TeamComponent component;
-    Component merged;
-  };
-  std::vector<Told> all;
-  for (const RobotGroup& group : placements_.groups()) {
-    Told told;
-    if (!group.in_world_frame) told.component.anchor = first_heard(group.robots);
-    std::vector<PlacedMap> placed;
-    for (const auto& [name, placement] : group.robots) {
-      told.component.robots.push_back(name);
-      placed.push_back({robots_.at(name).map.get(), placement.T_group_map});
-      told.merged.members.push_back({places.at(name), placement.T_group_map, placement.probability});
-    }
-    std::sort(told.merged.members.begin(), told.merged.members.end(),
-              [](const Member& a, const Member& b) { return a.map < b.map; });
-    // What the merger fused serves where the maps lie as it says.
-    const auto same =
-        std::find_if(result.components.begin(), result.components.end(), [&](const Component& one) {
-          return std::equal(one.members.begin(), one.members.end(), told.merged.members.begin(),
-                            told.merged.members.end(), [](const Member& a, const Member& b) {
-                              return a.map == b.map && a.T_component_map == b.T_component_map;
-                            });
-        });
-    const double resolution = options_.merge.resolution;
-    if (same != result.components.end()) {
-      told.merged = std::move(*same);
-    } else {
-      told.merged.fused = fuse(placed, resolution > 0.0 ? resolution : finest_resolution(placed));
-    }
-    // Another member than the first may hold the frame.
-    const std::string& first = names_.at(ids[told.merged.members.front().map]);
-    told.merged.in_world_frame = group.in_world_frame || first != told.component.anchor;
-    told.component.map = std::make_shared<const OccupancyGrid>(std::move(told.merged.fused.grid));
-    told.merged.fused.grid = {};
-    all.push_back(std::move(told));
-  }
-  std::sort(all.begin(), all.end(), [](const Told& a, const Told& b) {
-    return std::pair(b.component.robots.size(), a.component.robots) <
-           std::pair(a.component.robots.size(), b.component.robots);
-  });
-  result.components.clear();
-  for (Told& told : all) {
-    answer.components.push_back(std::move(told.component));
-    result.components.push_back(std::move(told.merged));
-  }
-  answer.merge = std::make_shared<const TeamMerge>(merge_of(std::move(result)));
-}
-
-/// `result` has the answer's components.
-TeamMerge TeamSolver::merge_of(MergeResult result) const {
-  TeamMerge merge;
-  for (const MapId id : merger_.maps()) {
-    merge.names.push_back(names_.at(id));
-    merge.maps.push_back(robots_.at(merge.names.back()).map);
-  }
-  result.left_out.clear();
-  for (std::size_t i = 0; i < merge.names.size(); ++i) {
-    if (is_placed(merge.names[i])) continue;
-    const auto reason = left_out_.find(merge.names[i]);
-    // The newest comparisons place a robot that is in no component yet: that is held back.
-    result.left_out.push_back({i, reason == left_out_.end() ? Reason::several : reason->second});
-  }
-  merge.result = std::move(result);
-  return merge;
-}
-
-RobotStatus TeamSolver::status_of(const std::string& name, const Robot& robot,
-                                  const TeamAnswer& answer) const {
-  const auto maps =
-      std::count_if(robots_.begin(), robots_.end(), [](const auto& one) { return one.second.map; });
-  RobotStatus status;
-  status.name = name;
-  status.maps_heard = robot.maps_heard;
-  status.heard_first = robot.since;
-  const std::vector<RobotGroup>& groups = placements_.groups();
-  const auto group = std::find_if(groups.begin(), groups.end(),
-                                  [&](const RobotGroup& one) { return one.robots.contains(name); });
-  if (group != groups.end()) {
-    status.state = RobotState::placed;
-    status.why = say_placed(name, *group);
-    status.T_world_map = group->robots.at(name).T_group_map;
-    status.probability = group->robots.at(name).probability;
-    for (std::size_t i = 0; i < answer.components.size(); ++i) {
-      const std::vector<std::string>& robots = answer.components[i].robots;
-      if (std::binary_search(robots.begin(), robots.end(), name)) status.component = i;
-    }
-  } else if (const auto reason = left_out_.find(name); robot.map && maps > 1 && reason != left_out_.end()) {
-    status.state = RobotState::left_out;
-    status.reason = reason->second;
-    status.why = say_left_out(status.reason);
-  } else {
-    status.why = say_waiting(robot.map != nullptr, maps > 1);
-  }
-  return status;
-}
-
-void TeamSolver::tell_events(TeamAnswer& answer) const {
-  std::map<std::string, MapExtent> extents;
-  for (const auto& [name, robot] : robots_) extents[name] = robot.extent;
-  for (const std::string& name : restarted_)
-    answer.events.push_back({TeamEvent::Kind::restarted, name, say_restarted(name)});
-  std::vector<RobotGroup> before = told_;
-  for (RobotGroup& group : before)
-    std::erase_if(group.robots, [&](const auto& one) { return restarted_.contains(one.first); });
-  for (TeamEvent& event : changes_between(before, placements_.groups(), extents))
-    answer.events.push_back(std::move(event));
-}
-
-const std::string& TeamSolver::first_heard(const std::map<std::string, Placement>& robots) const {
-  return std::min_element(robots.begin(), robots.end(),
-                          [&](const auto& a, const auto& b) {
-                            return std::pair(robots_.at(a.first).since, a.first) <
-                                   std::pair(robots_.at(b.first).since, b.first);
-                          })
-      ->first;
 }
 
 }  // namespace gridmerge::internal

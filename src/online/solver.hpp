@@ -61,25 +61,39 @@ class TeamSolver {
  private:
   using MapId = Merger::MapId;
 
-  struct Robot {
-    TeamTime since = TeamTime::max();  ///< when it was heard first
-    std::optional<MapId> id;           ///< in the merger; none before a map came
+  /// A map that the merger has.
+  struct Weighed {
     std::shared_ptr<const OccupancyGrid> map;
-    std::shared_ptr<const OccupancyGrid> searched;  ///< the map when it was searched last
     MapExtent extent;
+    std::size_t known_cells = 0;
+  };
+
+  struct Robot {
+    TeamTime since = TeamTime::max();               ///< when it was heard first
+    std::optional<MapId> id;                        ///< in the merger; none before a map came
+    std::shared_ptr<const OccupancyGrid> map;       ///< the newest, which is drawn
+    Weighed weighed;                                ///< as its pose follows from it
+    std::shared_ptr<const OccupancyGrid> searched;  ///< the map when it was searched last
     std::uint64_t maps_heard = 0;
     std::optional<KnownPose> known_pose;
   };
 
   void find_out(Effort effort, TeamAnswer& answer);
+  void weigh_again(Effort effort, TeamAnswer& answer);
+  void draw_again(TeamAnswer& answer) const;
   TeamAnswer answer_before() const;
   void apply(const std::string& name, RobotNews& news);
   void set_map(const std::string& name, std::shared_ptr<const OccupancyGrid> map);
+  static Weighed to_be_weighed(std::shared_ptr<const OccupancyGrid> map);
+  void weigh(const std::string& name, Robot& robot, std::shared_ptr<const OccupancyGrid> map);
+  void set_weighed(const std::string& name, Robot& robot, Weighed weighed);
+  void weigh_what_changed();
   void remove(const std::string& name);
   bool is_placed(const std::string& name) const;
   void search_what_changed();
   void propose(const MergeResult& result, Placements::Weight weight);
   void tell_components(MergeResult result, TeamAnswer& answer) const;
+  double resolution_of(const std::vector<PlacedMap>& maps) const;
   TeamMerge merge_of(MergeResult result) const;
   RobotStatus status_of(const std::string& name, const Robot& robot, const TeamAnswer& answer) const;
   void tell_events(TeamAnswer& answer) const;
@@ -91,6 +105,7 @@ class TeamSolver {
   std::map<std::string, Robot> robots_;
   std::map<MapId, std::string> names_;
   Placements placements_;
+  bool is_weighed_ = true;           // all that poses may follow from, by the last answer
   std::set<std::string> fresh_;      // with newer maps since the last proposal
   std::set<std::string> restarted_;  // since the last answer
   std::map<std::string, Reason> left_out_;

@@ -12,6 +12,7 @@
 #include "explorers.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/resample.hpp"
+#include "gridmerge/merge/fuse.hpp"
 
 namespace gridmerge::internal {
 namespace {
@@ -155,6 +156,92 @@ TEST(TeamSolver, ALittleChangeIsFollowedWithoutASearch) {
   EXPECT_FALSE(followed.settled);
   expect_at(followed, "bert", explorers.between(0, 1));
   EXPECT_TRUE(solver.solve(Effort::full).settled);
+}
+
+/// Something stands where there was none, and walls are gone, in a box near the middle of what is known.
+OccupancyGrid refurnished(OccupancyGrid map, int size) {
+  std::size_t known = 0;
+  const std::size_t middle = count_cells(map).known() / 2;
+  int column = 0, row = 0;
+  for (int y = 0; y < map.height && known < middle; ++y) {
+    for (int x = 0; x < map.width && known < middle; ++x) {
+      if (map.at(x, y) != Cell::unknown) ++known;
+      column = x;
+      row = y;
+    }
+  }
+  for (int y = row; y < std::min(row + size, map.height); ++y) {
+    for (int x = column; x < std::min(column + size, map.width); ++x)
+      map.at(x, y) = map.at(x, y) == Cell::occupied ? Cell::free : Cell::occupied;
+  }
+  return map;
+}
+
+/// Draws what a robot's newest map says where the robot lies.
+TEST(TeamSolver, ALittleChangeIsDrawnAtOnceAndWeighedLater) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  solver.take(news_at(explorers, 5));
+  const TeamAnswer before = solver.solve(Effort::further);
+  ASSERT_EQ(before.components.at(0).robots.size(), 3u);
+  const OccupancyGrid map = refurnished(explorers.map(1, 5), 8);
+  ASSERT_NE(map.cells, explorers.map(1, 5).cells);
+  News news;
+  news["bert"] = map_news(map, 1);
+  solver.take(news);
+  const TeamAnswer answer = solver.solve(Effort::soon);
+  EXPECT_FALSE(answer.settled) << "the pose does not follow from this map yet";
+  EXPECT_EQ(status_of(answer, "bert").maps_heard, 2u);
+  ASSERT_EQ(answer.components.size(), before.components.size());
+  std::vector<PlacedMap> placed;
+  for (const std::string& name : answer.components[0].robots) {
+    EXPECT_EQ(status_of(answer, name).T_world_map, status_of(before, name).T_world_map);
+    EXPECT_EQ(status_of(answer, name).probability, status_of(before, name).probability);
+    const auto at = std::find(answer.merge->names.begin(), answer.merge->names.end(), name);
+    placed.push_back({answer.merge->maps.at(static_cast<std::size_t>(at - answer.merge->names.begin())).get(),
+                      status_of(answer, name).T_world_map});
+  }
+  const FusedMap expected = fuse(placed, explorers.map(0, 5).resolution);
+  EXPECT_EQ(answer.components[0].map->cells, expected.grid.cells);
+  EXPECT_NE(answer.components[0].map->cells, before.components[0].map->cells);
+  EXPECT_EQ(answer.merge->result.components[0].fused.agreeing, expected.agreeing);
+  EXPECT_EQ(answer.merge->maps.at(1)->cells, map.cells);
+  // In the end it is as if that map alone had been heard.
+  const TeamAnswer later = solver.solve(Effort::full);
+  EXPECT_TRUE(later.settled);
+  TeamSolver fresh({});
+  News all = news_at(explorers, 5);
+  all["bert"] = map_news(map, 1);
+  fresh.take(all);
+  EXPECT_EQ(later.components[0].map->cells, fresh.solve(Effort::full).components.at(0).map->cells);
+  EXPECT_EQ(solver.solve(Effort::soon).components[0].map->cells, later.components[0].map->cells);
+}
+
+/// Little by little is much in the end.
+TEST(TeamSolver, ManyLittleChangesAreWeighedTogether) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  solver.take(news_at(explorers, 5));
+  solver.solve(Effort::full);
+  OccupancyGrid map = explorers.map(1, 5);
+  const std::size_t known = count_cells(map).known();
+  const auto forget = [&](std::size_t cells) {  // from the top
+    for (std::size_t i = map.cells.size(); i > 0 && cells > 0; --i) {
+      if (map.cells[i - 1] == Cell::unknown) continue;
+      map.cells[i - 1] = Cell::unknown;
+      --cells;
+    }
+  };
+  const auto pose_after = [&](std::size_t cells) {
+    forget(cells);
+    News news;
+    news["bert"] = map_news(map, 1);
+    solver.take(news);
+    return status_of(solver.solve(Effort::soon), "bert").T_world_map;
+  };
+  const SE2 first = pose_after(known / 100);
+  EXPECT_EQ(first, pose_after(known / 200)) << "1.5 %";
+  EXPECT_NE(first, pose_after(known / 100)) << "2.5 %";
 }
 
 TEST(TeamSolver, ARobotThatStartsAnewIsPlacedInItsNewFrame) {
