@@ -1,11 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`gridmerge node` beside rclpy, over the loopback interface: an hour of a team, and maps of 4000 x 4000 cells.
+"""`gridmerge node` beside rclpy, over the loopback interface: robots that explore, an hour of them, and maps of 4000 x 4000 cells.
 
-usage: benchmark/live.py GRIDMERGE hour [--robots N] [--speed N]
+usage: benchmark/live.py GRIDMERGE explore [--robots N] [--teams N] [--steps N]
+       benchmark/live.py GRIDMERGE hour [--robots N] [--speed N]
        benchmark/live.py GRIDMERGE large [--repeats N]
 
 Runs in an environment that has rclpy and the package gridmerge: ./dev benchmark --live makes it.
+
+explore: teams of robots that publish their maps once a second, at N moments of their ways. Told is how long after the
+moment at which merge() joins the first maps the node has done so, who lay wrongly at any time, which poses jumped, and
+whether the last /merged_map is that of merge(), to the cell.
 
 hour: robots that explore, stand, repeat their maps, and start anew in another frame every ten minutes, once a second
 each and --speed times as fast. What the node takes in time and memory must be that of the first ten minutes.
@@ -54,7 +59,7 @@ from nav_msgs.msg import OccupancyGrid  # noqa: E402
 from rclpy.qos import DurabilityPolicy, QoSProfile  # noqa: E402
 
 import hour  # noqa: E402
-from online import wrong_ones  # noqa: E402
+from online import KINDS, SURE, simulate_team, wrong_ones  # noqa: E402
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LONGEST_WAIT = 300.0  # s: ends what would never end
@@ -80,7 +85,10 @@ class Live:
     def __init__(self, program: str) -> None:
         domain = free_domain()
         os.environ["ROS_DOMAIN_ID"] = str(domain)
-        self.program = subprocess.Popen([program, "node", "--quiet"], stdout=subprocess.DEVNULL)
+        log = pathlib.Path(_folder.name, "node.log")
+        with log.open("w") as file:
+            self.program = subprocess.Popen([program, "node"], stdout=file, stderr=subprocess.STDOUT)
+        self.log = log.open()
         rclpy.init(domain_id=domain)
         self.node = rclpy.create_node("robots")
         self.diagnoses: dict[str, dict[str, str]] = {}
@@ -102,13 +110,34 @@ class Live:
     def value(self, robot: str, key: str) -> str:
         return self.diagnoses.get(robot, {}).get(key, "")
 
+    def answer(self) -> SimpleNamespace:
+        """The robots that are placed, and in which components, as of gridmerge.TeamAnswer."""
+        robots: list[SimpleNamespace] = []
+        components: dict[str, list[str]] = {}
+        for name, values in sorted(self.diagnoses.items()):
+            if values.get("state") != "placed":
+                continue
+            transform = gridmerge.Transform(*(float(values[key]) for key in ("x", "y", "theta")))
+            probability = float(values["probability"])
+            robots.append(SimpleNamespace(name=name, transform=transform, probability=probability))
+            components.setdefault(values["component"], []).append(name)
+        return SimpleNamespace(robots=robots, components=[SimpleNamespace(robots=one) for one in components.values()])
 
-    def wait_until(self, holds: Callable[[], bool], what: str) -> None:
-        end = time.monotonic() + LONGEST_WAIT
+    def new_lines(self) -> list[str]:
+        """What the node has said since this was called last."""
+        return self.log.readlines()
+
+    def holds_within(self, seconds: float, holds: Callable[[], bool]) -> bool:
+        end = time.monotonic() + seconds
         while not holds():
             if time.monotonic() > end:
-                raise SystemExit(f"never: {what}; the node says {self.diagnoses}")
+                return False
             rclpy.spin_once(self.node, timeout_sec=0.005)
+        return True
+
+    def wait_until(self, holds: Callable[[], bool], what: str) -> None:
+        if not self.holds_within(LONGEST_WAIT, holds):
+            raise SystemExit(f"never: {what}; the node says {self.diagnoses}")
 
     def publish(self, robot: str, grid: gridmerge.OccupancyGrid, frame: str, second: int) -> None:
         if robot not in self.publishers:
@@ -116,6 +145,70 @@ class Live:
         message = grid.to_msg(OccupancyGrid, frame_id=frame, probabilities=False)
         message.header.stamp.sec = second
         self.publishers[robot].publish(message)
+
+
+def run_explore(program: str, arguments: argparse.Namespace) -> None:
+    for number in range(arguments.teams):
+        simulation = simulate_team(number, arguments.robots, arguments.steps)
+        moments = [[(*one.earlier, one.grid)[step] for one in simulation.maps] for step in range(arguments.steps)]
+        placed = [sum(len(one.members) for one in gridmerge.merge(grids).components) for grids in moments]
+        possible = next((step for step, count in enumerate(placed) if count > 0), None)
+        merged = gridmerge.merge(moments[-1])
+        with Live(program) as live:
+            explore(live, number, simulation, moments, possible, merged)
+
+
+def explore(
+    live: Live,
+    number: int,
+    simulation: gridmerge.Simulation,
+    moments: list[list[gridmerge.OccupancyGrid]],
+    possible: int | None,
+    merged: gridmerge.MergeResult,
+) -> None:
+    maps: list[OccupancyGrid] = []
+    live.node.create_subscription(OccupancyGrid, "/merged_map", lambda message: maps.__setitem__(slice(None), [message]), LATCHED)
+    names = [f"tb{robot}" for robot in range(len(simulation.maps))]
+    first = "never"
+    wrong: set[str] = set()
+    sure: set[str] = set()
+    jumps = 0
+    begin = time.monotonic()
+
+    def look(grids: list[gridmerge.OccupancyGrid]) -> None:
+        nonlocal first, jumps
+        rclpy.spin_once(live.node, timeout_sec=0.01)
+        answer = live.answer()
+        if first == "never" and answer.robots and possible is not None:
+            first = f"{time.monotonic() - begin - possible:.1f} s"
+        wrong.update(wrong_ones(simulation, grids, answer))
+        for line in live.new_lines():
+            jumps += any(f"{name} moved by" in line or f"{name} is no longer" in line for name in sure)
+        sure.update(robot.name for robot in answer.robots if robot.probability >= SURE)
+
+    for step, grids in enumerate(moments):
+        for name, grid in zip(names, grids):
+            live.publish(name, grid, f"{name}/map", step)
+        while time.monotonic() < begin + step + 1:
+            look(grids)
+    sent = time.monotonic() - 1.0
+    while live.value("gridmerge", "settled") != "true" or any(live.value(name, "maps") != str(len(moments)) for name in names):
+        if time.monotonic() > sent + LONGEST_WAIT:
+            raise SystemExit(f"never settled; the node says {live.diagnoses}")
+        look(moments[-1])
+    settled = time.monotonic() - sent
+    same = "-"
+    if merged.components:
+        expected = np.array(merged.components[0].grid.to_msg(OccupancyGrid, frame_id="world", probabilities=False).data)
+
+        def is_here() -> bool:
+            return bool(maps) and len(maps[0].data) == len(expected) and np.array_equal(np.sign(maps[0].data), np.sign(expected))
+
+        same = "yes" if live.holds_within(10.0, is_here) else "no"
+    print(f"{KINDS[number % len(KINDS)]:10s} first join {first} after the maps were sent that merge() joins first, at moment {possible}; "
+          f"settled {settled:.1f} s after the last maps; placed {len(live.answer().robots)} of {len(names)} (merge(): "
+          f"{sum(len(one.members) for one in merged.components)}), wrong at any time {len(wrong)}, jumps of sure poses {jumps}; "
+          f"/merged_map is that of merge(): {same}", flush=True)
 
 
 def run_hour(live: Live, arguments: argparse.Namespace) -> None:
@@ -129,18 +222,11 @@ def run_hour(live: Live, arguments: argparse.Namespace) -> None:
         heard = live.value("gridmerge", "solves")
         live.wait_until(lambda: live.value("gridmerge", "solves") != heard, "another answer")
         names = [f"tb{robot}" for robot in played.robots]
-        laps, robots, components = [], [], {}
-        for name in names:
-            values = live.diagnoses[name]
-            laps.append(int(values["frame"].rpartition("_")[2]))
-            if values["state"] != "placed":
-                continue
-            transform = gridmerge.Transform(*(float(values[key]) for key in ("x", "y", "theta")))
-            robots.append(SimpleNamespace(name=name, transform=transform))
-            components.setdefault(values["component"], []).append(name)
-        answer = SimpleNamespace(robots=robots, components=[SimpleNamespace(robots=one) for one in components.values()])
+        laps = [int(live.value(name, "frame").rpartition("_")[2]) for name in names]
+        answer = live.answer()
         maps = sum(int(live.value(name, "maps")) for name in names)
-        return maps, int(live.value("gridmerge", "solves")), len(robots), len(wrong_ones(*played.truth(laps, second), answer))
+        wrong = wrong_ones(*played.truth(laps, second), answer)
+        return maps, int(live.value("gridmerge", "solves")), len(answer.robots), len(wrong)
 
     print(f"An hour of {arguments.robots} robots, {arguments.speed:g} times as fast:", flush=True)
     hour.play(played, arguments.speed, hour.Cost(live.program.pid), send, look)
@@ -212,11 +298,16 @@ def run_large(live: Live, arguments: argparse.Namespace) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("gridmerge")
-    parser.add_argument("what", choices=("hour", "large"))
+    parser.add_argument("what", choices=("explore", "hour", "large"))
     parser.add_argument("--robots", type=int, default=6)
+    parser.add_argument("--teams", type=int, default=6)
+    parser.add_argument("--steps", type=int, default=12, help="moments of the robots' ways, one a second")
     parser.add_argument("--speed", type=float, default=20.0, help="seconds of the hour per second")
     parser.add_argument("--repeats", type=int, default=5)
     arguments = parser.parse_args()
+    if arguments.what == "explore":
+        run_explore(arguments.gridmerge, arguments)
+        return
     with Live(arguments.gridmerge) as live:
         {"hour": run_hour, "large": run_large}[arguments.what](live, arguments)
 

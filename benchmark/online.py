@@ -94,12 +94,16 @@ def batch_placed(grids: list[gridmerge.OccupancyGrid]) -> int:
     return sum(len(component.members) for component in merged.components)
 
 
-def run_team(number: int, arguments: argparse.Namespace, count: Count) -> None:
+def simulate_team(number: int, robots: int, steps: int) -> gridmerge.Simulation:
     kind = KINDS[number % len(KINDS)]
     size = (20.0, 14.0) if kind == "apartment" else (44.0, 28.0)
-    simulation = gridmerge.simulate(
-        kind, size=size, robots=arguments.robots, overlap=0.6, drift=(0.0, 0.3, 1.0)[number % 3], steps=arguments.steps, others=0,
-        seed=100 + number)
+    return gridmerge.simulate(
+        kind, size=size, robots=robots, overlap=0.6, drift=(0.0, 0.3, 1.0)[number % 3], steps=steps, others=0, seed=100 + number)
+
+
+def run_team(number: int, arguments: argparse.Namespace, count: Count) -> None:
+    kind = KINDS[number % len(KINDS)]
+    simulation = simulate_team(number, arguments.robots, arguments.steps)
     team = gridmerge.Team(quiet=max(1.0, 2.0 / arguments.rate))
     wrong_before: set[str] = set()
     sure: set[str] = set()

@@ -34,6 +34,7 @@ TeamAnswer answer_of(std::vector<RobotStatus> robots, std::size_t components) {
   TeamAnswer answer;
   answer.number = 5;
   answer.seconds = 0.25;
+  answer.settled = true;
   answer.robots = std::move(robots);
   answer.components.resize(components);
   return answer;
@@ -99,6 +100,7 @@ TEST(Diagnoses, TellOfTheNodeAndOfEachRobot) {
   EXPECT_EQ(diagnoses[0].level, Diagnosis::ok);
   EXPECT_EQ(diagnoses[0].message, "1 of 3 robots placed");
   EXPECT_EQ(value_of(diagnoses[0], "seconds of the last solve"), "0.25");
+  EXPECT_EQ(value_of(diagnoses[0], "settled"), "true");
   EXPECT_EQ(diagnoses[1].name, "gridmerge: a");
   EXPECT_EQ(diagnoses[1].hardware, "a");
   EXPECT_EQ(diagnoses[1].level, Diagnosis::ok);
