@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
 import { test } from "node:test";
 import { bend } from "../src/deformation";
 import { apply } from "../src/se2";
@@ -48,6 +49,23 @@ test("readings of a bent map are of its own frame", async () => {
       assert.ok(Math.hypot(there.x - p.x, there.y - p.y) < 0.03, `${reading} lies at ${there.x}, ${there.y}`);
     }
   }
+  await tab.close();
+});
+
+test("a map of another scale is told so, beside its transform", async () => {
+  const [first, second, third] = simulated("true_to_scale", 3, ["--kind", "office", "--overlap", "0.7", "--drift", "0", "--others", "0", "--seed", "101"]);
+  const long = second.replace(".yaml", "_long.yaml");
+  writeFileSync(long, readFileSync(second, "utf8").replace("resolution: 0.05", "resolution: 0.0515"));
+  const folder = mergeInto("scaled", [first, long, third], "--transform", "similarity", "--fix", `${first}`);
+  const { members } = reportData(folder).components[0];
+  const { scale } = members.find(({ map }) => map === 1)!.deformation!;
+  assert.ok(Math.abs(scale! * 1.03 - 1) < 0.005, `${scale}`);
+  const tab = await open(folder);
+  await tab.page.click("#tab-transforms");
+  const words = await tab.page.textContent("tr.pose[data-map='1'] + tr.more");
+  assert.ok(words!.includes(`scaled by ${scale!.toFixed(4)} first`), words!);
+  assert.ok(!(await tab.page.textContent("tr.pose[data-map='0'] + tr.more"))!.includes("first"), "the first map keeps its scale");
+  await tab.screenshot("scaled");
   await tab.close();
 });
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { mapLabel } from "./badge";
 import { copyButton } from "./clipboard";
+import type { Deformation } from "./deformation";
 import { h, replace } from "./dom";
 import { type NamedPose, asJson, asStaticTransforms, asYaml, frameIds } from "./formats";
 import { degrees, fixed, probability } from "./numbers";
@@ -14,6 +15,13 @@ function otherFrame(state: State): HTMLElement {
   const { plan } = state.report;
   return plan === undefined ? h("strong", {}, "in which poses were given") : h("span", {}, "of the plan ", h("strong", {}, h("bdi", {}, plan.name)));
 }
+
+/** What is done to a map before its transform places it. */
+const shapeWords: Record<Deformation["kind"], (deformation: Deformation) => string> = {
+  similarity: ({ scale }) => `scaled by ${fixed(scale!, 4)} first`,
+  affine: ({ scale }) => `scaled by ${fixed(scale!, 4)} and sheared first`,
+  elastic: () => "bent first",
+};
 
 /** Where the maps of the scene lie, to read and to copy. */
 export class TransformsPanel {
@@ -84,6 +92,8 @@ export class TransformsPanel {
   private certainty(map: number): string {
     const member = this.memberOf(map);
     const parts: string[] = [];
+    const { deformation } = member ?? {};
+    if (deformation) parts.push(shapeWords[deformation.kind](deformation));
     if (member?.probability != null) parts.push(`probability ${probability(member.probability)}`);
     if (map === this.state.scene.frame) parts.push("holds the frame");
     else if (member?.sd) parts.push(`± ${fixed(member.sd.position, 3)} m, ± ${fixed(degrees(member.sd.theta), 2)}°`);
