@@ -9,8 +9,10 @@ namespace gridmerge::internal {
 
 namespace {
 
-/// Bent maps of 70 m close cycles of three within 2.4 m in 95 of 100 cases.
+/// The least is ten cells of the usual size: straight maps that lie right are nearer.
 constexpr double kMinTolerance = 0.5;  // [m]
+/// Bent maps close cycles of three within 0.029 of the larger map's side in 95 of 100 cases. Of 368 cycles of
+/// hand-held maps, with sides of 24 to 78 m, all but two close within this share.
 constexpr double kToleranceShare = 0.045;
 
 }  // namespace
