@@ -113,18 +113,20 @@ std::int16_t cell_log_odds(const OccupancyGrid& map, std::size_t index) {
   return cell == Cell::occupied ? std::max<std::int16_t>(stated, 1) : std::min<std::int16_t>(stated, -1);
 }
 
-// The log-odds of a map's cells in a box, to be looked up at points that lie at least a cell from a side of the
-// box where the map goes on. A border of one unknown cell lets neighbours be read without a check.
+// The log-odds of a map's cells in a box, to be looked up at points that lie at least a cell from a side of
+// the box where the map goes on. A border of one unknown cell lets neighbours be read without a check.
 class LogOddsSource {
  public:
   LogOddsSource(const OccupancyGrid& map, const CellBox& box)
       : box_(box),
         stride_(static_cast<std::size_t>(box.width()) + 2),
-        log_odds_(stride_ * (static_cast<std::size_t>(box.height()) + 2), 0) {
+        log_odds_(stride_ * (static_cast<std::size_t>(box.height()) + 2), 0),
+        has_band_(log_odds_.size(), 0) {
     parallel_rows(box.bottom, box.top, [&](int row) {
       for (int column = box.left; column < box.right; ++column)
         log_odds_[offset(column, row)] = cell_log_odds(map, map.index(column, row));
     });
+    parallel_rows(box.bottom, box.top, [&](int row) { mark_bands(row); });
   }
 
   // What the map says at a point, in its own cells from its lower-left corner.
@@ -136,7 +138,7 @@ class LogOddsSource {
     const int row = static_cast<int>(y);
     const std::size_t here = offset(column, row);
     const std::int16_t value = log_odds_[here];
-    if (value > 0) return value;
+    if (value > 0 || has_band_[here] == 0) return value;
     const std::int16_t band = joined_diagonally(here, x - column, y - row);
     return band > 0 ? band : value;
   }
@@ -145,6 +147,19 @@ class LogOddsSource {
   std::size_t offset(int column, int row) const {
     return static_cast<std::size_t>(row - box_.bottom + 1) * stride_ +
            static_cast<std::size_t>(column - box_.left + 1);
+  }
+
+  // The cells of a row that joined_diagonally() may say something of: most have no such neighbours.
+  void mark_bands(int row) {
+    const std::size_t begin = offset(box_.left, row);
+    for (std::size_t wall = begin; wall < begin + static_cast<std::size_t>(box_.width()); ++wall) {
+      if (log_odds_[wall] <= 0) continue;
+      for (const std::size_t above : {wall - stride_, wall + stride_}) {
+        if (log_odds_[above] > 0) continue;
+        if (log_odds_[above - 1] > 0) has_band_[wall - 1] = 1;
+        if (log_odds_[above + 1] > 0) has_band_[wall + 1] = 1;
+      }
+    }
   }
 
   // The log-odds of the band that joins two occupied neighbours of this cell across one of its corners, if
@@ -169,6 +184,7 @@ class LogOddsSource {
   CellBox box_;
   std::size_t stride_;
   std::vector<std::int16_t> log_odds_;
+  std::vector<std::uint8_t> has_band_;
 };
 
 CellBox whole(const OccupancyGrid& map) {
