@@ -8,15 +8,17 @@ usage: benchmark/live.py GRIDMERGE explore [--robots N] [--teams N] [--steps N]
 
 Runs in an environment that has rclpy and the package gridmerge: ./dev benchmark --live makes it.
 
-explore: teams of robots that publish their maps once a second, at N moments of their ways. Told is how long after the
-moment at which merge() joins the first maps the node has done so, who lay wrongly at any time, how many robots that had
-been placed with 0.98 or more jumped or were taken out, and whether the last /merged_map is that of merge(), to the cell.
+explore: teams of robots publish their maps once a second, at N moments of their ways. A line for each team says:
+- how long after the first maps that merge() joins were sent the node has joined some;
+- how many robots lay wrongly at any time, and how many lost their place after they had 0.98 or more;
+- whether the last /merged_map is that of merge(), to the cell.
 
 hour: robots that explore, stand, repeat their maps, and start anew in another frame every ten minutes, once a second
 each and --speed times as fast. What the node takes in time and memory must be that of the first ten minutes.
 
 large: two robots' maps of 4000 x 4000 cells, of one building of 170 m. Then the second one changes in a hundredth of its
-area, again and again: it is sent whole, and as an update. Told is until /merged_map is here, and what it takes of CPU.
+area, again and again: it is sent whole, and as an update. A line for each says when /merged_map is here, and what the node
+takes of CPU.
 """
 
 from __future__ import annotations
@@ -121,7 +123,7 @@ class Live:
             probability = float(values["probability"])
             robots.append(SimpleNamespace(name=name, transform=transform, probability=probability))
             components.setdefault(values["component"], []).append(name)
-        return SimpleNamespace(robots=robots, components=[SimpleNamespace(robots=one) for one in components.values()])
+        return SimpleNamespace(robots=robots, components=[SimpleNamespace(robots=one) for _, one in sorted(components.items())])
 
     def new_lines(self) -> list[str]:
         """What the node has said since this was called last."""
@@ -150,71 +152,77 @@ class Live:
 def run_explore(program: str, arguments: argparse.Namespace) -> None:
     for number in range(arguments.teams):
         simulation = simulate_team(number, arguments.robots, arguments.steps)
-        moments = [[(*one.earlier, one.grid)[step] for one in simulation.maps] for step in range(arguments.steps)]
-        placed = [sum(len(one.members) for one in gridmerge.merge(grids).components) for grids in moments]
-        possible = next((step for step, count in enumerate(placed) if count > 0), None)
+        moments = [[as_sent((*one.earlier, one.grid)[step]) for one in simulation.maps] for step in range(arguments.steps)]
+        possible = next((step for step, grids in enumerate(moments) if gridmerge.merge(grids).components), None)
         with Live(program) as live:
-            explore(live, number, simulation, moments, possible)
+            explore(live, KINDS[number % len(KINDS)], simulation, moments, possible)
+
+
+def as_sent(grid: gridmerge.OccupancyGrid) -> gridmerge.OccupancyGrid:
+    return gridmerge.OccupancyGrid.from_msg(grid.to_msg(probabilities=False))
 
 
 def explore(
     live: Live,
-    number: int,
+    kind: str,
     simulation: gridmerge.Simulation,
     moments: list[list[gridmerge.OccupancyGrid]],
     possible: int | None,
 ) -> None:
-    maps: list[OccupancyGrid] = []
-    live.node.create_subscription(OccupancyGrid, "/merged_map", lambda message: maps.__setitem__(slice(None), [message]), LATCHED)
+    merged: list[OccupancyGrid] = []
+    live.node.create_subscription(OccupancyGrid, "/merged_map", lambda message: merged.__setitem__(slice(None), [message]), LATCHED)
     names = [f"tb{robot}" for robot in range(len(simulation.maps))]
-    first = "never"
+    joined: float | None = None  # s
     wrong: set[str] = set()
     sure: set[str] = set()
-    jumps = taken_out = 0
+    lost: dict[str, set[str]] = {words: set() for words in ("moved by", "is no longer", "started anew")}
     begin = time.monotonic()
 
     def look(grids: list[gridmerge.OccupancyGrid]) -> None:
-        nonlocal first, jumps, taken_out
+        nonlocal joined
         rclpy.spin_once(live.node, timeout_sec=0.01)
         answer = live.answer()
-        if first == "never" and answer.robots and possible is not None:
-            first = f"{time.monotonic() - begin - possible:.1f} s"
+        if joined is None and answer.robots:
+            joined = time.monotonic() - begin
         wrong.update(wrong_ones(simulation, grids, answer))
         for line in live.new_lines():
-            for name in sure:
-                jumps += f"{name} moved by" in line
-                taken_out += f"{name} is no longer" in line
+            for words, robots in lost.items():
+                robots.update(name for name in sure if f"{name} {words}" in line)
         sure.update(robot.name for robot in answer.robots if robot.probability >= SURE)
 
     for step, grids in enumerate(moments):
         for name, grid in zip(names, grids):
             live.publish(name, grid, f"{name}/map", step)
+        sent, solves = time.monotonic(), live.value("gridmerge", "solves")
         while time.monotonic() < begin + step + 1:
             look(grids)
-    sent = time.monotonic() - 1.0
     # The first map of a robot may be replaced by the next before the node has found it: how many are heard says nothing.
-    while live.value("gridmerge", "settled") != "true" or time.monotonic() < sent + 2.0:
+    while live.value("gridmerge", "settled") != "yes" or live.value("gridmerge", "solves") == solves or time.monotonic() < sent + 2.0:
         if time.monotonic() > sent + LONGEST_WAIT:
             raise SystemExit(f"never settled; the node says {live.diagnoses}")
         look(moments[-1])
     settled = time.monotonic() - sent
     answer = live.answer()
     # In the frame of the robot that the node heard first, which merge() takes the first map's for.
-    anchor = min((robot.name for robot in answer.robots if robot.transform.x == robot.transform.y == robot.transform.theta == 0.0), default=names[0])
-    order = [names.index(anchor), *(robot for robot, name in enumerate(names) if name != anchor)]
-    merged = gridmerge.merge([gridmerge.OccupancyGrid.from_msg(moments[-1][robot].to_msg(probabilities=False)) for robot in order])
+    first = answer.components[0].robots if answer.components else []
+    at_origin = {robot.name for robot in answer.robots if robot.transform.x == robot.transform.y == robot.transform.theta == 0.0}
+    anchor = next((name for name in first if name in at_origin), names[0])
+    order = [anchor, *(name for name in names if name != anchor)]
+    expected = gridmerge.merge([moments[-1][names.index(name)] for name in order])
+    largest = next((one for one in expected.components if any(member.map == 0 for member in one.members)), None)
     same = "-"
-    if merged.components:
-        expected = merged.components[0].grid.cells
+    if largest is not None:
 
         def is_here() -> bool:
-            return bool(maps) and np.array_equal(gridmerge.OccupancyGrid.from_msg(maps[0]).cells, expected)
+            return bool(merged) and np.array_equal(gridmerge.OccupancyGrid.from_msg(merged[0]).cells, largest.grid.cells)
 
         same = "yes" if live.holds_within(10.0, is_here) else "no"
-    print(f"{KINDS[number % len(KINDS)]:10s} first join {first} after the maps were sent that merge() joins first, at moment {possible}; "
-          f"settled {settled:.1f} s after the last maps; placed {len(answer.robots)} of {len(names)} (merge(): "
-          f"{sum(len(one.members) for one in merged.components)}), wrong at any time {len(wrong)}, of sure robots {jumps} jumped "
-          f"and {taken_out} were taken out; "
+    told = "never" if joined is None else f"at {joined:.1f} s"
+    if joined is not None and possible is not None:
+        told += f", {joined - possible:.1f} s after the maps of moment {possible}, which merge() joins first"
+    print(f"{kind:10s} first join {told}; settled {settled:.1f} s after the last maps; placed {len(answer.robots)} of {len(names)} "
+          f"(merge(): {sum(len(one.members) for one in expected.components)}), wrong at any time {len(wrong)}; of robots that were sure "
+          f"{len(lost['moved by'])} jumped, {len(lost['is no longer'])} were taken out, {len(lost['started anew'])} started anew; "
           f"/merged_map is that of merge(): {same}", flush=True)
 
 

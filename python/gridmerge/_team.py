@@ -118,7 +118,8 @@ class Team:
     Args:
         threads, accept, max_false_joins, output_resolution: as of merge().
         search_again: a map is searched anew when this share of its known cells differs from when it was searched last;
-            a quarter of it is enough for a robot that lies nowhere yet.
+            a quarter of it is enough for a robot that lies nowhere yet. In between, the pose follows the map once a
+            fiftieth of its cells or walls is new. A smaller change is drawn at once where the robot lies.
         confirmations: a robot that was placed moves when so many answers in a row, each with newer maps, say so in the
             same way.
         quiet: with no newer map for so long [s], all that is left is searched, and what that says is taken at once. At

@@ -120,7 +120,7 @@ std::vector<Diagnosis> diagnose(const TeamAnswer& answer, const std::vector<Hear
   node.values = {{"robots", std::to_string(statuses.size())},
                  {"placed", std::to_string(placed)},
                  {"merged maps", std::to_string(answer.components.size())},
-                 {"settled", answer.settled ? "true" : "false"},
+                 {"settled", answer.settled ? "yes" : "no"},
                  {"solves", std::to_string(answer.number)},
                  {"seconds of the last solve", decimal(answer.seconds)},
                  {"messages that could not be decoded", std::to_string(health.undecodable)},

@@ -38,7 +38,7 @@ MatchResult match_in_arena(const PreparedMap& fixed, const PreparedMap& moving, 
   const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);
 
   MatchResult result;
-  // Who accepts less is not told another probability: the second look is spared from the same one on.
+  // Whoever accepts less than usual is told the same probability: the second look is spared from the same on.
   const double decided_from = std::max(options.accept_probability, LookOptions{}.decided_from);
   result.hypotheses = find_hypotheses(maps, {options.search, decided_from, options.progress});
   result.reason = explain_refusal(figures_of(result.hypotheses), options.accept_probability);

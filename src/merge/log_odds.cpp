@@ -113,8 +113,9 @@ std::int16_t cell_log_odds(const OccupancyGrid& map, std::size_t index) {
   return cell == Cell::occupied ? std::max<std::int16_t>(stated, 1) : std::min<std::int16_t>(stated, -1);
 }
 
-// The log-odds of a map's cells in a box, to be looked up at points that lie at least a cell from a side of
-// the box where the map goes on. A border of one unknown cell lets neighbours be read without a check.
+// The log-odds of a map's cells in a box, to be looked up at points. Where the map goes on beyond the box,
+// points lie at least a cell from its side. A border of one unknown cell lets neighbours be read without a
+// check.
 class LogOddsSource {
  public:
   LogOddsSource(const OccupancyGrid& map, const CellBox& box)

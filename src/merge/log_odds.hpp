@@ -70,8 +70,8 @@ struct LogOddsPatch {
 GRIDMERGE_INTERNAL_EXPORT LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice,
                                                      const Deformation& deformation = {});
 
-/// The same of the lattice cells in a box alone. They are what they are of the whole lattice, except that
-/// those of a bent map may take another cell next to it. O(map cells + lattice cells in the box).
+/// The same of the lattice cells in a box alone: the values are those of the whole lattice. A bent map may
+/// take a neighbouring cell instead. O(map cells + lattice cells in the box).
 LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice, const Deformation& deformation,
                            const CellBox& within);
 

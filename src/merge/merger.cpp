@@ -197,18 +197,23 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
   /// component gain little by one more join.
   /// At most so many pairs are looked at again now: is_complete_ says whether that was all.
   Solution find_best_solution(const std::vector<MapId>& maps, std::size_t most_thorough) {
-    is_complete_ = true;
+    is_complete_ = false;  // whatever ends this early
     First first = first_ ? *std::exchange(first_, std::nullopt) : *find_first(maps, nullptr);
-    if (!looks_.looks_twice()) return std::move(first.solution);
+    if (!looks_.looks_twice()) {
+      is_complete_ = true;
+      return std::move(first.solution);
+    }
     const std::vector<Pair> apart = pairs_for_a_second_look(maps, first);
     std::vector<Pair> due = looks_.due_for_a_second_look(apart);
-    is_complete_ = due.size() <= most_thorough;
+    const bool are_all_looked_at = due.size() <= most_thorough;
     due.resize(std::min(due.size(), most_thorough));
     looks_.look_again(due, store_, options_.progress);
     std::set<Pair> again = looks_.seen_again(apart);
     Solution solution =
         again.empty() ? std::move(first.solution) : find_solution(maps, first.chosen, std::move(again));
-    return is_complete_ && !apart.empty() ? hear_groups(maps, std::move(solution)) : solution;
+    if (are_all_looked_at && !apart.empty()) solution = hear_groups(maps, std::move(solution));
+    is_complete_ = are_all_looked_at;
+    return solution;
   }
 
   /// Maps that still lie alone are matched with each group, as long as that places more of them.

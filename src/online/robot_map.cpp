@@ -37,15 +37,19 @@ MapChange change_between(const OccupancyGrid& before, const OccupancyGrid& after
   return {std::clamp(share, 0.0, 1.0), both < kMinKept * known_before || equal < kMinAgreement * both};
 }
 
-std::optional<std::size_t> count_changed_cells(const OccupancyGrid& before, const OccupancyGrid& after) {
+std::optional<ChangedCells> count_changed_cells(const OccupancyGrid& before, const OccupancyGrid& after) {
   const std::optional<CellBox> box = changed_cells(before, after);
   if (!box) return std::nullopt;
-  std::size_t count = 0;
+  ChangedCells changed;
   for (int row = box->bottom; row < box->top; ++row) {
-    for (int column = box->left; column < box->right; ++column)
-      count += before.at(column, row) != after.at(column, row) ? 1 : 0;
+    for (int column = box->left; column < box->right; ++column) {
+      const Cell was = before.at(column, row), is = after.at(column, row);
+      if (was == is) continue;
+      ++changed.all;
+      if (was == Cell::occupied || is == Cell::occupied) ++changed.walls;
+    }
   }
-  return count;
+  return changed;
 }
 
 }  // namespace gridmerge::internal

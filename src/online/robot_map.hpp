@@ -17,8 +17,13 @@ struct MapChange {
 /// From `before` to `after`, both in the robot's map frame. O(cells).
 MapChange change_between(const OccupancyGrid& before, const OccupancyGrid& after);
 
-/// In how many cells a map has another value than the one before; none where they do not have the same cells,
-/// as of changed_cells(). O(cells).
-std::optional<std::size_t> count_changed_cells(const OccupancyGrid& before, const OccupancyGrid& after);
+/// Cells of a map that have another value than in the map before.
+struct ChangedCells {
+  std::size_t all = 0;
+  std::size_t walls = 0;  ///< of these, occupied in either
+};
+
+/// None where the maps do not have the same cells, as of changed_cells(). O(cells).
+std::optional<ChangedCells> count_changed_cells(const OccupancyGrid& before, const OccupancyGrid& after);
 
 }  // namespace gridmerge::internal

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "grid/equal_grids.hpp"
+#include "grid/parallel.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "online/robot_map.hpp"
@@ -19,9 +20,9 @@ namespace {
 constexpr double kSooner = 0.25;
 /// Thorough looks until the next answer, which newer maps may wait for: a second or two on two cores.
 constexpr std::size_t kPairsAtATime = 4;
-/// A placed map of which a smaller share of the known cells has changed since it was weighed is drawn where
-/// it lies. A pose is a mean over a map's walls: such a share moves it by a fiftieth of its own error at
-/// most, a centimetre for half a metre.
+/// A placed map is drawn where it lies if a smaller share of its cells, and of its walls, has changed since
+/// it was weighed. A pose is a mean over walls: walls that are off by half a metre move it by a centimetre
+/// then.
 constexpr double kDrawnOnly = 0.02;
 
 MergeOptions without_progress(MergeOptions options) {
@@ -54,8 +55,8 @@ void TeamSolver::take(News news) {
 
 TeamSolver::Weighed TeamSolver::to_be_weighed(std::shared_ptr<const OccupancyGrid> map) {
   Weighed weighed;
-  weighed.known_cells = count_cells(*map).known();
-  if (weighed.known_cells > 0) weighed.extent = Coverage(crop_to_known(*map)).extent();
+  weighed.counts = count_cells(*map);
+  if (weighed.counts.known() > 0) weighed.extent = Coverage(crop_to_known(*map)).extent();
   weighed.map = std::move(map);
   return weighed;
 }
@@ -64,7 +65,7 @@ TeamAnswer TeamSolver::solve(Effort effort) {
   const auto start = std::chrono::steady_clock::now();
   TeamAnswer answer;
   try {
-    find_out(effort, answer);
+    with_threads(options_.merge.match.threads, [&] { find_out(effort, answer); });
   } catch (const Cancelled&) {
     throw;
   } catch (const std::exception& error) {  // a merged map would be too large, or there is no memory for it
@@ -101,6 +102,7 @@ void TeamSolver::find_out(Effort effort, TeamAnswer& answer) {
 }
 
 void TeamSolver::weigh_again(Effort effort, TeamAnswer& answer) {
+  is_weighed_ = false;  // until that is done
   const bool in_full = effort == Effort::full;
   if (effort != Effort::further) weigh_what_changed();
   if (in_full) search_what_changed();
@@ -144,21 +146,34 @@ void TeamSolver::set_map(const std::string& name, std::shared_ptr<const Occupanc
   Robot& robot = robots_[name];
   if (!robot.id) {
     Weighed weighed = to_be_weighed(map);
-    robot.id = merger_.add(*map, robot.known_pose);
-    names_[*robot.id] = name;
+    const MapId id = merger_.add(*map, robot.known_pose);
     robot.searched = map;
     set_weighed(name, robot, std::move(weighed));
+    names_[id] = name;
+    robot.id = id;
     return;
   }
   if (are_equal(*robot.map, *map)) return;
-  const std::optional<std::size_t> changed = count_changed_cells(*robot.weighed.map, *map);
-  const bool is_drawn_only =
-      changed && static_cast<double>(*changed) < kDrawnOnly * static_cast<double>(robot.weighed.known_cells);
-  if (is_drawn_only && is_placed(name)) {
+  if (are_equal(*robot.weighed.map, *map)) {  // a change was taken back
+    robot.map = robot.weighed.map;
+  } else if (is_drawn_only(name, robot, *map)) {
     robot.map = std::move(map);
   } else {
     weigh(name, robot, std::move(map));
   }
+}
+
+/// Whether the pose stays. While one is contradicted, what confirms that has to be weighed.
+bool TeamSolver::is_drawn_only(const std::string& name, const Robot& robot, const OccupancyGrid& map) const {
+  if (!is_placed(name) || placements_.is_held_back()) return false;
+  const std::optional<ChangedCells> changed = count_changed_cells(*robot.weighed.map, map);
+  if (!changed) return false;
+  const double share = std::min(kDrawnOnly, options_.search_again);
+  const auto is_little = [&](std::size_t changed_cells, std::size_t cells) {
+    return static_cast<double>(changed_cells) < share * static_cast<double>(cells);
+  };
+  return is_little(changed->all, robot.weighed.counts.known()) &&
+         (changed->walls == 0 || is_little(changed->walls, robot.weighed.counts.occupied));
 }
 
 /// Gives the merger the robot's newest map. May be cancelled: all is as before then.
@@ -176,19 +191,20 @@ void TeamSolver::weigh(const std::string& name, Robot& robot, std::shared_ptr<co
     merger_.grow(*robot.id, *map);
     if (searches) merger_.search_again(*robot.id);
   }
+  if (change.other_frame) {
+    placements_.forget(name);
+    told_robots_.erase(name);
+    restarted_.insert(name);
+  }
   if (searches) robot.searched = map;
   set_weighed(name, robot, std::move(weighed));
-  if (!change.other_frame) return;
-  placements_.forget(name);
-  told_robots_.erase(name);
-  restarted_.insert(name);
 }
 
 void TeamSolver::set_weighed(const std::string& name, Robot& robot, Weighed weighed) {
+  is_weighed_ = false;
+  fresh_.insert(name);
   robot.map = weighed.map;
   robot.weighed = std::move(weighed);
-  fresh_.insert(name);
-  is_weighed_ = false;
 }
 
 void TeamSolver::weigh_what_changed() {

@@ -65,14 +65,14 @@ class TeamSolver {
   struct Weighed {
     std::shared_ptr<const OccupancyGrid> map;
     MapExtent extent;
-    std::size_t known_cells = 0;
+    CellCounts counts;
   };
 
   struct Robot {
     TeamTime since = TeamTime::max();               ///< when it was heard first
     std::optional<MapId> id;                        ///< in the merger; none before a map came
     std::shared_ptr<const OccupancyGrid> map;       ///< the newest, which is drawn
-    Weighed weighed;                                ///< as its pose follows from it
+    Weighed weighed;                                ///< the one from which its pose was found
     std::shared_ptr<const OccupancyGrid> searched;  ///< the map when it was searched last
     std::uint64_t maps_heard = 0;
     std::optional<KnownPose> known_pose;
@@ -84,6 +84,7 @@ class TeamSolver {
   TeamAnswer answer_before() const;
   void apply(const std::string& name, RobotNews& news);
   void set_map(const std::string& name, std::shared_ptr<const OccupancyGrid> map);
+  bool is_drawn_only(const std::string& name, const Robot& robot, const OccupancyGrid& map) const;
   static Weighed to_be_weighed(std::shared_ptr<const OccupancyGrid> map);
   void weigh(const std::string& name, Robot& robot, std::shared_ptr<const OccupancyGrid> map);
   void set_weighed(const std::string& name, Robot& robot, Weighed weighed);
@@ -93,6 +94,8 @@ class TeamSolver {
   void search_what_changed();
   void propose(const MergeResult& result, Placements::Weight weight);
   void tell_components(MergeResult result, TeamAnswer& answer) const;
+  bool may_hold_copies(const std::vector<std::string>& robots) const;
+  FusedMap fuse_once(const std::vector<PlacedMap>& maps) const;
   double resolution_of(const std::vector<PlacedMap>& maps) const;
   TeamMerge merge_of(MergeResult result) const;
   RobotStatus status_of(const std::string& name, const Robot& robot, const TeamAnswer& answer) const;

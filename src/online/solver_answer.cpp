@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a team tells of what it found out.
 #include <algorithm>
+#include <memory>
+#include <set>
 #include <utility>
 
 #include "gridmerge/merge/fuse.hpp"
-#include "merge/fuse_again.hpp"
+#include "merge/copies.hpp"
+#include "merge/fuse_changes.hpp"
 #include "merge/joins.hpp"
 #include "online/solver.hpp"
 #include "online/status.hpp"
@@ -46,7 +49,7 @@ void TeamSolver::tell_components(MergeResult result, TeamAnswer& answer) const {
     if (same != result.components.end()) {
       told.merged = std::move(*same);
     } else {
-      told.merged.fused = fuse(placed, resolution_of(placed));
+      told.merged.fused = fuse_once(placed);
     }
     // Another member than the first may hold the frame.
     const std::string& first = names_.at(ids[told.merged.members.front().map]);
@@ -144,23 +147,42 @@ const std::string& TeamSolver::first_heard(const std::map<std::string, Placement
 /// The poses that were told last, and of the merged maps what has changed.
 void TeamSolver::draw_again(TeamAnswer& answer) const {
   answer.components = told_components_;
-  TeamMerge merge = *told_merge_;
-  for (std::size_t i = 0; i < merge.names.size(); ++i) merge.maps[i] = robots_.at(merge.names[i]).map;
+  answer.merge = told_merge_;
+  auto merge = std::make_shared<TeamMerge>(*told_merge_);
+  for (std::size_t i = 0; i < merge->names.size(); ++i) merge->maps[i] = robots_.at(merge->names[i]).map;
+  if (merge->maps == told_merge_->maps) return;
   for (std::size_t i = 0; i < answer.components.size(); ++i) {
     std::vector<PlacedMap> was, now;
-    for (const Member& member : merge.result.components[i].members) {
+    for (const Member& member : merge->result.components[i].members) {
       was.push_back({told_merge_->maps[member.map].get(), member.T_component_map});
-      now.push_back({merge.maps[member.map].get(), member.T_component_map});
+      now.push_back({merge->maps[member.map].get(), member.T_component_map});
     }
     const auto is_same = [](const PlacedMap& a, const PlacedMap& b) { return a.map == b.map; };
     if (std::equal(was.begin(), was.end(), now.begin(), is_same)) continue;
-    FusedMap& fused = merge.result.components[i].fused;
+    FusedMap& fused = merge->result.components[i].fused;
     fused.grid = *answer.components[i].map;
-    fused = fuse_again(std::move(fused), was, now, resolution_of(now));
+    fused = may_hold_copies(answer.components[i].robots)
+                ? fuse_once(now)
+                : fuse_changes(std::move(fused), was, now, resolution_of(now));
     answer.components[i].map = std::make_shared<const OccupancyGrid>(std::move(fused.grid));
     fused.grid = {};
   }
-  answer.merge = std::make_shared<const TeamMerge>(std::move(merge));
+  answer.merge = std::move(merge);
+}
+
+/// Of equal maps one counts, so that such a merged map is not what all make of it.
+bool TeamSolver::may_hold_copies(const std::vector<std::string>& robots) const {
+  std::set<std::size_t> known_cells;
+  for (const std::string& name : robots) known_cells.insert(robots_.at(name).weighed.counts.known());
+  return known_cells.size() < robots.size();
+}
+
+FusedMap TeamSolver::fuse_once(const std::vector<PlacedMap>& maps) const {
+  std::vector<PlacedMap> counted;
+  for (const PlacedMap& map : maps) {
+    if (!internal::is_placed(map, counted)) counted.push_back(map);
+  }
+  return fuse(counted, resolution_of(maps));
 }
 
 /// Components and poses that were told last, which belong together; of what has changed since, nothing. A map

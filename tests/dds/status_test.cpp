@@ -100,7 +100,7 @@ TEST(Diagnoses, TellOfTheNodeAndOfEachRobot) {
   EXPECT_EQ(diagnoses[0].level, Diagnosis::ok);
   EXPECT_EQ(diagnoses[0].message, "1 of 3 robots placed");
   EXPECT_EQ(value_of(diagnoses[0], "seconds of the last solve"), "0.25");
-  EXPECT_EQ(value_of(diagnoses[0], "settled"), "true");
+  EXPECT_EQ(value_of(diagnoses[0], "settled"), "yes");
   EXPECT_EQ(diagnoses[1].name, "gridmerge: a");
   EXPECT_EQ(diagnoses[1].hardware, "a");
   EXPECT_EQ(diagnoses[1].level, Diagnosis::ok);

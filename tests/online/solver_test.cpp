@@ -12,49 +12,19 @@
 #include "explorers.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/merge/fuse.hpp"
+#include "solver_news.hpp"
 
 namespace gridmerge::internal {
 namespace {
 
-using test::Explorers;
-
 using Effort = TeamSolver::Effort;
-
-const std::vector<std::string> kNames{"anna", "bert", "carl", "dora"};
-
-RobotNews map_news(OccupancyGrid map, int second = 0) {
-  RobotNews news;
-  news.map = std::make_shared<const OccupancyGrid>(std::move(map));
-  news.maps_heard = 1;
-  news.since = TeamTime(std::chrono::seconds(second));
-  return news;
-}
-
-/// The maps of the first robots at a moment, heard in the order of their names. The fourth is a stranger.
-News news_at(const Explorers& explorers, int step, int robots = 3) {
-  News news;
-  for (int robot = 0; robot < robots; ++robot)
-    news[kNames[static_cast<std::size_t>(robot)]] = map_news(explorers.map(robot, step), robot);
-  return news;
-}
-
-const RobotStatus& status_of(const TeamAnswer& answer, const std::string& name) {
-  for (const RobotStatus& robot : answer.robots) {
-    if (robot.name == name) return robot;
-  }
-  throw std::out_of_range(name);
-}
-
-/// With less in common maps are placed less exactly.
-void expect_at(const TeamAnswer& answer, const std::string& name, const SE2& expected,
-               double tolerance = 0.15) {
-  const RobotStatus& robot = status_of(answer, name);
-  EXPECT_EQ(robot.state, RobotState::placed) << name << ": " << robot.why;
-  EXPECT_NEAR(robot.T_world_map.x, expected.x, tolerance) << name;
-  EXPECT_NEAR(robot.T_world_map.y, expected.y, tolerance) << name;
-  EXPECT_NEAR(normalize_angle(robot.T_world_map.theta - expected.theta), 0.0, tolerance / 8.0) << name;
-}
+using test::expect_at;
+using test::expect_consistent;
+using test::Explorers;
+using test::kNames;
+using test::map_news;
+using test::news_at;
+using test::status_of;
 
 bool has_event(const TeamAnswer& answer, TeamEvent::Kind kind, const std::string& robot) {
   return std::any_of(answer.events.begin(), answer.events.end(),
@@ -156,92 +126,6 @@ TEST(TeamSolver, ALittleChangeIsFollowedWithoutASearch) {
   EXPECT_FALSE(followed.settled);
   expect_at(followed, "bert", explorers.between(0, 1));
   EXPECT_TRUE(solver.solve(Effort::full).settled);
-}
-
-/// Something stands where there was none, and walls are gone, in a box near the middle of what is known.
-OccupancyGrid refurnished(OccupancyGrid map, int size) {
-  std::size_t known = 0;
-  const std::size_t middle = count_cells(map).known() / 2;
-  int column = 0, row = 0;
-  for (int y = 0; y < map.height && known < middle; ++y) {
-    for (int x = 0; x < map.width && known < middle; ++x) {
-      if (map.at(x, y) != Cell::unknown) ++known;
-      column = x;
-      row = y;
-    }
-  }
-  for (int y = row; y < std::min(row + size, map.height); ++y) {
-    for (int x = column; x < std::min(column + size, map.width); ++x)
-      map.at(x, y) = map.at(x, y) == Cell::occupied ? Cell::free : Cell::occupied;
-  }
-  return map;
-}
-
-/// Draws what a robot's newest map says where the robot lies.
-TEST(TeamSolver, ALittleChangeIsDrawnAtOnceAndWeighedLater) {
-  const Explorers explorers;
-  TeamSolver solver({});
-  solver.take(news_at(explorers, 5));
-  const TeamAnswer before = solver.solve(Effort::further);
-  ASSERT_EQ(before.components.at(0).robots.size(), 3u);
-  const OccupancyGrid map = refurnished(explorers.map(1, 5), 8);
-  ASSERT_NE(map.cells, explorers.map(1, 5).cells);
-  News news;
-  news["bert"] = map_news(map, 1);
-  solver.take(news);
-  const TeamAnswer answer = solver.solve(Effort::soon);
-  EXPECT_FALSE(answer.settled) << "the pose does not follow from this map yet";
-  EXPECT_EQ(status_of(answer, "bert").maps_heard, 2u);
-  ASSERT_EQ(answer.components.size(), before.components.size());
-  std::vector<PlacedMap> placed;
-  for (const std::string& name : answer.components[0].robots) {
-    EXPECT_EQ(status_of(answer, name).T_world_map, status_of(before, name).T_world_map);
-    EXPECT_EQ(status_of(answer, name).probability, status_of(before, name).probability);
-    const auto at = std::find(answer.merge->names.begin(), answer.merge->names.end(), name);
-    placed.push_back({answer.merge->maps.at(static_cast<std::size_t>(at - answer.merge->names.begin())).get(),
-                      status_of(answer, name).T_world_map});
-  }
-  const FusedMap expected = fuse(placed, explorers.map(0, 5).resolution);
-  EXPECT_EQ(answer.components[0].map->cells, expected.grid.cells);
-  EXPECT_NE(answer.components[0].map->cells, before.components[0].map->cells);
-  EXPECT_EQ(answer.merge->result.components[0].fused.agreeing, expected.agreeing);
-  EXPECT_EQ(answer.merge->maps.at(1)->cells, map.cells);
-  // In the end it is as if that map alone had been heard.
-  const TeamAnswer later = solver.solve(Effort::full);
-  EXPECT_TRUE(later.settled);
-  TeamSolver fresh({});
-  News all = news_at(explorers, 5);
-  all["bert"] = map_news(map, 1);
-  fresh.take(all);
-  EXPECT_EQ(later.components[0].map->cells, fresh.solve(Effort::full).components.at(0).map->cells);
-  EXPECT_EQ(solver.solve(Effort::soon).components[0].map->cells, later.components[0].map->cells);
-}
-
-/// Little by little is much in the end.
-TEST(TeamSolver, ManyLittleChangesAreWeighedTogether) {
-  const Explorers explorers;
-  TeamSolver solver({});
-  solver.take(news_at(explorers, 5));
-  solver.solve(Effort::full);
-  OccupancyGrid map = explorers.map(1, 5);
-  const std::size_t known = count_cells(map).known();
-  const auto forget = [&](std::size_t cells) {  // from the top
-    for (std::size_t i = map.cells.size(); i > 0 && cells > 0; --i) {
-      if (map.cells[i - 1] == Cell::unknown) continue;
-      map.cells[i - 1] = Cell::unknown;
-      --cells;
-    }
-  };
-  const auto pose_after = [&](std::size_t cells) {
-    forget(cells);
-    News news;
-    news["bert"] = map_news(map, 1);
-    solver.take(news);
-    return status_of(solver.solve(Effort::soon), "bert").T_world_map;
-  };
-  const SE2 first = pose_after(known / 100);
-  EXPECT_EQ(first, pose_after(known / 200)) << "1.5 %";
-  EXPECT_NE(first, pose_after(known / 100)) << "2.5 %";
 }
 
 TEST(TeamSolver, ARobotThatStartsAnewIsPlacedInItsNewFrame) {
@@ -448,22 +332,6 @@ News too_far_apart() {
   news["anna"].known_pose = KnownPose{{0.0, 0.0, 0.0}, 0.0, 0.0, true};
   news["bert"].known_pose = KnownPose{{9e6, 9e6, 0.0}, 0.0, 0.0, true};
   return news;
-}
-
-/// Components and robots tell one story, whichever of the two is read.
-void expect_consistent(const TeamAnswer& answer) {
-  for (const RobotStatus& robot : answer.robots) {
-    EXPECT_EQ(robot.state == RobotState::placed, robot.component.has_value()) << robot.name;
-    if (!robot.component) continue;
-    const std::vector<std::string>& members = answer.components.at(*robot.component).robots;
-    EXPECT_EQ(std::count(members.begin(), members.end(), robot.name), 1) << robot.name;
-    for (const Component& component : answer.merge->result.components) {
-      for (const Member& member : component.members) {
-        if (answer.merge->names.at(member.map) != robot.name) continue;
-        EXPECT_EQ(member.T_component_map, robot.T_world_map) << robot.name;
-      }
-    }
-  }
 }
 
 TEST(TeamSolver, AMapTooLargeToMergeIsAProblemNotTheEnd) {

@@ -20,8 +20,8 @@ namespace gridmerge {
 struct TeamOptions {
   MergeOptions merge;  ///< as of merge(); only rigid, and its progress callback is not used
   /// A map is searched anew when this share of its known cells differs from when it was searched last. A
-  /// quarter of it is enough for a robot that lies nowhere yet. In between, the pose follows the map, as soon
-  /// as a fiftieth of it is new; what changes by less is drawn at once where the robot lies.
+  /// quarter of it is enough for a robot that lies nowhere yet. In between, the pose follows the map
+  /// once a fiftieth of its cells or walls is new. A smaller change is drawn at once where the robot lies.
   double search_again = 0.1;
   /// A robot that was placed is moved elsewhere, or taken out, when so many answers in a row, each with newer
   /// maps, say so in the same way.
@@ -39,7 +39,7 @@ GRIDMERGE_EXPORT void validate(const TeamOptions& options);
 ///
 /// A thread of its own merges the newest map of each, never a queue of old ones. All methods may be called
 /// from any thread, and none waits for that work, except where it says so. Memory is bounded by the maps:
-/// five of each robot at most.
+/// six of each robot at most.
 ///
 /// Answers are steady. A robot's pose follows the evidence, but a robot that was placed moves elsewhere only
 /// when that is confirmed (TeamOptions::confirmations, TeamOptions::quiet), and each jump is told. A

@@ -57,8 +57,9 @@ struct TeamComponent {
 struct TeamMerge {
   std::vector<std::string> names;  ///< of the robots with maps, in the order in which they came
   std::vector<std::shared_ptr<const OccupancyGrid>> maps;  ///< the newest of each, never null
-  /// Components, poses and their order are the answer's, comparisons the newest ones: while the answer holds
-  /// a change back, the two may differ. The fused grids are empty: TeamComponent::map has them.
+  /// Components, poses and their order are the answer's, comparisons those of the maps that were weighed
+  /// last: while the answer holds a change back, the two may differ. The fused grids are empty:
+  /// TeamComponent::map has them.
   MergeResult result;
 };
 

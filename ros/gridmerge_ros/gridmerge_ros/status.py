@@ -97,7 +97,6 @@ def diagnose(
         ("robots", str(len(robots))),
         ("placed", str(placed)),
         ("merged maps", str(len(answer.components))),
-        ("settled", str(answer.settled).lower()),
         ("solves", str(answer.number)),
         ("seconds of the last solve", _decimal(answer.seconds)),
         ("settled", "yes" if answer.settled else "no"),

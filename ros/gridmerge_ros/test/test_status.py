@@ -70,7 +70,8 @@ def test_diagnoses() -> None:
     assert (node.level, node.name, node.message) == (OK, "gridmerge", "1 of 3 robots placed")
     values = dict(node.values)
     assert values["seconds of the last solve"] == "0.25"
-    assert values["settled"] == "true"
+    assert values["settled"] == "yes"
+    assert len(values) == len(node.values), "each key once"
     assert values["merged maps"] == "1"
     assert "problem" not in values
     assert (first.level, first.name, first.hardware) == (OK, "gridmerge: tb0", "tb0")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "merge/fuse_again.hpp"
+#include "merge/fuse_changes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +41,12 @@ bool lies_on(const OccupancyGrid& grid, const Lattice& lattice) {
   return Lattice{grid.width, grid.height, grid.resolution, {grid.origin.x, grid.origin.y}} == lattice;
 }
 
+/// What is drawn again is drawn twice, as it was and as it is.
+bool is_worth_it(const CellBox& box, const Lattice& lattice) {
+  constexpr double kMostDrawn = 1.0 / 3.0;
+  return static_cast<double>(box.width()) * box.height() <= kMostDrawn * lattice.width * lattice.height;
+}
+
 /// The lattice's cells that have to be drawn again; none where that is all of them.
 std::optional<CellBox> cells_to_draw(const std::vector<PlacedMap>& was, const std::vector<PlacedMap>& now,
                                      const Lattice& lattice) {
@@ -58,14 +64,14 @@ std::optional<CellBox> cells_to_draw(const std::vector<PlacedMap>& was, const st
 
 }  // namespace
 
-FusedMap fuse_again(FusedMap before, const std::vector<PlacedMap>& was, const std::vector<PlacedMap>& now,
-                    double resolution) {
+FusedMap fuse_changes(FusedMap before, const std::vector<PlacedMap>& was, const std::vector<PlacedMap>& now,
+                      double resolution) {
   const FusedInputs old_inputs(was), inputs(now);
   // What is taken for paint may be elsewhere in a map than what has changed of it.
   if (old_inputs.is_any_painted() || inputs.is_any_painted()) return fuse(now, resolution);
   const Lattice lattice = cover(inputs.maps(), resolution);
   const std::optional<CellBox> box = cells_to_draw(was, now, lattice);
-  if (!box || !lies_on(before.grid, lattice)) return fuse(now, resolution);
+  if (!box || !lies_on(before.grid, lattice) || !is_worth_it(*box, lattice)) return fuse(now, resolution);
   if (box->empty()) return before;
 
   FusedMap fused = std::move(before);
