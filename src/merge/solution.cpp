@@ -50,11 +50,11 @@ std::vector<Join> make_joins(const MapStore& store, const std::vector<MapId>& ma
   return joins;
 }
 
-void add_components(const MergeInputs& inputs, const Solution& solution, const MergeOptions& options,
-                    MergeResult& result) {
+void add_components(const std::vector<MergeInput>& inputs, const Solution& solution,
+                    const MergeOptions& options, MergeResult& result) {
   for (const NodeGroup& group : solution.consistent_set.groups) {
     if (group.size() == 1) {
-      result.left_out.push_back(left_out(inputs.index[group.front().map], result.joins));
+      result.left_out.push_back(left_out(inputs[group.front().map].index, result.joins));
     } else {
       result.components.push_back(
           make_component(group, solution.problem, solution.consistent_set, inputs, options));
