@@ -30,7 +30,8 @@ std::vector<RelativePose> measured_in(const NodeGroup& group, const JoinProblem&
     const CandidateJoin& candidate = pair.candidates[used.candidate];
     if (candidate.is_known) continue;  // the known poses speak for themselves
     measured.push_back(measured_between(*places[pair.fixed], *places[pair.moving], candidate.T_fixed_moving,
-                                        problem.maps[pair.fixed], problem.maps[pair.moving], candidate.sd));
+                                        problem.maps[pair.fixed].extent, problem.maps[pair.moving].extent,
+                                        candidate.sd));
   }
   return measured;
 }
@@ -55,7 +56,8 @@ Component make_component(const NodeGroup& group, const JoinProblem& problem,
   bool is_world = false;
   for (std::size_t i = 0; i < group.size(); ++i) {
     const MergeInput& input = inputs[group[i].map];
-    maps.push_back({input.prepared, group[i].T_group_map, problem.maps[group[i].map], input.known_pose});
+    maps.push_back(
+        {input.prepared, group[i].T_group_map, problem.maps[group[i].map].extent, input.known_pose});
     if (input.index < inputs[group[first].map].index) first = i;
     is_world = is_world || maps.back().is_fixed();
   }

@@ -291,7 +291,7 @@ GroupSearch::GroupSearch(const JoinWeights& weights, const JoinProblem& problem,
     NodeGroup fixed;
     for (const std::size_t map : parts[i]) {
       if (weights.is_fixed(map)) {
-        fixed.push_back({map, *problem.fixed[map]});
+        fixed.push_back({map, *problem.maps[map].T_world_map});
       } else {
         groups.push_back({PlacedNode{map, {}}});
       }

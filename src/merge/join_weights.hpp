@@ -61,9 +61,7 @@ class JoinWeights {
   std::vector<std::size_t> partners_of(std::size_t map) const;
 
   /// Whether the map's pose is the truth, whatever pairs say.
-  bool is_fixed(std::size_t map) const {
-    return map < problem_.fixed.size() && problem_.fixed[map].has_value();
-  }
+  bool is_fixed(std::size_t map) const { return problem_.maps[map].T_world_map.has_value(); }
 
   /// The ways to join two groups that some candidate proposes, most is said for the first.
   std::vector<WeighedJoin> ways_to_join(const NodeGroup& a, const NodeGroup& b) const;

@@ -41,8 +41,7 @@ class GroupMatchesTest : public testing::Test {
     add(building, {5.0, 0.0, 13.0, 13.0}, {0.0, 4.0, 2.0});
     add(test::draw_building(2), {5.0, 0.0, 13.0, 13.0}, {});
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      problem_.coverage.push_back(&pieces_[i]->coverage);
-      problem_.maps.push_back(pieces_[i]->coverage.extent());
+      problem_.maps.push_back({pieces_[i]->coverage.extent(), &pieces_[i]->coverage});
       inputs_.push_back({i, &pieces_[i]->grid, &pieces_[i]->prepared, {}});
       for (std::size_t j = i + 1; j < pieces_.size(); ++j) problem_.pairs.push_back({i, j, {}});
     }
@@ -70,7 +69,7 @@ TEST_F(GroupMatchesTest, PlaceAMapThatFitsTheWholeGroup) {
   const ConsistentSet after = find_consistent_set(heard, 0.95);
   ASSERT_EQ(after.groups.size(), 2U);
   ASSERT_EQ(after.groups[0].size(), 3U);
-  EXPECT_LT(displacement(problem_.maps[2], after.groups[0][2].T_group_map, between(0, 2)), 0.1);
+  EXPECT_LT(displacement(problem_.maps[2].extent, after.groups[0][2].T_group_map, between(0, 2)), 0.1);
   EXPECT_EQ(after.groups[1].front().map, 3U);
 }
 
