@@ -261,11 +261,10 @@ void TeamSolver::tell_components(MergeResult result, TeamAnswer& answer) const {
                               return a.map == b.map && a.T_component_map == b.T_component_map;
                             });
         });
-    const double resolution = options_.merge.resolution;
     if (same != result.components.end()) {
       told.merged = std::move(*same);
     } else {
-      told.merged.fused = fuse(placed, resolution > 0.0 ? resolution : finest_resolution(placed));
+      told.merged.fused = fuse(placed, merged_resolution(options_.merge.resolution, placed));
     }
     // Another member than the first may hold the frame.
     const std::string& first = names_.at(ids[told.merged.members.front().map]);
