@@ -10,6 +10,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "grid/longer_side.hpp"
 #include "grid/parallel.hpp"
 #include "match/drawn_walls.hpp"
 #include "merge/elastic_choice.hpp"
@@ -23,10 +24,6 @@ constexpr double kLatticeByMap = 2.0;  // side of the lattice, by that of the ma
 constexpr double kLeastLattice = 1.0;  // [m]
 constexpr int kMostRoundsOfMean = 20;
 constexpr double kNoStretch = 1e-13;
-
-double longer_side(const OccupancyGrid& map) {
-  return std::max(map.width, map.height) * map.resolution;
-}
 
 /// Of each map the least map of those that pairs connect it with.
 std::vector<std::size_t> parts_of(const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
