@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <utility>
 
 #include "merge/pose_graph.hpp"
@@ -223,30 +222,23 @@ std::vector<UsedCandidate> JoinWeights::used_in(const NodeGroup& group) const {
   return used;
 }
 
-void JoinWeights::unite_fixed(const NodeGroup& group, Labels& labels) const {
+void JoinWeights::unite_fixed(const NodeGroup& group, DisjointSets& places) const {
   std::optional<std::size_t> first;
   for (std::size_t i = 0; i < group.size(); ++i) {
     if (!is_fixed(group[i].map)) continue;
-    if (first) labels.unite(*first, i);
+    if (first) places.unite(*first, i);
     first = i;
   }
 }
 
 NodeGroups JoinWeights::connected(const NodeGroup& group) const {
-  Labels labels(group.size());
-  for (const Edge& edge : edges_of(group)) labels.unite(edge.a, edge.b);
-  unite_fixed(group, labels);
+  DisjointSets places(group.size());
+  for (const Edge& edge : edges_of(group)) places.unite(edge.a, edge.b);
+  unite_fixed(group, places);
   NodeGroups parts;
-  std::vector<std::size_t> first;  // place of each part's first node
-  for (std::size_t i = 0; i < group.size(); ++i) {
-    const auto part =
-        std::find_if(first.begin(), first.end(), [&](std::size_t place) { return labels.same(place, i); });
-    if (part == first.end()) {
-      first.push_back(i);
-      parts.push_back({group[i]});
-    } else {
-      parts[static_cast<std::size_t>(part - first.begin())].push_back(group[i]);
-    }
+  for (const std::vector<std::size_t>& held_together : places.all()) {
+    NodeGroup& part = parts.emplace_back();
+    for (const std::size_t place : held_together) part.push_back(group[place]);
   }
   return parts;
 }
@@ -255,12 +247,12 @@ std::vector<std::pair<NodeGroup, NodeGroup>> JoinWeights::halves(const NodeGroup
   std::vector<Edge> edges = edges_of(group);
   std::stable_sort(edges.begin(), edges.end(),
                    [](const Edge& a, const Edge& b) { return a.agreement.worth > b.agreement.worth; });
-  Labels labels(group.size());
-  unite_fixed(group, labels);
+  DisjointSets places(group.size());
+  unite_fixed(group, places);
   std::vector<Edge> tree;
   for (const Edge& edge : edges) {
-    if (labels.same(edge.a, edge.b)) continue;
-    labels.unite(edge.a, edge.b);
+    if (places.are_one(edge.a, edge.b)) continue;
+    places.unite(edge.a, edge.b);
     tree.push_back(edge);
   }
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> around(
