@@ -9,14 +9,12 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "gridmerge/bag/bag.hpp"
 #include "gridmerge/io/file_error.hpp"
-#include "gridmerge/io/initial_poses.hpp"
 
 namespace gridmerge::cli {
 
@@ -109,13 +107,13 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
       ->check(kNamedTopic);
   command
       .add_option(
-          "--init", options.init,
+          "--init", options.known.init,
           "Poses that you know, of some or all robots' map frames: a table (TSV) with the columns map x y "
           "theta, where map is the robot's name, as of 'gridmerge merge'")
       ->type_name("FILE");
   command
       .add_option(
-          "--fix", options.fix,
+          "--fix", options.known.fix,
           "Keep this robot's map where it is. The merged map takes its frame, or that of --init, if given. "
           "Repeat it for others. Each of several needs a pose in --init")
       ->option_text("ROBOT")
@@ -212,7 +210,7 @@ RosNodeOptions to_node_options(const NodeCommandOptions& options) {
     if (!node.robots.emplace(robot.substr(0, at), robot.substr(at + 1)).second)
       throw CLI::ValidationError("--robot", "names the robot " + robot.substr(0, at) + " twice");
   }
-  for (const std::string& robot : options.fix) node.known_poses[robot].fixed = true;
+  for (const std::string& robot : options.known.fix) node.known_poses[robot].fixed = true;
   node.transforms = transform_topics().at(options.transforms);
   node.team.merge.match = match_options(options.common, options.search);
   try {
@@ -250,23 +248,12 @@ std::vector<PlayedTopic> played_topics(const NodeCommandOptions& options, const 
 }
 
 std::map<std::string, KnownPose> known_robot_poses(const NodeCommandOptions& options, Console& console) {
+  const auto name_of = [](const std::string& name, const std::filesystem::path&) {
+    return std::optional(name);  // robots may come that nobody has heard of
+  };
   std::map<std::string, KnownPose> known;
-  if (!options.init.empty()) {
-    for (const InitialPose& pose : read_initial_poses(options.init)) {
-      known[pose.name] = KnownPose{pose.T_world_map, pose.sd, pose.sd_theta, false};
-      if (std::abs(pose.theta_as_written) > 2.0 * std::numbers::pi)
-        console.warn(fmt::format("{}: theta of {} is {}, more than a turn: it must be in radians",
-                                 options.init, pose.name, pose.theta_as_written));
-    }
-  }
-  // A single robot holds its own frame; how several lie to each other has to be said.
-  const bool needs_poses = options.fix.size() > 1 || !options.init.empty();
-  for (const std::string& robot : options.fix) {
-    if (needs_poses && !known.contains(robot))
-      throw std::runtime_error(
-          fmt::format("--fix {}: needs a pose in a table that --init names", escape_controls(robot)));
-    known[robot].fixed = true;
-  }
+  for (const auto& [robot, given] : read_given_poses(options.known, name_of, console))
+    known[robot] = given.pose;
   return known;
 }
 
