@@ -85,10 +85,8 @@ const std::map<std::string, TransformTopic>& transform_topics() {
   return topics;
 }
 
-}  // namespace
-
-void add_node_options(CLI::App& command, NodeCommandOptions& options) {
-  RosNodeOptions& node = options.node;
+/// --pattern and --robot: whom it hears.
+void add_robot_options(CLI::App& command, NodeCommandOptions& options) {
   command
       .add_option(
           "--pattern", options.patterns,
@@ -105,6 +103,10 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
       ->type_name("NAME=TOPIC")
       ->allow_extra_args(false)
       ->check(kNamedTopic);
+}
+
+/// --init and --fix, of robots.
+void add_robot_pose_options(CLI::App& command, NodeCommandOptions& options) {
   command
       .add_option(
           "--init", options.known.init,
@@ -118,6 +120,11 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
           "Repeat it for others. Each of several needs a pose in --init")
       ->option_text("ROBOT")
       ->allow_extra_args(false);
+}
+
+/// What it publishes under which name, and where.
+void add_published_options(CLI::App& command, NodeCommandOptions& options) {
+  RosNodeOptions& node = options.node;
   command
       .add_option("--world", node.world_frame,
                   "The frame of the merged map; further merged maps have it with _2, _3, ...")
@@ -143,6 +150,11 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
       ->type_name("WHERE")
       ->check(CLI::IsMember(transform_topics()).description(""))
       ->capture_default_str();
+}
+
+/// How maps are merged.
+void add_merge_options(CLI::App& command, NodeCommandOptions& options) {
+  RosNodeOptions& node = options.node;
   command
       .add_option("--accept", options.search.accept,
                   fmt::format("Probability from which on two maps are joined; {} if not given",
@@ -162,6 +174,11 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
                   "Metres per cell of the merged map; if not given, those of the finest map")
       ->type_name("METRES")
       ->check(kMetresPerCell);
+}
+
+/// --bag and --rate: recordings.
+void add_bag_options(CLI::App& command, NodeCommandOptions& options) {
+  RosNodeOptions& node = options.node;
   CLI::Option* bag =
       command
           .add_option(
@@ -175,6 +192,10 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
       ->check(kPositiveRate)
       ->needs(bag)
       ->capture_default_str();
+}
+
+/// --page and --page-address.
+void add_page_options(CLI::App& command, NodeCommandOptions& options) {
   CLI::Option* page = command
                           .add_option("--page", options.page,
                                       "Serve a report page that follows along at this port; 0 = a free one")
@@ -188,6 +209,11 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
       ->check(kOneAddress)
       ->needs(page)
       ->capture_default_str();
+}
+
+/// --once and --wait: when it ends by itself.
+void add_end_options(CLI::App& command, NodeCommandOptions& options) {
+  RosNodeOptions& node = options.node;
   command.add_flag(
       "--once", node.once,
       "End when the maps of all robots that are there are merged; the exit code is that of 'merge'");
@@ -198,6 +224,18 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
           "which waits so long for further robots too")
       ->type_name("SECONDS")
       ->check(kNotNegative);
+}
+
+}  // namespace
+
+void add_node_options(CLI::App& command, NodeCommandOptions& options) {
+  add_robot_options(command, options);
+  add_robot_pose_options(command, options);
+  add_published_options(command, options);
+  add_merge_options(command, options);
+  add_bag_options(command, options);
+  add_page_options(command, options);
+  add_end_options(command, options);
   add_common_options(command, options.common);
 }
 
