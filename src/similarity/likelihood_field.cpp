@@ -8,17 +8,15 @@
 
 #include "grid/for_each_equal.hpp"
 #include "grid/multiversion.hpp"
-#include "grid/unaligned.hpp"
 #include "gridmerge/grid/cancellation.hpp"
+#include "similarity/chamfer.hpp"
 
 namespace gridmerge::internal {
 
 namespace {
 
-constexpr int kMargin = 4;       // cells around the known area, so that distances reach beyond its rim
-constexpr int kSeenReach = 2;    // cells beyond a known one that still count as seen
-constexpr int kChamferStep = 3;  // distance units of one cell
-constexpr int kChamferDiagonal = 4;
+constexpr int kMargin = 4;     // cells around the known area, so that distances reach beyond its rim
+constexpr int kSeenReach = 2;  // cells beyond a known one that still count as seen
 
 constexpr int kFacingReach = 3;  // cells around a wall whose free cells decide which way it faces
 /// The free side must have this share of half the window more than the other.
@@ -32,94 +30,6 @@ constexpr double kAxisFree = 0.3;
 /// apart than this.
 constexpr std::size_t kMinThing = 3;
 constexpr double kLargestThing = 2.5;  // [m]
-
-/// A chamfer distance with a label of the place it was measured to: the label is in the low byte, so that the
-/// smaller of two is the nearer one, and needs no branch.
-using LabelledDistance = std::uint32_t;
-constexpr LabelledDistance kLabels = 256;
-constexpr LabelledDistance kFar = 60000 * kLabels;
-
-constexpr LabelledDistance kStraight = kChamferStep * kLabels;
-constexpr LabelledDistance kDiagonal = kChamferDiagonal * kLabels;
-
-// Eight neighbouring distances of a row.
-using Lanes = LabelledDistance __attribute__((vector_size(32)));
-constexpr int kLanes = sizeof(Lanes) / sizeof(LabelledDistance);
-
-/// What lies `before` them lets no distance be more than one cell farther, and so on through the lanes. Three
-/// steps of one, two and four lanes do what would otherwise take eight, one after the other.
-inline __attribute__((always_inline)) void relax_upwards(Lanes& lanes, const Lanes& before) {
-  const Lanes far = Lanes{} + kFar;
-  Lanes from = __builtin_shufflevector(lanes, far, 8, 0, 1, 2, 3, 4, 5, 6) + kStraight;
-  lanes = lanes < from ? lanes : from;
-  from = __builtin_shufflevector(lanes, far, 8, 9, 0, 1, 2, 3, 4, 5) + 2 * kStraight;
-  lanes = lanes < from ? lanes : from;
-  from = __builtin_shufflevector(lanes, far, 8, 9, 10, 11, 0, 1, 2, 3) + 4 * kStraight;
-  lanes = lanes < from ? lanes : from;
-  from = before + Lanes{1, 2, 3, 4, 5, 6, 7, 8} * kStraight;
-  lanes = lanes < from ? lanes : from;
-}
-
-inline __attribute__((always_inline)) void reverse(Lanes& lanes) {
-  lanes = __builtin_shufflevector(lanes, lanes, 7, 6, 5, 4, 3, 2, 1, 0);
-}
-
-/// row[x] = min(row[x], row[x - 1] + kStraight), for x from 1 to `count` - 1, in this order.
-GRIDMERGE_MULTIVERSION
-void relax_to_the_right(LabelledDistance* row, int count) {
-  int x = 1;
-  Lanes before = Lanes{} + row[0];
-  for (; x + kLanes <= count; x += kLanes) {
-    Lanes lanes;
-    load(row + x, lanes);
-    relax_upwards(lanes, before);
-    store(lanes, row + x);
-    before = __builtin_shufflevector(lanes, lanes, 7, 7, 7, 7, 7, 7, 7, 7);
-  }
-  for (; x < count; ++x) row[x] = std::min(row[x], row[x - 1] + kStraight);
-}
-
-/// row[x] = min(row[x], row[x + 1] + kStraight), for x from `count` - 2 to 0, in this order.
-GRIDMERGE_MULTIVERSION
-void relax_to_the_left(LabelledDistance* row, int count) {
-  int left = count - 1;  // where the done ones begin
-  Lanes before = Lanes{} + row[left];
-  for (; left >= kLanes; left -= kLanes) {
-    Lanes lanes;
-    load(row + left - kLanes, lanes);
-    reverse(lanes);
-    relax_upwards(lanes, before);
-    before = __builtin_shufflevector(lanes, lanes, 7, 7, 7, 7, 7, 7, 7, 7);
-    reverse(lanes);
-    store(lanes, row + left - kLanes);
-  }
-  for (int x = left - 1; x >= 0; --x) row[x] = std::min(row[x], row[x + 1] + kStraight);
-}
-
-/// row[x] = what is nearest of itself and of its three neighbours in the row beside it.
-GRIDMERGE_MULTIVERSION
-void relax_from_row(LabelledDistance* row, const LabelledDistance* beside, int count) {
-  for (int x = 1; x + 1 < count; ++x) {
-    const LabelledDistance diagonal = std::min(beside[x - 1], beside[x + 1]) + kDiagonal;
-    row[x] = std::min(row[x], std::min(beside[x] + kStraight, diagonal));
-  }
-}
-
-/// In place: elsewhere than at the zeros, the chamfer distance to the nearest of them, and its label. The
-/// border must be kFar, and stays it.
-void chamfer_distance(std::vector<LabelledDistance>& distance, int width, int height) {
-  const auto row_at = [&](int y) { return distance.data() + static_cast<std::size_t>(y) * width; };
-  for (int y = 1; y < height; ++y) {
-    throw_if_cancelled();
-    relax_from_row(row_at(y), row_at(y - 1), width);
-    relax_to_the_right(row_at(y), width - 1);
-  }
-  for (int y = height - 2; y >= 0; --y) {
-    throw_if_cancelled();
-    relax_from_row(row_at(y), row_at(y + 1), width);
-    relax_to_the_left(row_at(y) + 1, width - 1);
-  }
-}
 
 /// Marks what lies within kSeenReach of a known cell by the chamfer distance: two cells along a row or a
 /// column, or one diagonally. The border of two cells must not be known.
@@ -280,7 +190,7 @@ LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell) {
   map.T_map_grid = {corner.x, corner.y, grid.origin.theta};
 
   const std::size_t size = static_cast<std::size_t>(map.width) * map.height;
-  std::vector<LabelledDistance> to_wall(size, kFar);
+  std::vector<LabelledDistance> to_wall(size, kFarDistance);
   std::vector<std::uint8_t> is_known(size, 0), is_wall(size, 0);
   std::vector<int> cell_x(grid.width);
   for (int column = 0; column < grid.width; ++column)
@@ -346,9 +256,9 @@ LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell) {
   std::size_t seen = 0;
   for (std::size_t i = 0; i < size; ++i) {
     if (is_seen[i] == 0) continue;  // stays unseen
-    const int cells = static_cast<int>(to_wall[i] / kLabels + kChamferStep / 2) / kChamferStep;
+    const int cells = static_cast<int>(to_wall[i] / kDistanceLabels + kChamferStep / 2) / kChamferStep;
     const int bin = std::min(cells, kDistanceBins - 1);
-    map.places[i] = {static_cast<std::uint8_t>(bin), static_cast<std::uint8_t>(to_wall[i] % kLabels)};
+    map.places[i] = {static_cast<std::uint8_t>(bin), static_cast<std::uint8_t>(to_wall[i] % kDistanceLabels)};
     ++counts[bin];
     ++seen;
   }
