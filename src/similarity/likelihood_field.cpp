@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 
 #include "grid/for_each_equal.hpp"
 #include "grid/multiversion.hpp"
@@ -171,72 +172,92 @@ void mark_things(LikelihoodField& map, const std::vector<int>& at) {
   }
 }
 
-}  // namespace
+/// A grid and where its cells lie among those of a field.
+class DrawnGrid {
+ public:
+  DrawnGrid(const OccupancyGrid& grid, const LikelihoodField& map)
+      : grid_(grid), scale_(grid.resolution / map.cell), width_(map.width), cell_x_(grid.width) {
+    for (int column = 0; column < grid.width; ++column)
+      cell_x_[column] = static_cast<int>((column + 0.5) * scale_) + kMargin;
+  }
 
-int steps_of_turn(double theta) {
-  const double steps = (theta / (2.0 * std::numbers::pi) + 1.0) * kDirections;
-  const int whole = static_cast<int>(steps);  // std::lround() is a call on many a machine
-  return (whole + (steps - whole >= 0.5 ? 1 : 0)) % kDirections;
-}
+  const OccupancyGrid& grid() const { return grid_; }
+  int cell_x(std::size_t column) const { return cell_x_[column]; }
+  std::size_t line_of(int row) const {
+    return static_cast<std::size_t>((row + 0.5) * scale_ + kMargin) * width_;
+  }
 
-LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell) {
-  const double scale = grid.resolution / cell;
+  /// Where in the field the middle of a grid's row or column lies [cells].
+  float middle(double row_or_column) const {
+    return static_cast<float>((row_or_column + 0.5) * scale_ + kMargin);
+  }
 
-  LikelihoodField map;
-  map.cell = cell;
-  map.width = static_cast<int>(std::ceil(grid.width * scale)) + 2 * kMargin;
-  map.height = static_cast<int>(std::ceil(grid.height * scale)) + 2 * kMargin;
-  const Point2 corner = grid.origin * Point2{-kMargin * cell, -kMargin * cell};
-  map.T_map_grid = {corner.x, corner.y, grid.origin.theta};
-
-  const std::size_t size = static_cast<std::size_t>(map.width) * map.height;
-  std::vector<LabelledDistance> to_wall(size, kFarDistance);
-  std::vector<std::uint8_t> is_known(size, 0), is_wall(size, 0);
-  std::vector<int> cell_x(grid.width);
-  for (int column = 0; column < grid.width; ++column)
-    cell_x[column] = static_cast<int>((column + 0.5) * scale) + kMargin;
-  const auto line_of = [&](int row) {
-    return static_cast<std::size_t>((row + 0.5) * scale + kMargin) * map.width;
-  };
-  const auto for_each_occupied = [&](int row, auto visit) {
-    for_each_equal(grid.cells.data() + grid.index(0, row), static_cast<std::size_t>(grid.width),
+  /// Calls back with the columns of a row's occupied cells.
+  template <typename Visit>
+  void for_each_occupied(int row, Visit visit) const {
+    for_each_equal(grid_.cells.data() + grid_.index(0, row), static_cast<std::size_t>(grid_.width),
                    Cell::occupied, visit);
-  };
+  }
+
+ private:
+  const OccupancyGrid& grid_;
+  double scale_;
+  int width_;
+  std::vector<int> cell_x_;  // by column
+};
+
+/// What a field's cells hold, 0 or 1 each.
+struct CellMarks {
+  std::vector<std::uint8_t> is_known, is_wall, is_free;
+};
+
+CellMarks mark_cells(const DrawnGrid& drawn, std::size_t size) {
+  const OccupancyGrid& grid = drawn.grid();
+  std::vector<std::uint8_t> is_known(size, 0), is_wall(size, 0);
   for (int row = 0; row < grid.height; ++row) {
     throw_if_cancelled();
-    const std::size_t line = line_of(row);
+    const std::size_t line = drawn.line_of(row);
     const Cell* const cells = grid.cells.data() + grid.index(0, row);
     for (int column = 0; column < grid.width; ++column)  // no branch: it cannot be foreseen
-      is_known[line + cell_x[column]] |= static_cast<std::uint8_t>(cells[column] != Cell::unknown);
-    for_each_occupied(row, [&](std::size_t column) { is_wall[line + cell_x[column]] = 1; });
+      is_known[line + drawn.cell_x(column)] |= static_cast<std::uint8_t>(cells[column] != Cell::unknown);
+    drawn.for_each_occupied(row, [&](std::size_t column) { is_wall[line + drawn.cell_x(column)] = 1; });
   }
   std::vector<std::uint8_t> is_free = is_known;
   for (std::size_t i = 0; i < size; ++i)
     is_free[i] &= static_cast<std::uint8_t>(is_wall[i] ^ 1);  // a wall hides the free cells in its cell
+  return {std::move(is_known), std::move(is_wall), std::move(is_free)};
+}
 
-  std::vector<int> wall_at(size, -1);
-  const BoxSums free_cells(is_free, map.width, map.height);
+/// The walls in the order of their cells, with the way they face. `wall_at` becomes the index of each cell's
+/// wall, and `to_wall`, which must be kFarDistance, the facing where there is one.
+void find_walls(const CellMarks& marks, LikelihoodField& map, std::vector<int>& wall_at,
+                std::vector<LabelledDistance>& to_wall) {
+  const BoxSums free_cells(marks.is_free, map.width, map.height);
   for (int y = 0; y < map.height; ++y) {
     throw_if_cancelled();
     const std::size_t line = static_cast<std::size_t>(y) * map.width;
-    for_each_equal(is_wall.data() + line, static_cast<std::size_t>(map.width), std::uint8_t{1},
+    for_each_equal(marks.is_wall.data() + line, static_cast<std::size_t>(map.width), std::uint8_t{1},
                    [&](std::size_t x) {
                      std::uint8_t facing = find_side(free_cells, static_cast<int>(x), y);
                      if (facing == kNoDirection)
-                       facing = find_axis(is_wall, is_free, map.width, static_cast<int>(x), y);
+                       facing = find_axis(marks.is_wall, marks.is_free, map.width, static_cast<int>(x), y);
                      to_wall[line + x] = facing;
                      wall_at[line + x] = static_cast<int>(map.walls.size());
                      map.walls.push_back({{}, facing});
                    });
   }
+}
+
+/// Puts each wall at the centroid of the occupied cells inside its cell.
+void place_walls(const DrawnGrid& drawn, const std::vector<int>& wall_at, LikelihoodField& map) {
   std::vector<CellSum> sums(map.walls.size());
-  for (int row = 0; row < grid.height; ++row) {
+  for (int row = 0; row < drawn.grid().height; ++row) {
     throw_if_cancelled();
-    const std::size_t line = line_of(row);
-    const float y = static_cast<float>((row + 0.5) * scale + kMargin);
-    for_each_occupied(row, [&](std::size_t column) {
-      CellSum& sum = sums[wall_at[line + cell_x[column]]];
-      sum.x += static_cast<float>((static_cast<double>(column) + 0.5) * scale + kMargin);
+    const std::size_t line = drawn.line_of(row);
+    const float y = drawn.middle(row);
+    drawn.for_each_occupied(row, [&](std::size_t column) {
+      CellSum& sum = sums[wall_at[line + drawn.cell_x(column)]];
+      sum.x += drawn.middle(static_cast<double>(column));
       sum.y += y;
       ++sum.count;
     });
@@ -245,10 +266,13 @@ LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell) {
     const CellSum& sum = sums[i];
     map.walls[i].position = {static_cast<double>(sum.x) / sum.count, static_cast<double>(sum.y) / sum.count};
   }
+}
 
-  mark_things(map, wall_at);
-
-  chamfer_distance(to_wall, map.width, map.height);
+/// What the map says of each place that it has seen, and how often each distance is. `to_wall` is that of
+/// chamfer_distance().
+void fill_places(const std::vector<std::uint8_t>& is_known, const std::vector<LabelledDistance>& to_wall,
+                 LikelihoodField& map) {
+  const std::size_t size = to_wall.size();
   std::vector<std::uint8_t> is_seen(size, 0);
   widen(is_known.data(), map.width, map.height, is_seen.data());
   map.places.resize(size);
@@ -265,6 +289,35 @@ LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell) {
   for (int bin = 0; bin < kDistanceBins; ++bin) {  // one more in every bin: no background is ever 0
     map.background[bin] = static_cast<double>(counts[bin] + 1) / static_cast<double>(seen + kDistanceBins);
   }
+}
+
+}  // namespace
+
+int steps_of_turn(double theta) {
+  const double steps = (theta / (2.0 * std::numbers::pi) + 1.0) * kDirections;
+  const int whole = static_cast<int>(steps);  // std::lround() is a call on many a machine
+  return (whole + (steps - whole >= 0.5 ? 1 : 0)) % kDirections;
+}
+
+LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell) {
+  const double scale = grid.resolution / cell;
+  LikelihoodField map;
+  map.cell = cell;
+  map.width = static_cast<int>(std::ceil(grid.width * scale)) + 2 * kMargin;
+  map.height = static_cast<int>(std::ceil(grid.height * scale)) + 2 * kMargin;
+  const Point2 corner = grid.origin * Point2{-kMargin * cell, -kMargin * cell};
+  map.T_map_grid = {corner.x, corner.y, grid.origin.theta};
+
+  const std::size_t size = static_cast<std::size_t>(map.width) * map.height;
+  const DrawnGrid drawn(grid, map);
+  const CellMarks marks = mark_cells(drawn, size);
+  std::vector<LabelledDistance> to_wall(size, kFarDistance);
+  std::vector<int> wall_at(size, -1);
+  find_walls(marks, map, wall_at, to_wall);
+  place_walls(drawn, wall_at, map);
+  mark_things(map, wall_at);
+  chamfer_distance(to_wall, map.width, map.height);
+  fill_places(marks.is_known, to_wall, map);
   return map;
 }
 
