@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <set>
 #include <stdexcept>
@@ -19,15 +18,13 @@ namespace gridmerge::cli {
 
 namespace {
 
-/// The map that is named so on the command line or, by another way, lies there.
-std::optional<std::size_t> find_map(const std::vector<std::string>& maps, const std::string& name,
-                                    const std::filesystem::path& path) {
-  for (std::size_t i = 0; i < maps.size(); ++i) {
-    if (is_same_map(path, maps[i])) return i;
-  }
-  const auto found = std::find(maps.begin(), maps.end(), name);
-  if (found == maps.end()) return std::nullopt;
-  return static_cast<std::size_t>(found - maps.begin());
+/// The map that lies there, by whatever way, or that the command line names so.
+std::optional<std::string> name_among(const std::vector<std::string>& maps, const std::string& name,
+                                      const std::filesystem::path& path) {
+  const auto same =
+      std::find_if(maps.begin(), maps.end(), [&](const std::string& map) { return is_same_map(path, map); });
+  if (same != maps.end()) return *same;
+  return std::find(maps.begin(), maps.end(), name) == maps.end() ? std::nullopt : std::optional(name);
 }
 
 /// What to write in place of so many degrees.
@@ -36,21 +33,40 @@ std::string in_radians(double degrees) {
                      normalize_angle(degrees * std::numbers::pi / 180.0));
 }
 
-void fix(const KnownPoseOptions& options, const std::vector<std::string>& maps,
-         std::vector<std::optional<KnownPose>>& known) {
-  std::set<std::size_t> fixed;
-  for (const std::string& name : options.fix) {
-    const std::optional<std::size_t> map = find_map(maps, name, name);
-    if (!map) throw std::runtime_error(fmt::format("--fix {}: is none of the maps", escape_controls(name)));
-    fixed.insert(*map);
+std::map<std::string, GivenPose> read_table(const std::string& table, const MapNamer& name_of,
+                                            Console& console) {
+  std::map<std::string, GivenPose> given;
+  for (const InitialPose& pose : read_initial_poses(table)) {
+    const std::optional<std::string> map = name_of(pose.name, pose.path);
+    if (!map) throw FileError(table, "'" + pose.name + "' is none of the maps to be merged");
+    const KnownPose known{pose.T_world_map, pose.sd, pose.sd_theta, false};
+    if (!given.emplace(*map, GivenPose{known, pose.theta_as_written}).second)
+      throw FileError(table, "'" + pose.name + "' is a map that it named before");
+    if (std::abs(pose.theta_as_written) > 2.0 * std::numbers::pi)
+      console.warn(fmt::format("{}: theta of {} is {}, more than a turn: it must be in radians{}", table,
+                               pose.name, pose.theta_as_written, in_radians(pose.theta_as_written)));
   }
-  for (const std::size_t map : fixed) {
-    // A single map holds its own frame; how several lie to each other has to be said.
-    if (!known[map] && (fixed.size() > 1 || !options.init.empty()))
-      throw std::runtime_error(
-          fmt::format("--fix {}: needs a pose in a table that --init names", escape_controls(maps[map])));
-    if (!known[map]) known[map] = KnownPose{};
-    known[map]->fixed = true;
+  return given;
+}
+
+std::runtime_error wrong_fix(const std::string& map, const char* cause) {
+  return std::runtime_error(fmt::format("--fix {}: {}", escape_controls(map), cause));
+}
+
+void fix(const KnownPoseOptions& options, const MapNamer& name_of, std::map<std::string, GivenPose>& given) {
+  std::vector<std::string> fixed;
+  for (const std::string& name : options.fix) {
+    const std::optional<std::string> map = name_of(name, name);
+    if (!map) throw wrong_fix(name, "is none of the maps");
+    if (std::find(fixed.begin(), fixed.end(), *map) != fixed.end()) throw wrong_fix(*map, "is named twice");
+    fixed.push_back(*map);
+  }
+  // A single map holds its own frame; how several lie to each other has to be said.
+  const bool needs_poses = fixed.size() > 1 || !options.init.empty();
+  for (const std::string& map : fixed) {
+    if (needs_poses && !given.contains(map))
+      throw wrong_fix(map, "needs a pose in a table that --init names");
+    given[map].pose.fixed = true;
   }
 }
 
@@ -73,23 +89,26 @@ void add_known_pose_options(CLI::App& command, KnownPoseOptions& options) {
       ->allow_extra_args(false);  // or it would take the maps behind it
 }
 
+std::map<std::string, GivenPose> read_given_poses(const KnownPoseOptions& options, const MapNamer& name_of,
+                                                  Console& console) {
+  std::map<std::string, GivenPose> given;
+  if (!options.init.empty()) given = read_table(options.init, name_of, console);
+  fix(options, name_of, given);
+  return given;
+}
+
 KnownPoses::KnownPoses(const KnownPoseOptions& options, const std::vector<std::string>& maps,
                        Console& console)
     : table_(options.init), names_(maps), poses_(maps.size()) {
-  if (!options.init.empty()) {
-    for (const InitialPose& pose : read_initial_poses(options.init)) {
-      const std::optional<std::size_t> map = find_map(maps, pose.name, pose.path);
-      if (!map) throw FileError(options.init, "'" + pose.name + "' is none of the maps to be merged");
-      if (poses_[*map]) throw FileError(options.init, "'" + pose.name + "' is a map that it named before");
-      poses_[*map] = KnownPose{pose.T_world_map, pose.sd, pose.sd_theta, false};
-      written_[*map] = pose.theta_as_written;
-      if (std::abs(pose.theta_as_written) > 2.0 * std::numbers::pi)
-        console.warn(fmt::format("{}: theta of {} is {}, more than a turn: it must be in radians{}",
-                                 options.init, pose.name, pose.theta_as_written,
-                                 in_radians(pose.theta_as_written)));
-    }
+  const auto name_of = [&](const std::string& name, const std::filesystem::path& path) {
+    return name_among(maps, name, path);
+  };
+  for (const auto& [name, given] : read_given_poses(options, name_of, console)) {
+    // Of a map that is given twice the first one counts.
+    const auto map = static_cast<std::size_t>(std::find(maps.begin(), maps.end(), name) - maps.begin());
+    poses_[map] = given.pose;
+    if (given.theta_as_written) written_[map] = *given.theta_as_written;
   }
-  fix(options, maps, poses_);
 }
 
 std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps,

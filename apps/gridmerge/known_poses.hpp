@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <cstddef>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,18 +19,32 @@ namespace gridmerge::cli {
 /// What the command line says of where maps lie.
 struct KnownPoseOptions {
   std::string init;              // file of initial poses
-  std::vector<std::string> fix;  // maps, as the command line names them
+  std::vector<std::string> fix;  // maps or robots, as the command line names them
 };
 
-/// --init and --fix.
+/// --init and --fix, of maps that are given as files.
 void add_known_pose_options(CLI::App& command, KnownPoseOptions& options);
+
+/// What the command line says of one map.
+struct GivenPose {
+  KnownPose pose;
+  std::optional<double> theta_as_written;  // in the table, if that names the map
+};
+
+/// The one name of the map that is called so, or that lies at this path; none if there is no such map.
+using MapNamer =
+    std::function<std::optional<std::string>(const std::string& name, const std::filesystem::path& path)>;
+
+/// What --init and --fix say, by the names that `name_of` gives. Throws FileError when the file is no table
+/// of poses, or names no map or one a second time. Throws std::runtime_error when a map that is to be fixed
+/// is not there, is named twice, or needs a pose and has none. Warns of angles that look like degrees.
+std::map<std::string, GivenPose> read_given_poses(const KnownPoseOptions& options, const MapNamer& name_of,
+                                                  Console& console);
 
 /// What is known beforehand of where the maps lie.
 class KnownPoses {
  public:
-  /// Throws FileError when the file is no table of poses or names a map that is not among `maps`, and
-  /// std::runtime_error when a map that is to be fixed is not, or needs a pose and has none. Warns of angles
-  /// that look like degrees.
+  /// Of `maps`, as the command line names them. Throws and warns as read_given_poses().
   KnownPoses(const KnownPoseOptions& options, const std::vector<std::string>& maps, Console& console);
 
   /// For each map, as merge() takes it.

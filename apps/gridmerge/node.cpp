@@ -46,7 +46,7 @@ int run_node(const NodeCommandOptions& options) {
   try {
     validate(node_options);
   } catch (const std::invalid_argument& error) {  // the rest was looked at before
-    throw FileError(options.init, error.what());
+    throw FileError(options.known.init, error.what());
   }
   node_options.played = played_topics(options, node_options, console);
   const auto tell = [&](const std::string& line) {

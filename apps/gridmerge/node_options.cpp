@@ -9,14 +9,12 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "gridmerge/bag/bag.hpp"
 #include "gridmerge/io/file_error.hpp"
-#include "gridmerge/io/initial_poses.hpp"
 
 namespace gridmerge::cli {
 
@@ -87,10 +85,8 @@ const std::map<std::string, TransformTopic>& transform_topics() {
   return topics;
 }
 
-}  // namespace
-
-void add_node_options(CLI::App& command, NodeCommandOptions& options) {
-  RosNodeOptions& node = options.node;
+/// --pattern and --robot: whom it hears.
+void add_robot_options(CLI::App& command, NodeCommandOptions& options) {
   command
       .add_option(
           "--pattern", options.patterns,
@@ -107,19 +103,28 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
       ->type_name("NAME=TOPIC")
       ->allow_extra_args(false)
       ->check(kNamedTopic);
+}
+
+/// --init and --fix, of robots.
+void add_robot_pose_options(CLI::App& command, NodeCommandOptions& options) {
   command
       .add_option(
-          "--init", options.init,
+          "--init", options.known.init,
           "Poses that you know, of some or all robots' map frames: a table (TSV) with the columns map x y "
           "theta, where map is the robot's name, as of 'gridmerge merge'")
       ->type_name("FILE");
   command
       .add_option(
-          "--fix", options.fix,
+          "--fix", options.known.fix,
           "Keep this robot's map where it is. The merged map takes its frame, or that of --init, if given. "
           "Repeat it for others. Each of several needs a pose in --init")
       ->option_text("ROBOT")
       ->allow_extra_args(false);
+}
+
+/// What it publishes under which name, and where.
+void add_published_options(CLI::App& command, NodeCommandOptions& options) {
+  RosNodeOptions& node = options.node;
   command
       .add_option("--world", node.world_frame,
                   "The frame of the merged map; further merged maps have it with _2, _3, ...")
@@ -145,6 +150,11 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
       ->type_name("WHERE")
       ->check(CLI::IsMember(transform_topics()).description(""))
       ->capture_default_str();
+}
+
+/// How maps are merged.
+void add_merge_options(CLI::App& command, NodeCommandOptions& options) {
+  RosNodeOptions& node = options.node;
   command
       .add_option("--accept", options.search.accept,
                   fmt::format("Probability from which on two maps are joined; {} if not given",
@@ -164,6 +174,11 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
                   "Metres per cell of the merged map; if not given, those of the finest map")
       ->type_name("METRES")
       ->check(kMetresPerCell);
+}
+
+/// --bag and --rate: recordings.
+void add_bag_options(CLI::App& command, NodeCommandOptions& options) {
+  RosNodeOptions& node = options.node;
   CLI::Option* bag =
       command
           .add_option(
@@ -177,6 +192,10 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
       ->check(kPositiveRate)
       ->needs(bag)
       ->capture_default_str();
+}
+
+/// --page and --page-address.
+void add_page_options(CLI::App& command, NodeCommandOptions& options) {
   CLI::Option* page = command
                           .add_option("--page", options.page,
                                       "Serve a report page that follows along at this port; 0 = a free one")
@@ -190,6 +209,11 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
       ->check(kOneAddress)
       ->needs(page)
       ->capture_default_str();
+}
+
+/// --once and --wait: when it ends by itself.
+void add_end_options(CLI::App& command, NodeCommandOptions& options) {
+  RosNodeOptions& node = options.node;
   command.add_flag(
       "--once", node.once,
       "End when the maps of all robots that are there are merged; the exit code is that of 'merge'");
@@ -200,6 +224,18 @@ void add_node_options(CLI::App& command, NodeCommandOptions& options) {
           "which waits so long for further robots too")
       ->type_name("SECONDS")
       ->check(kNotNegative);
+}
+
+}  // namespace
+
+void add_node_options(CLI::App& command, NodeCommandOptions& options) {
+  add_robot_options(command, options);
+  add_robot_pose_options(command, options);
+  add_published_options(command, options);
+  add_merge_options(command, options);
+  add_bag_options(command, options);
+  add_page_options(command, options);
+  add_end_options(command, options);
   add_common_options(command, options.common);
 }
 
@@ -212,7 +248,7 @@ RosNodeOptions to_node_options(const NodeCommandOptions& options) {
     if (!node.robots.emplace(robot.substr(0, at), robot.substr(at + 1)).second)
       throw CLI::ValidationError("--robot", "names the robot " + robot.substr(0, at) + " twice");
   }
-  for (const std::string& robot : options.fix) node.known_poses[robot].fixed = true;
+  for (const std::string& robot : options.known.fix) node.known_poses[robot].fixed = true;
   node.transforms = transform_topics().at(options.transforms);
   node.team.merge.match = match_options(options.common, options.search);
   try {
@@ -250,23 +286,12 @@ std::vector<PlayedTopic> played_topics(const NodeCommandOptions& options, const 
 }
 
 std::map<std::string, KnownPose> known_robot_poses(const NodeCommandOptions& options, Console& console) {
+  const auto name_of = [](const std::string& name, const std::filesystem::path&) {
+    return std::optional(name);  // robots may come that nobody has heard of
+  };
   std::map<std::string, KnownPose> known;
-  if (!options.init.empty()) {
-    for (const InitialPose& pose : read_initial_poses(options.init)) {
-      known[pose.name] = KnownPose{pose.T_world_map, pose.sd, pose.sd_theta, false};
-      if (std::abs(pose.theta_as_written) > 2.0 * std::numbers::pi)
-        console.warn(fmt::format("{}: theta of {} is {}, more than a turn: it must be in radians",
-                                 options.init, pose.name, pose.theta_as_written));
-    }
-  }
-  // A single robot holds its own frame; how several lie to each other has to be said.
-  const bool needs_poses = options.fix.size() > 1 || !options.init.empty();
-  for (const std::string& robot : options.fix) {
-    if (needs_poses && !known.contains(robot))
-      throw std::runtime_error(
-          fmt::format("--fix {}: needs a pose in a table that --init names", escape_controls(robot)));
-    known[robot].fixed = true;
-  }
+  for (const auto& [robot, given] : read_given_poses(options.known, name_of, console))
+    known[robot] = given.pose;
   return known;
 }
 

@@ -9,6 +9,7 @@
 
 #include "console.hpp"
 #include "gridmerge/dds/ros_node.hpp"
+#include "known_poses.hpp"
 #include "options.hpp"
 #include "search_options.hpp"
 
@@ -19,8 +20,7 @@ struct NodeCommandOptions {
   CommonOptions common;
   std::vector<std::string> patterns;
   std::vector<std::string> robots;  // NAME=TOPIC
-  std::string init;                 // file of initial poses
-  std::vector<std::string> fix;     // robots
+  KnownPoseOptions known;           // of robots
   std::vector<std::string> bags;    // files and folders that are played
   std::string transforms = "static";
   std::optional<int> page;  // port of the page that follows along
@@ -40,8 +40,7 @@ RosNodeOptions to_node_options(const NodeCommandOptions& options);
 std::vector<PlayedTopic> played_topics(const NodeCommandOptions& options, const RosNodeOptions& node,
                                        Console& console);
 
-/// What --init and --fix say. Throws FileError or std::runtime_error for poses that cannot be used. Warns of
-/// angles that look like degrees.
+/// What --init and --fix say. Throws and warns as read_given_poses().
 std::map<std::string, KnownPose> known_robot_poses(const NodeCommandOptions& options, Console& console);
 
 }  // namespace gridmerge::cli

@@ -20,7 +20,7 @@ JoinProblem campus(std::size_t maps) {
   JoinProblem problem;
   std::vector<SE2> T_world_map;
   for (std::size_t i = 0; i < maps; ++i) {
-    problem.maps.push_back({{0.0, 0.0}, 10.0, 30.0});
+    problem.maps.push_back({{{0.0, 0.0}, 10.0, 30.0}});
     T_world_map.push_back({uniform(-20.0, 20.0), uniform(-20.0, 20.0), uniform(-3.0, 3.0)});
   }
   for (std::size_t a = 0; a < maps; ++a) {

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
+#include "grid/cell_limit.hpp"
 #include "grid/equal_grids.hpp"
 #include "gridmerge/grid/message_values.hpp"
 #include "worker.hpp"
@@ -23,8 +24,6 @@ using Input = nb::ndarray<const Value, nb::ndim<2>, nb::device::cpu>;
 using Percentages = Input<std::int8_t>;
 using Cells = Input<std::uint8_t>;
 using Probabilities = Input<float>;
-
-constexpr std::size_t kMaxCells = std::size_t{1} << 28;
 
 constexpr std::int8_t kUnknown = -1;
 constexpr std::int8_t kFree = 0;
@@ -45,8 +44,9 @@ OccupancyGrid frame(const char* name, const Input<Value>& values, double resolut
   const std::size_t height = values.shape(0), width = values.shape(1);
   const std::string shape = "its shape is (" + std::to_string(height) + ", " + std::to_string(width) + ")";
   if (height == 0 || width == 0) throw std::invalid_argument(name + (": has no cells: " + shape));
-  if (height > kMaxCells / width)
-    throw std::invalid_argument(name + (": has more than " + std::to_string(kMaxCells) + " cells: " + shape));
+  if (height > internal::kMaxGridCells / width)
+    throw std::invalid_argument(
+        name + (": has more than " + std::to_string(internal::kMaxGridCells) + " cells: " + shape));
   OccupancyGrid grid;
   grid.width = static_cast<int>(width);
   grid.height = static_cast<int>(height);

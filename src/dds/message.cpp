@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "grid/cell_limit.hpp"
 #include "gridmerge/grid/message_values.hpp"
 
 namespace gridmerge::internal {
@@ -27,7 +28,7 @@ OccupancyGrid read_cells(std::uint32_t width, std::uint32_t height, double resol
   if (width == 0 || height == 0) throw RefusedMessage(fmt::format("a size of {} x {} cells", width, height));
   // Of two numbers of 32 bits, so the product does not overflow.
   const std::uint64_t size = std::uint64_t{width} * height;
-  if (size > kMaxCells) throw RefusedMessage(fmt::format("{} x {} cells are above 2^28", width, height));
+  if (size > kMaxGridCells) throw RefusedMessage(fmt::format("{} x {} cells are above 2^28", width, height));
   if (data.size() != size)
     throw RefusedMessage(fmt::format("{} values for {} x {} cells", data.size(), width, height));
   const auto wrong = std::find_if(data.begin(), data.end(),

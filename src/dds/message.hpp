@@ -69,15 +69,13 @@ struct HeardPart {
   OccupancyGrid grid;  // of resolution 1 and without an origin: both are the whole map's
 };
 
-/// A message's map can have as many cells as a map file.
-inline constexpr std::size_t kMaxCells = std::size_t{1} << 28;
 /// An origin [m] beyond this is no robot's.
 inline constexpr double kFarthestOrigin = 1e7;
 inline constexpr std::size_t kLongestFrame = 255;
 
 /// The resolution is the shortest decimal number that the message's can mean, 0.05 say, as map files have it.
 /// Cells are free up to 19 percent and occupied from 65 on, as nav2 reads map files. Throws RefusedMessage
-/// for sizes that are 0, above kMaxCells or not those of the data; for a resolution that no map file may
+/// for sizes that are 0, above kMaxGridCells or not those of the data; for a resolution that no map file may
 /// have; for an origin that is not finite, too far off or not level; for cells outside -1 to 100; and for a
 /// frame that TF could not name. O(cells).
 HeardMap read_map(const MapSample& message);

@@ -22,6 +22,7 @@
 #include "dds/publisher.hpp"
 #include "dds/selection.hpp"
 #include "dds/status.hpp"
+#include "grid/cell_limit.hpp"
 
 namespace gridmerge {
 
@@ -110,7 +111,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
       : options_(completed(std::move(options))),
         selection_(select(options_)),
         environment_(read_ros_environment(process_environment, options_.enclave)),
-        participant_(environment_, kMaxCells + kHeadOfMessage),
+        participant_(environment_, kMaxGridCells + kHeadOfMessage),
         waitset_(dds_create_waitset(participant_.get()), "a wait set"),
         wake_(dds_create_guardcondition(participant_.get()), "a guard condition"),
         publisher_(participant_, options_),

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "grid/box.hpp"
+#include "grid/cell_limit.hpp"
 #include "grid/for_each_equal.hpp"
 #include "grid/multiversion.hpp"
 #include "gridmerge/grid/cancellation.hpp"
@@ -18,8 +19,6 @@
 namespace gridmerge {
 
 namespace {
-
-constexpr double kMaxCells = 268435456.0;  // 2^28
 
 /// Cells to the nearest free one of the column, up to `far`, of a row: by what is known of it, and by what is
 /// known `before` it of the row beside it.
@@ -195,7 +194,7 @@ OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map,
   // The small slack keeps a grid that already fits whole cells from growing by one through rounding.
   const double columns = std::max(1.0, std::ceil((box.max_x - box.min_x) / resolution - 1e-6));
   const double rows = std::max(1.0, std::ceil((box.max_y - box.min_y) / resolution - 1e-6));
-  if (!(columns * rows <= kMaxCells))
+  if (!(columns * rows <= internal::kMaxGridCells))
     throw std::invalid_argument("the transformed map would exceed 2^28 cells");
 
   OccupancyGrid target =

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "grid/cell_limit.hpp"
 #include "io/add_map.hpp"
 #include "io/blaming.hpp"
 #include "io/file_reader.hpp"
@@ -24,6 +25,9 @@ using namespace internal;
 namespace {
 
 constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20;
+
+static_assert(LoadOptions{}.max_cells == kMaxGridCells,
+              "a file may have as many cells as a grid that is made");
 
 NamedBy named_by(const LoadOptions& options) {
   return options.regular_files_only ? NamedBy::file : NamedBy::user;

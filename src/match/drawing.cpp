@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "grid/cell_limit.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/grid/resample.hpp"
 
@@ -18,7 +19,6 @@ namespace {
 constexpr std::array kClosings{0.0, 0.005, 0.01, 0.02, 0.04};
 constexpr double kEnclosed = 0.5;  // share of the walls' bounding box
 constexpr double kUnknownPaper = 0.01;
-constexpr double kMaxRaster = 268435456.0;  // cells: 2^28, as a grid may have
 
 using Distances = std::vector<std::uint16_t>;
 constexpr std::uint16_t kFar = 60000;
@@ -135,7 +135,8 @@ OccupancyGrid with_enclosed_free(const OccupancyGrid& grid) {
     const int reach = static_cast<int>(std::lround(closing * longer_side));
     // Of a long strip the margin is many times the strip.
     const double margins = 2.0 * (reach + 1);
-    if (closing > 0.0 && (reach >= kFar || (walls.width + margins) * (walls.height + margins) > kMaxRaster))
+    if (closing > 0.0 &&
+        (reach >= kFar || (walls.width + margins) * (walls.height + margins) > kMaxGridCells))
       break;
     enclosed = enclose(walls, reach);
     if (static_cast<double>(count_cells(enclosed).known()) >= kEnclosed * box) break;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "grid/longer_side.hpp"
 #include "match/drawn_walls.hpp"
 #include "similarity/wall_lines.hpp"
 
@@ -33,10 +34,6 @@ constexpr double kRankedCells = 60000.0;
 
 int stride_of_counted(const OccupancyGrid& grid) {
   return std::max(1, static_cast<int>(std::sqrt(static_cast<double>(grid.cells.size()) / kRankedCells)));
-}
-
-double longer_side(const OccupancyGrid& grid) {
-  return std::max(grid.width, grid.height) * grid.resolution;
 }
 
 double known_area(const PreparedMap& map) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "grid/longer_side.hpp"
 #include "grid/parallel.hpp"
 #include "match/drawing.hpp"
 #include "match/looks.hpp"
@@ -24,9 +25,6 @@ constexpr double kCellsAlongSide = 800.0;
 constexpr double kCoarsestCell = 0.1;  // [m], unless the maps themselves are coarser
 /// ...up to where time and memory have to be bounded.
 constexpr double kMaxCellsAlongSide = 4000.0;
-double longer_side(const OccupancyGrid& grid) {
-  return std::max(grid.width, grid.height) * grid.resolution;
-}
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "grid/longer_side.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "match/drawn_walls.hpp"
 #include "match/scaled_pair.hpp"
@@ -46,8 +47,7 @@ class ScaledSearch {
     const PreparedMap smallest = DrawnWalls::scaled(moving, scales.least);
     const double coarsest = std::min(kCoarsestCell, scales.most * moving.known().resolution);
     cell_ = std::max(working_cell(fixed, smallest), coarsest);
-    const double side = std::max(fixed.known().width, fixed.known().height) * fixed.known().resolution;
-    distinct_ = std::max(kMinDistinctCells * cell_, kDistinctShare * side);
+    distinct_ = std::max(kMinDistinctCells * cell_, kDistinctShare * longer_side(fixed.known()));
     const LikelihoodField& walls = DrawnWalls::of(smallest, cell_);
     const PoseMetric in_cells = make_pose_metric(walls);
     const Point2 pivot = walls.T_map_grid * Point2{in_cells.pivot.x * cell_, in_cells.pivot.y * cell_};

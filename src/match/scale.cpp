@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "grid/longer_side.hpp"
 #include "match/scaled_pose.hpp"
 
 namespace gridmerge::internal {
@@ -24,7 +25,7 @@ std::optional<ScaleFound> find_scale(const OccupancyGrid& fixed, const Occupancy
   asked.accept_probability = std::max(options.accept_probability, kMinProbability);
   asked.progress = nullptr;
   asked.search = SearchMethod::quick;  // a hint is not worth more time than the answer took
-  const double side = std::max(moving.width, moving.height) * moving.resolution;
+  const double side = longer_side(moving);
   std::optional<ScaleFound> best;
   for (const double factor : {2.0, 0.5, 2.5, 0.4, 4.0, 0.25, 5.0, 0.2, 10.0, 0.1}) {
     if (factor * side < kMinSide || factor * side > kMaxSide) continue;

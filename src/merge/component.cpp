@@ -30,7 +30,8 @@ std::vector<RelativePose> measured_in(const NodeGroup& group, const JoinProblem&
     const CandidateJoin& candidate = pair.candidates[used.candidate];
     if (candidate.is_known) continue;  // the known poses speak for themselves
     measured.push_back(measured_between(*places[pair.fixed], *places[pair.moving], candidate.T_fixed_moving,
-                                        problem.maps[pair.fixed], problem.maps[pair.moving], candidate.sd));
+                                        problem.maps[pair.fixed].extent, problem.maps[pair.moving].extent,
+                                        candidate.sd));
   }
   return measured;
 }
@@ -48,15 +49,16 @@ double usual_deviation(const std::vector<RelativePose>& measured) {
 }  // namespace
 
 Component make_component(const NodeGroup& group, const JoinProblem& problem,
-                         const ConsistentSet& consistent_set, const MergeInputs& inputs,
+                         const ConsistentSet& consistent_set, const std::vector<MergeInput>& inputs,
                          const MergeOptions& options) {
   std::vector<AlignedMap> maps;
   std::size_t first = 0;  // of the result
   bool is_world = false;
   for (std::size_t i = 0; i < group.size(); ++i) {
-    const std::size_t map = group[i].map;
-    maps.push_back({inputs.prepared[map], group[i].T_group_map, problem.maps[map], inputs.known_poses[map]});
-    if (inputs.index[map] < inputs.index[group[first].map]) first = i;
+    const MergeInput& input = inputs[group[i].map];
+    maps.push_back(
+        {input.prepared, group[i].T_group_map, problem.maps[group[i].map].extent, input.known_pose});
+    if (input.index < inputs[group[first].map].index) first = i;
     is_world = is_world || maps.back().is_fixed();
   }
   const std::vector<RelativePose> measured = measured_in(group, problem, consistent_set);
@@ -83,15 +85,14 @@ Component make_component(const NodeGroup& group, const JoinProblem& problem,
   for (std::size_t i = 0; i < group.size(); ++i) {
     const SE2 T = is_world ? poses[i] : i == first ? SE2{} : T_frame_aligned * poses[i];
     component.members.push_back(
-        {inputs.index[group[i].map], T, group[i].probability, deviations[i], deformations[i]});
+        {inputs[group[i].map].index, T, group[i].probability, deviations[i], deformations[i]});
   }
   std::vector<PlacedMap> placed;
   for (std::size_t i = 0; i < group.size(); ++i)
-    placed.push_back({inputs.grids[group[i].map], component.members[i].T_component_map});
+    placed.push_back({inputs[group[i].map].grid, component.members[i].T_component_map});
   std::sort(component.members.begin(), component.members.end(),
             [](const Member& a, const Member& b) { return a.map < b.map; });
-  component.fused =
-      fuse(placed, options.resolution > 0.0 ? options.resolution : finest_resolution(placed), deformations);
+  component.fused = fuse(placed, merged_resolution(options.resolution, placed), deformations);
   return component;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -12,18 +13,19 @@
 
 namespace gridmerge::internal {
 
-/// All maps of a merge in one order, whatever is known of each.
-struct MergeInputs {
-  std::vector<const OccupancyGrid*> grids;
-  std::vector<const PreparedMap*> prepared;
-  std::vector<std::optional<KnownPose>> known_poses;
-  std::vector<std::size_t> index;  ///< of the map in the result
+/// A map of a merge with what is known of it.
+struct MergeInput {
+  std::size_t index;  ///< of the map in the result
+  const OccupancyGrid* grid;
+  const PreparedMap* prepared;
+  std::optional<KnownPose> known_pose;
 };
 
 /// One merged map of the group: its poses adjusted to all that holds it together, in the world's frame if one
-/// of them is fixed and in that of the member with the lowest index if not, and its maps fused.
+/// of them is fixed and in that of the member with the lowest index if not, and its maps fused. `inputs` are
+/// the maps of the problem.
 Component make_component(const NodeGroup& group, const JoinProblem& problem,
-                         const ConsistentSet& consistent_set, const MergeInputs& inputs,
+                         const ConsistentSet& consistent_set, const std::vector<MergeInput>& inputs,
                          const MergeOptions& options);
 
 }  // namespace gridmerge::internal

@@ -19,8 +19,6 @@ void validate(const JoinProblem& problem, double accept_probability) {
   const std::size_t maps = problem.maps.size();
   if (!(accept_probability >= 0.0 && accept_probability <= 1.0))
     throw std::invalid_argument("accept_probability must lie in [0, 1]");
-  if ((!problem.coverage.empty() && problem.coverage.size() != maps) || problem.fixed.size() > maps)
-    throw std::invalid_argument("coverage and fixed poses must be those of the maps");
   for (const PairCandidates& pair : problem.pairs) {
     if (pair.fixed >= pair.moving || pair.moving >= maps)
       throw std::invalid_argument("a pair must be of two maps, the lower index first");

@@ -43,7 +43,7 @@ struct OpenJoin {
 /// that of. Runs in the calling TBB arena. Only groups between which a pair has a candidate are weighed,
 /// and again when one of them changes: see GroupSearch. A join of groups across which p pairs have c
 /// candidates each is weighed in O((p c)^2), but only 50 poses of it in full. Throws std::invalid_argument
-/// for indices, numbers of maps or a probability that make no sense.
+/// for indices or a probability that make no sense.
 ConsistentSet find_consistent_set(const JoinProblem& problem, double accept_probability);
 
 /// The ways to join two groups of a consistent set of the problem that have at least this probability, most

@@ -123,7 +123,7 @@ void add_copies(const std::vector<Copy>& copies, const std::vector<const Occupan
       component->in_world_frame = is_fixed;
       component->members.push_back(
           {copy.original, placed.T_output_map, 1.0, PoseDeviation{}});  // it holds the frame
-      component->fused = fuse({placed}, resolution > 0.0 ? resolution : finest_resolution({placed}));
+      component->fused = fuse({placed}, merged_resolution(resolution, {placed}));
       original = &component->members.front();
     }
     Member member = *original;

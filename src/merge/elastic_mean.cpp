@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grid/longer_side.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match.hpp"
 
@@ -124,10 +125,7 @@ double common_cell(const std::vector<RigidMember>& maps) {
 
 double choose_spacing(const std::vector<RigidMember>& maps) {
   double longest = 0.0;
-  for (const RigidMember& one : maps) {
-    const OccupancyGrid& known = one.map->known();
-    longest = std::max(longest, std::max(known.width, known.height) * known.resolution);
-  }
+  for (const RigidMember& one : maps) longest = std::max(longest, longer_side(one.map->known()));
   return std::max(kLeastSpacing, longest / kSpacingsAlong);
 }
 

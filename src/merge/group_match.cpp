@@ -24,19 +24,19 @@ struct Meeting {
   std::vector<double> key;  // which maps of the group lie how, and which one meets them
 };
 
-std::unique_ptr<PreparedMap> prepare(const NodeGroup& group, const MergeInputs& inputs) {
+std::unique_ptr<PreparedMap> prepare(const NodeGroup& group, const std::vector<MergeInput>& inputs) {
   std::vector<PlacedMap> placed;
-  for (const PlacedNode& node : group) placed.push_back({inputs.grids[node.map], node.T_group_map});
+  for (const PlacedNode& node : group) placed.push_back({inputs[node.map].grid, node.T_group_map});
   return std::make_unique<PreparedMap>(fuse(placed, finest_resolution(placed)).grid);
 }
 
 /// The member that has most in common with a map.
 std::size_t nearest_member(const NodeGroup& group, std::size_t map, const SE2& T_group_map,
-                           const MergeInputs& inputs) {
+                           const std::vector<MergeInput>& inputs) {
   std::size_t nearest = group.front().map;
   double most = -1.0;
   for (const PlacedNode& node : group) {
-    const OccupancyGrid &ours = inputs.prepared[map]->known(), &theirs = inputs.prepared[node.map]->known();
+    const OccupancyGrid &ours = inputs[map].prepared->known(), &theirs = inputs[node.map].prepared->known();
     const SE2 T_map_member = inverse(T_group_map) * node.T_group_map;
     const double in_common = static_cast<double>(count_agreement(ours, theirs, T_map_member).both_known()) *
                              theirs.resolution * theirs.resolution;
@@ -48,8 +48,8 @@ std::size_t nearest_member(const NodeGroup& group, std::size_t map, const SE2& T
 }
 
 /// Puts candidates of the group in the place of those of its members.
-void say(const MatchResult& match, const NodeGroup& group, std::size_t map, const MergeInputs& inputs,
-         JoinProblem& problem) {
+void say(const MatchResult& match, const NodeGroup& group, std::size_t map,
+         const std::vector<MergeInput>& inputs, JoinProblem& problem) {
   const std::vector<CandidateJoin> candidates = candidate_joins(match);  // of the group's frame and the map
   const std::size_t speaker = nearest_member(group, map, match.T_fixed_moving, inputs);
   const auto [first, second] = std::minmax(speaker, map);
@@ -82,7 +82,7 @@ GroupMatches::GroupMatches(const MatchOptions& options) : options_(options) {
 }
 
 JoinProblem GroupMatches::heard(const JoinProblem& problem, const ConsistentSet& consistent_set,
-                                const MergeInputs& inputs, const WorthMeeting& worth_meeting) {
+                                const std::vector<MergeInput>& inputs, const WorthMeeting& worth_meeting) {
   const std::vector<NodeGroup>& groups = consistent_set.groups;
   std::vector<std::pair<std::size_t, std::size_t>> all;
   std::vector<std::size_t> meeting_groups;
@@ -90,7 +90,7 @@ JoinProblem GroupMatches::heard(const JoinProblem& problem, const ConsistentSet&
     if (groups[g].size() < 2) continue;
     const std::size_t before = all.size();
     for (const NodeGroup& other : groups) {
-      if (other.size() == 1 && !inputs.known_poses[other.front().map]) all.emplace_back(g, other.front().map);
+      if (other.size() == 1 && !inputs[other.front().map].known_pose) all.emplace_back(g, other.front().map);
     }
     if (all.size() > before) meeting_groups.push_back(g);
   }
@@ -108,10 +108,10 @@ JoinProblem GroupMatches::heard(const JoinProblem& problem, const ConsistentSet&
   }
   std::vector<Meeting> meetings;
   for (const auto& [g, map] : all) {
-    Key key{static_cast<double>(inputs.index[map])};
+    Key key{static_cast<double>(inputs[map].index)};
     for (const PlacedNode& node : groups[g]) {
       const SE2& T = node.T_group_map;
-      key.insert(key.end(), {static_cast<double>(inputs.index[node.map]), T.x, T.y, T.theta});
+      key.insert(key.end(), {static_cast<double>(inputs[node.map].index), T.x, T.y, T.theta});
     }
     meetings.push_back({g, map, std::move(key)});
   }
@@ -129,7 +129,7 @@ JoinProblem GroupMatches::heard(const JoinProblem& problem, const ConsistentSet&
   }
   parallel_tasks(fresh.size(), [&](std::size_t i) {
     const auto& [meeting, result] = fresh[i];
-    *result = match(*prepared[meeting->group], *inputs.prepared[meeting->map], options_);
+    *result = match(*prepared[meeting->group], *inputs[meeting->map].prepared, options_);
   });
   kept_ = std::move(needed);
 

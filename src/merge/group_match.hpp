@@ -33,7 +33,7 @@ class GroupMatches {
   /// that it does not need are forgotten. Runs in the calling TBB arena. O(maps alone * groups) times
   /// match().
   JoinProblem heard(const JoinProblem& problem, const ConsistentSet& consistent_set,
-                    const MergeInputs& inputs, const WorthMeeting& worth_meeting = {});
+                    const std::vector<MergeInput>& inputs, const WorthMeeting& worth_meeting = {});
 
   /// Of a map that has changed, or of all whose index has.
   void forget() { kept_.clear(); }

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
 
 #include "grid/parallel.hpp"
+#include "merge/disjoint_sets.hpp"
 
 namespace gridmerge::internal {
 
@@ -254,30 +254,17 @@ NodeGroups cut_group(const JoinWeights& weights, NodeGroup group, double keep_pr
 
 /// Maps that candidates or being fixed connect, each part ascending: first that of the lowest map.
 std::vector<std::vector<std::size_t>> connected_maps(const JoinProblem& problem, const JoinWeights& weights) {
-  std::vector<std::size_t> root(problem.maps.size());
-  std::iota(root.begin(), root.end(), std::size_t{0});
-  const auto find = [&](std::size_t map) {
-    while (root[map] != map) map = root[map] = root[root[map]];
-    return map;
-  };
-  const auto unite = [&](std::size_t a, std::size_t b) {
-    const std::size_t first = find(a), second = find(b);
-    root[std::max(first, second)] = std::min(first, second);
-  };
+  DisjointSets maps(problem.maps.size());
   for (const PairCandidates& pair : problem.pairs) {
-    if (!pair.candidates.empty()) unite(pair.fixed, pair.moving);
+    if (!pair.candidates.empty()) maps.unite(pair.fixed, pair.moving);
   }
   std::optional<std::size_t> fixed;
   for (std::size_t map = 0; map < problem.maps.size(); ++map) {
     if (!weights.is_fixed(map)) continue;
-    if (fixed) unite(*fixed, map);
+    if (fixed) maps.unite(*fixed, map);
     fixed = map;
   }
-  std::map<std::size_t, std::vector<std::size_t>> parts;
-  for (std::size_t map = 0; map < problem.maps.size(); ++map) parts[find(map)].push_back(map);
-  std::vector<std::vector<std::size_t>> all;
-  for (auto& [first, maps] : parts) all.push_back(std::move(maps));
-  return all;
+  return maps.all();
 }
 
 }  // namespace
@@ -291,7 +278,7 @@ GroupSearch::GroupSearch(const JoinWeights& weights, const JoinProblem& problem,
     NodeGroup fixed;
     for (const std::size_t map : parts[i]) {
       if (weights.is_fixed(map)) {
-        fixed.push_back({map, *problem.fixed[map]});
+        fixed.push_back({map, *problem.maps[map].T_world_map});
       } else {
         groups.push_back({PlacedNode{map, {}}});
       }

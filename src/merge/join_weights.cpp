@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <utility>
 
 #include "merge/pose_graph.hpp"
@@ -79,8 +78,8 @@ JoinWeights::JoinWeights(const JoinProblem& problem) : problem_(problem), partne
     partners_[pair.moving].push_back({pair.fixed, i});
     std::vector<Mark>& marks = marks_.emplace_back();
     for (const CandidateJoin& candidate : pair.candidates)
-      marks.push_back(mark_of(ManyPointsTransform(candidate.T_fixed_moving), problem.maps[pair.fixed],
-                              problem.maps[pair.moving]));
+      marks.push_back(mark_of(ManyPointsTransform(candidate.T_fixed_moving), problem.maps[pair.fixed].extent,
+                              problem.maps[pair.moving].extent));
   }
   for (std::vector<Partner>& partners : partners_)
     std::sort(partners.begin(), partners.end(),
@@ -142,8 +141,8 @@ std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t in
                                                                   const ManyPointsTransform& T_a_b) const {
   const PairCandidates& pair = problem_.pairs[index];
   const ManyPointsTransform T = pair.fixed == a ? T_a_b : T_a_b.inverse();
-  const MapExtent& fixed = problem_.maps[pair.fixed];
-  const MapExtent& moving = problem_.maps[pair.moving];
+  const MapExtent& fixed = problem_.maps[pair.fixed].extent;
+  const MapExtent& moving = problem_.maps[pair.moving].extent;
   // As difference() to each candidate, without a sine or cosine for each.
   const Mark here = mark_of(T, fixed, moving);
   const double tolerance = agreement_tolerance(fixed, moving);
@@ -167,26 +166,24 @@ std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t in
 JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE2& T_a_b) const {
   std::vector<double> losses;
   std::vector<Witness> witnesses;
-  const bool know_coverage = !problem_.coverage.empty();
   std::vector<ManyPointsTransform> poses_b = poses_of(b);  // in the frame of a
   const ManyPointsTransform from_b(T_a_b);
   for (ManyPointsTransform& pose : poses_b) pose = from_b * pose;
   for (const PlacedNode& in_a : a) {
     const ManyPointsTransform T_a_map(in_a.T_group_map), T_map_a = T_a_map.inverse();
+    const Coverage* of_a = problem_.maps[in_a.map].coverage;
     for (std::size_t i = 0; i < b.size(); ++i) {
       const std::optional<std::size_t> pair = pair_of(in_a.map, b[i].map);
       if (!pair) continue;  // nobody has looked at it: it says nothing, for or against
       const ManyPointsTransform T = T_map_a * poses_b[i];
       const std::optional<Agreement> agreement = find_agreement(*pair, in_a.map, T);
+      const Coverage* of_b = problem_.maps[b[i].map].coverage;
+      const bool know_coverage = of_a != nullptr && of_b != nullptr;
       if (agreement && agreement->worth > 0.0) {
         witnesses.push_back({agreement->worth, {}});
-        if (know_coverage)
-          witnesses.back().places =
-              problem_.coverage[in_a.map]->places_in_common(*problem_.coverage[b[i].map], T, T_a_map);
+        if (know_coverage) witnesses.back().places = of_a->places_in_common(*of_b, T, T_a_map);
       } else {
-        const double share =
-            know_coverage ? problem_.coverage[in_a.map]->share_in_common(*problem_.coverage[b[i].map], T)
-                          : 0.0;
+        const double share = know_coverage ? of_a->share_in_common(*of_b, T) : 0.0;
         const double loss = -kMissNats * std::clamp((share - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
         losses.push_back(agreement ? std::max(loss, agreement->worth) : loss);
       }
@@ -225,30 +222,23 @@ std::vector<UsedCandidate> JoinWeights::used_in(const NodeGroup& group) const {
   return used;
 }
 
-void JoinWeights::unite_fixed(const NodeGroup& group, Labels& labels) const {
+void JoinWeights::unite_fixed(const NodeGroup& group, DisjointSets& places) const {
   std::optional<std::size_t> first;
   for (std::size_t i = 0; i < group.size(); ++i) {
     if (!is_fixed(group[i].map)) continue;
-    if (first) labels.unite(*first, i);
+    if (first) places.unite(*first, i);
     first = i;
   }
 }
 
 NodeGroups JoinWeights::connected(const NodeGroup& group) const {
-  Labels labels(group.size());
-  for (const Edge& edge : edges_of(group)) labels.unite(edge.a, edge.b);
-  unite_fixed(group, labels);
+  DisjointSets places(group.size());
+  for (const Edge& edge : edges_of(group)) places.unite(edge.a, edge.b);
+  unite_fixed(group, places);
   NodeGroups parts;
-  std::vector<std::size_t> first;  // place of each part's first node
-  for (std::size_t i = 0; i < group.size(); ++i) {
-    const auto part =
-        std::find_if(first.begin(), first.end(), [&](std::size_t place) { return labels.same(place, i); });
-    if (part == first.end()) {
-      first.push_back(i);
-      parts.push_back({group[i]});
-    } else {
-      parts[static_cast<std::size_t>(part - first.begin())].push_back(group[i]);
-    }
+  for (const std::vector<std::size_t>& held_together : places.all()) {
+    NodeGroup& part = parts.emplace_back();
+    for (const std::size_t place : held_together) part.push_back(group[place]);
   }
   return parts;
 }
@@ -257,12 +247,12 @@ std::vector<std::pair<NodeGroup, NodeGroup>> JoinWeights::halves(const NodeGroup
   std::vector<Edge> edges = edges_of(group);
   std::stable_sort(edges.begin(), edges.end(),
                    [](const Edge& a, const Edge& b) { return a.agreement.worth > b.agreement.worth; });
-  Labels labels(group.size());
-  unite_fixed(group, labels);
+  DisjointSets places(group.size());
+  unite_fixed(group, places);
   std::vector<Edge> tree;
   for (const Edge& edge : edges) {
-    if (labels.same(edge.a, edge.b)) continue;
-    labels.unite(edge.a, edge.b);
+    if (places.are_one(edge.a, edge.b)) continue;
+    places.unite(edge.a, edge.b);
     tree.push_back(edge);
   }
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> around(
@@ -308,13 +298,13 @@ NodeGroup JoinWeights::adjusted(NodeGroup group) const {
       std::any_of(group.begin(), group.end(), [&](const PlacedNode& node) { return is_fixed(node.map); });
   std::vector<AdjustablePose> poses;
   for (std::size_t i = 0; i < group.size(); ++i)
-    poses.push_back({group[i].T_group_map, problem_.maps[group[i].map].centre,
+    poses.push_back({group[i].T_group_map, problem_.maps[group[i].map].extent.centre,
                      any_fixed ? is_fixed(group[i].map) : i == 0});
   std::vector<RelativePose> measured;
   for (const Edge& edge : edges_of(group)) {
     const PairCandidates& pair = problem_.pairs[edge.agreement.pair];
     const bool in_order = pair.fixed == group[edge.a].map;
-    const MapExtent &fixed = problem_.maps[pair.fixed], &moving = problem_.maps[pair.moving];
+    const MapExtent &fixed = problem_.maps[pair.fixed].extent, &moving = problem_.maps[pair.moving].extent;
     measured.push_back(measured_between(in_order ? edge.a : edge.b, in_order ? edge.b : edge.a,
                                         pair.candidates[edge.agreement.candidate].T_fixed_moving, fixed,
                                         moving, agreement_tolerance(fixed, moving)));

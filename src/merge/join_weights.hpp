@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "merge/disjoint_sets.hpp"
 #include "merge/pair_candidates.hpp"
 
 namespace gridmerge::internal {
@@ -19,21 +19,6 @@ using NodeGroups = std::vector<NodeGroup>;
 /// thinks of it: the dozen candidates of an unrelated pair are spread over thousands of square metres and a
 /// turn, but walls are parallel nearly everywhere, so that about one in 150 agrees by chance.
 inline constexpr double kPoseNats = 5.0;
-
-/// Labels of places that edges hold together.
-class Labels {
- public:
-  explicit Labels(std::size_t count) : labels_(count) { std::iota(labels_.begin(), labels_.end(), 0); }
-
-  bool same(std::size_t a, std::size_t b) const { return labels_[a] == labels_[b]; }
-  void unite(std::size_t a, std::size_t b) {
-    const std::size_t from = labels_[b], to = labels_[a];
-    std::replace(labels_.begin(), labels_.end(), from, to);
-  }
-
- private:
-  std::vector<std::size_t> labels_;
-};
 
 /// What it is worth to two groups of maps to lie together so [nats].
 struct JoinWorth {
@@ -61,9 +46,7 @@ class JoinWeights {
   std::vector<std::size_t> partners_of(std::size_t map) const;
 
   /// Whether the map's pose is the truth, whatever pairs say.
-  bool is_fixed(std::size_t map) const {
-    return map < problem_.fixed.size() && problem_.fixed[map].has_value();
-  }
+  bool is_fixed(std::size_t map) const { return problem_.maps[map].T_world_map.has_value(); }
 
   /// The ways to join two groups that some candidate proposes, most is said for the first.
   std::vector<WeighedJoin> ways_to_join(const NodeGroup& a, const NodeGroup& b) const;
@@ -146,7 +129,7 @@ class JoinWeights {
   /// In the order of the places. O(maps + pairs of the smaller group's maps).
   std::vector<Across> pairs_across(const NodeGroup& a, const NodeGroup& b) const;
   static std::vector<ManyPointsTransform> poses_of(const NodeGroup& group);
-  void unite_fixed(const NodeGroup& group, Labels& labels) const;
+  void unite_fixed(const NodeGroup& group, DisjointSets& places) const;
   std::vector<WeighedJoin> ways_of_pair(const PlacedNode& a, const PlacedNode& b) const;
   /// The distinct ways that candidates propose, their probabilities not told. A way that is worth less than
   /// the best one by more than `margin` may be missing; all are, if none can be worth more than `least`

@@ -30,6 +30,10 @@ double finest_resolution(const std::vector<PlacedMap>& maps) {
       ->map->resolution;
 }
 
+double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps) {
+  return asked_for > 0.0 ? asked_for : finest_resolution(maps);
+}
+
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match) {
   Join join;
   join.fixed = fixed;

@@ -16,7 +16,10 @@ namespace gridmerge::internal {
 void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution);
 
 /// The resolution of the finest of these maps, of which there must be one.
-GRIDMERGE_INTERNAL_EXPORT double finest_resolution(const std::vector<PlacedMap>& maps);
+double finest_resolution(const std::vector<PlacedMap>& maps);
+
+/// The resolution of a merged map of these: the one that is asked for, or the finest of theirs if that is 0.
+GRIDMERGE_INTERNAL_EXPORT double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps);
 
 /// A join that means what its own verdict says.
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match);

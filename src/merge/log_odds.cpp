@@ -9,14 +9,13 @@
 #include <tuple>
 
 #include "grid/box.hpp"
+#include "grid/cell_limit.hpp"
 #include "grid/parallel.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 
 namespace gridmerge::internal {
 
 namespace {
-
-constexpr double kMaxCells = 268435456.0;  // 2^28
 
 // Positions are compared with cell boundaries with this slack [cells]: far above rounding noise, far below
 // what shows. A centre that lies on a boundary but for noise then always falls to the same side, so no row of
@@ -364,7 +363,8 @@ Lattice cover(const std::vector<PlacedMap>& inputs, double resolution,
   const Point2 corner{snap(box.min_x, anchor.x), snap(box.min_y, anchor.y)};
   const double columns = std::max(1.0, std::ceil((box.max_x - corner.x) / resolution - kSlack));
   const double rows = std::max(1.0, std::ceil((box.max_y - corner.y) / resolution - kSlack));
-  if (!(columns * rows <= kMaxCells)) throw std::invalid_argument("the merged map would exceed 2^28 cells");
+  if (!(columns * rows <= kMaxGridCells))
+    throw std::invalid_argument("the merged map would exceed 2^28 cells");
   return {static_cast<int>(columns), static_cast<int>(rows), resolution, corner};
 }
 

@@ -110,13 +110,13 @@ std::vector<std::size_t> MapStore::places_of(const std::vector<MapId>& maps) con
   return places;
 }
 
-MergeInputs MapStore::inputs_of(const std::vector<MapId>& maps) const {
-  MergeInputs inputs;
-  inputs.index = places_of(maps);
-  for (const MapId id : maps) {
-    inputs.grids.push_back(at(id).grid.get());
-    inputs.prepared.push_back(&at(id).prepared);
-    inputs.known_poses.push_back(known_pose(id));
+std::vector<MergeInput> MapStore::inputs_of(const std::vector<MapId>& maps) const {
+  const std::vector<std::size_t> index = places_of(maps);
+  std::vector<MergeInput> inputs;
+  inputs.reserve(maps.size());
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const Input& input = at(maps[i]);
+    inputs.push_back({index[i], input.grid.get(), &input.prepared, known_pose(maps[i])});
   }
   return inputs;
 }

@@ -62,7 +62,7 @@ class MapStore {
   /// Where each of these maps stands among all in the order in which they were added.
   std::vector<std::size_t> places_of(const std::vector<MapId>& maps) const;
 
-  MergeInputs inputs_of(const std::vector<MapId>& maps) const;
+  std::vector<MergeInput> inputs_of(const std::vector<MapId>& maps) const;
 
  private:
   MapId next_ = 0;

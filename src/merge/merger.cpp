@@ -218,7 +218,7 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
 
   /// Maps that still lie alone are matched with each group, as long as that places more of them.
   Solution hear_groups(const std::vector<MapId>& maps, Solution solution) {
-    const MergeInputs inputs = store_.inputs_of(maps);
+    const std::vector<MergeInput> inputs = store_.inputs_of(maps);
     GroupMatches::WorthMeeting worth_meeting;
     if (!choice_.takes_all(maps.size()))
       worth_meeting = [&](const auto& groups, const auto& meetings) {

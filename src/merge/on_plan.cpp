@@ -45,7 +45,7 @@ Component component_of(const std::vector<OnPlan>& hung, const PlanInputs& inputs
     placed.push_back(one);
     deformations.push_back(member.deformation);
   }
-  component.fused = fuse(placed, resolution > 0.0 ? resolution : finest_resolution(placed), deformations);
+  component.fused = fuse(placed, merged_resolution(resolution, placed), deformations);
   return component;
 }
 

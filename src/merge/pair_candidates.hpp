@@ -26,15 +26,19 @@ struct PairCandidates {
   std::vector<CandidateJoin> candidates;  ///< distinct; none if nothing speaks for the pair
 };
 
+/// What is known of one map by itself.
+struct ProblemMap {
+  MapExtent extent;
+  /// Where it knows anything. Without it the map is thought to have nothing in common with others, and each
+  /// of its pairs is thought to speak of other places than the rest.
+  const Coverage* coverage = nullptr;
+  std::optional<SE2> T_world_map = std::nullopt;  ///< if that is the truth, whatever pairs say
+};
+
 /// All that is known of k maps.
 struct JoinProblem {
-  std::vector<MapExtent> maps;
+  std::vector<ProblemMap> maps;
   std::vector<PairCandidates> pairs;  ///< at most one a pair of maps
-  /// Where each map knows anything; without it no two maps are thought to have anything in common, and every
-  /// pair is thought to speak of other places than the rest.
-  std::vector<const Coverage*> coverage;
-  /// Poses in one frame that are the truth, whatever pairs say; may be shorter than `maps`.
-  std::vector<std::optional<SE2>> fixed;
 };
 
 struct PlacedNode {

@@ -52,7 +52,7 @@ std::vector<double> scales_of(const MergePart& part) {
 class PlanProblem {
  public:
   PlanProblem(const PreparedMap& plan, double scale)
-      : scale_(scale), plan_(scaled(plan.known(), scale)), problem_{{plan_.extent()}, {}, {&plan_}, {}} {}
+      : scale_(scale), plan_(scaled(plan.known(), scale)), problem_{{{plan_.extent(), &plan_}}, {}} {}
   PlanProblem(const PlanProblem&) = delete;  // the problem points into it
   PlanProblem& operator=(const PlanProblem&) = delete;
 
@@ -66,8 +66,7 @@ class PlanProblem {
       const std::size_t node = problem_.maps.size();
       if (voice.map) node_of_[*voice.map] = node;
       group.push_back({node, voice.T_part_voice});
-      problem_.maps.push_back(voice.input->coverage.extent());
-      problem_.coverage.push_back(&voice.input->coverage);
+      problem_.maps.push_back({voice.input->coverage.extent(), &voice.input->coverage});
       MatchResult said;
       for (const Hypothesis& one : voice.match.hypotheses) {
         if (one.probability >= kMinCandidateProbability && is_of_scale(one.scale))

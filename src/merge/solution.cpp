@@ -50,11 +50,11 @@ std::vector<Join> make_joins(const MapStore& store, const std::vector<MapId>& ma
   return joins;
 }
 
-void add_components(const MergeInputs& inputs, const Solution& solution, const MergeOptions& options,
-                    MergeResult& result) {
+void add_components(const std::vector<MergeInput>& inputs, const Solution& solution,
+                    const MergeOptions& options, MergeResult& result) {
   for (const NodeGroup& group : solution.consistent_set.groups) {
     if (group.size() == 1) {
-      result.left_out.push_back(left_out(inputs.index[group.front().map], result.joins));
+      result.left_out.push_back(left_out(inputs[group.front().map].index, result.joins));
     } else {
       result.components.push_back(
           make_component(group, solution.problem, solution.consistent_set, inputs, options));
@@ -82,17 +82,17 @@ JoinProblem make_problem(const MapStore& store, const std::vector<MapId>& maps,
   std::map<MapId, std::size_t> place;
   for (const MapId id : maps) {
     place[id] = problem.maps.size();
-    problem.coverage.push_back(&store.at(id).coverage);
-    problem.maps.push_back(store.at(id).coverage.extent());
+    const Coverage& coverage = store.at(id).coverage;
     const std::optional<KnownPose> known = store.known_pose(id);
-    problem.fixed.push_back(known && known->fixed ? std::optional(known->T_world_map) : std::nullopt);
+    problem.maps.push_back({coverage.extent(), &coverage,
+                            known && known->fixed ? std::optional(known->T_world_map) : std::nullopt});
   }
   for (const auto& [fixed, moving] : chosen) {
     const std::size_t a = place.at(fixed), b = place.at(moving);
     PairCandidates pair{a, b, candidate_joins(looks.between(fixed, moving, again))};
     const std::optional<KnownPose> of_a = store.known_pose(fixed), of_b = store.known_pose(moving);
     if (of_a && of_b && !(of_a->fixed && of_b->fixed))
-      apply_known_poses(*of_a, *of_b, problem.maps[a], problem.maps[b], pair);
+      apply_known_poses(*of_a, *of_b, problem.maps[a].extent, problem.maps[b].extent, pair);
     problem.pairs.push_back(std::move(pair));
   }
   // In whatever order they were chosen.

@@ -7,11 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numeric>
 #include <stdexcept>
 
+#include "grid/longer_side.hpp"
 #include "grid/parallel.hpp"
 #include "match/drawn_walls.hpp"
+#include "merge/disjoint_sets.hpp"
 #include "merge/elastic_choice.hpp"
 #include "merge/elastic_mean.hpp"
 
@@ -24,20 +25,13 @@ constexpr double kLeastLattice = 1.0;  // [m]
 constexpr int kMostRoundsOfMean = 20;
 constexpr double kNoStretch = 1e-13;
 
-double longer_side(const OccupancyGrid& map) {
-  return std::max(map.width, map.height) * map.resolution;
-}
-
 /// Of each map the least map of those that pairs connect it with.
 std::vector<std::size_t> parts_of(const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
                                   std::size_t maps) {
+  DisjointSets connected(maps);
+  for (const auto& [first, second] : pairs) connected.unite(first, second);
   std::vector<std::size_t> part(maps);
-  std::iota(part.begin(), part.end(), std::size_t{0});
-  for (const auto& [first, second] : pairs) {
-    const std::size_t kept = std::min(part[first], part[second]),
-                      joined = std::max(part[first], part[second]);
-    std::replace(part.begin(), part.end(), joined, kept);
-  }
+  for (std::size_t map = 0; map < maps; ++map) part[map] = connected.least_of(map);
   return part;
 }
 

@@ -50,8 +50,7 @@ class PairwiseTree {
         result.left_out.push_back(left_out(group.first(), result.joins));
       } else {
         const std::vector<PlacedMap> inputs = placed(group);
-        FusedMap fused =
-            fuse(inputs, options_.resolution > 0.0 ? options_.resolution : finest_resolution(inputs));
+        FusedMap fused = fuse(inputs, merged_resolution(options_.resolution, inputs));
         result.components.push_back({std::move(group.members), std::move(fused)});
       }
     }

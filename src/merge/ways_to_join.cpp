@@ -30,18 +30,18 @@ constexpr double kMinLogOdds = -6.0;
 /// with both.
 constexpr double kDistinct = 2.0;
 
-MapExtent extent_of(const NodeGroup& group, const std::vector<MapExtent>& maps) {
+MapExtent extent_of(const NodeGroup& group, const std::vector<ProblemMap>& maps) {
   MapExtent all;
   for (const PlacedNode& node : group) {
-    const Point2 centre = node.T_group_map * maps[node.map].centre;
+    const Point2 centre = node.T_group_map * maps[node.map].extent.centre;
     all.centre.x += centre.x / static_cast<double>(group.size());
     all.centre.y += centre.y / static_cast<double>(group.size());
-    all.side = std::max(all.side, maps[node.map].side);
+    all.side = std::max(all.side, maps[node.map].extent.side);
   }
   double squares = 0.0;
   for (const PlacedNode& node : group) {
-    const Point2 centre = node.T_group_map * maps[node.map].centre;
-    squares += std::pow(maps[node.map].radius, 2) + std::pow(centre.x - all.centre.x, 2) +
+    const Point2 centre = node.T_group_map * maps[node.map].extent.centre;
+    squares += std::pow(maps[node.map].extent.radius, 2) + std::pow(centre.x - all.centre.x, 2) +
                std::pow(centre.y - all.centre.y, 2);
   }
   all.radius = std::sqrt(squares / static_cast<double>(group.size()));

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <iterator>
-#include <numeric>
 #include <optional>
+
+#include "merge/disjoint_sets.hpp"
 
 namespace gridmerge::internal {
 
@@ -28,22 +29,6 @@ std::optional<SE2> between(const std::vector<RobotGroup>& groups,
   const auto& robots = groups[a->second].robots;
   return inverse(robots.at(first).T_group_map) * robots.at(second).T_group_map;
 }
-
-/// Sets that grow together.
-class Clusters {
- public:
-  explicit Clusters(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-  std::size_t of(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
-  void join(std::size_t a, std::size_t b) { parent_[of(a)] = of(b); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 }  // namespace
 
@@ -91,23 +76,23 @@ void Placements::propose(std::vector<RobotGroup> proposed, const std::set<std::s
   const auto held = places_of(groups_), wanted = places_of(proposed);
 
   // Groups before and groups proposed that have a robot in common are taken or left together.
-  Clusters clusters(groups_.size() + proposed.size());
+  DisjointSets clusters(groups_.size() + proposed.size());
   for (const auto& [robot, group] : wanted) {
     if (const auto before = held.find(robot); before != held.end())
-      clusters.join(before->second, groups_.size() + group);
+      clusters.unite(before->second, groups_.size() + group);
   }
   std::set<std::size_t> has_fresh;
   for (const auto& [robot, group] : held) {
-    if (fresh.contains(robot)) has_fresh.insert(clusters.of(group));
+    if (fresh.contains(robot)) has_fresh.insert(clusters.least_of(group));
   }
   for (const auto& [robot, group] : wanted) {
-    if (fresh.contains(robot)) has_fresh.insert(clusters.of(groups_.size() + group));
+    if (fresh.contains(robot)) has_fresh.insert(clusters.least_of(groups_.size() + group));
   }
 
   std::map<Pair, Contradiction> contradictions;
   std::set<std::size_t> contradicted, confirmed;  // clusters
   for (std::size_t i = 0; i < groups_.size(); ++i) {
-    const std::size_t cluster = clusters.of(i);
+    const std::size_t cluster = clusters.least_of(i);
     const auto& robots = groups_[i].robots;
     for (auto first = robots.begin(); first != robots.end(); ++first) {
       for (auto second = std::next(first); second != robots.end(); ++second) {
@@ -132,7 +117,7 @@ void Placements::propose(std::vector<RobotGroup> proposed, const std::set<std::s
   std::vector<RobotGroup> next;
   is_held_back_ = false;
   const auto stays = [&](std::size_t group) {
-    const std::size_t cluster = clusters.of(group);
+    const std::size_t cluster = clusters.least_of(group);
     return contradicted.contains(cluster) && !confirmed.contains(cluster);
   };
   for (std::size_t i = 0; i < groups_.size(); ++i) {
@@ -145,7 +130,7 @@ void Placements::propose(std::vector<RobotGroup> proposed, const std::set<std::s
   }
   // What was confirmed is no contradiction any more.
   for (auto one = contradictions.begin(); one != contradictions.end();) {
-    const bool is_over = confirmed.contains(clusters.of(held.at(one->first.first)));
+    const bool is_over = confirmed.contains(clusters.least_of(held.at(one->first.first)));
     one = is_over ? contradictions.erase(one) : std::next(one);
   }
   contradictions_ = std::move(contradictions);

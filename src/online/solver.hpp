@@ -96,7 +96,6 @@ class TeamSolver {
   void tell_components(MergeResult result, TeamAnswer& answer) const;
   bool may_hold_copies(const std::vector<std::string>& robots) const;
   FusedMap fuse_once(const std::vector<PlacedMap>& maps) const;
-  double resolution_of(const std::vector<PlacedMap>& maps) const;
   TeamMerge merge_of(MergeResult result) const;
   RobotStatus status_of(const std::string& name, const Robot& robot, const TeamAnswer& answer) const;
   void tell_events(TeamAnswer& answer) const;

@@ -70,11 +70,6 @@ void TeamSolver::tell_components(MergeResult result, TeamAnswer& answer) const {
   answer.merge = std::make_shared<const TeamMerge>(merge_of(std::move(result)));
 }
 
-double TeamSolver::resolution_of(const std::vector<PlacedMap>& maps) const {
-  const double resolution = options_.merge.resolution;
-  return resolution > 0.0 ? resolution : finest_resolution(maps);
-}
-
 /// `result` has the answer's components.
 TeamMerge TeamSolver::merge_of(MergeResult result) const {
   TeamMerge merge;
@@ -163,7 +158,7 @@ void TeamSolver::draw_again(TeamAnswer& answer) const {
     fused.grid = *answer.components[i].map;
     fused = may_hold_copies(answer.components[i].robots)
                 ? fuse_once(now)
-                : fuse_changes(std::move(fused), was, now, resolution_of(now));
+                : fuse_changes(std::move(fused), was, now, merged_resolution(options_.merge.resolution, now));
     answer.components[i].map = std::make_shared<const OccupancyGrid>(std::move(fused.grid));
     fused.grid = {};
   }
@@ -182,7 +177,7 @@ FusedMap TeamSolver::fuse_once(const std::vector<PlacedMap>& maps) const {
   for (const PlacedMap& map : maps) {
     if (!internal::is_placed(map, counted)) counted.push_back(map);
   }
-  return fuse(counted, resolution_of(maps));
+  return fuse(counted, merged_resolution(options_.merge.resolution, maps));
 }
 
 /// Components and poses that were told last, which belong together; of what has changed since, nothing. A map

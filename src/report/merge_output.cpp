@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "grid/cell_limit.hpp"
 #include "grid/parallel.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/io/map_file.hpp"
@@ -103,7 +104,6 @@ void protect(const std::vector<fs::path>& inputs, const fs::path& directory) {
 
 std::optional<double> check_merged_size(const std::vector<std::string>& names,
                                         const std::vector<OccupancyGrid>& maps, double resolution) {
-  constexpr double kMaxCells = 268435456.0;  // 2^28, as fuse() has it
   if (maps.empty()) return std::nullopt;
   double diagonals = 0.0, finest = maps.front().resolution;
   for (const OccupancyGrid& map : maps) {
@@ -114,7 +114,7 @@ std::optional<double> check_merged_size(const std::vector<std::string>& names,
   if (!is_asked_for) resolution = finest;
   // With room to spare, in two digits.
   const auto fitting = [&](double cells) {
-    const double least = resolution * std::sqrt(2.0 * cells / kMaxCells);
+    const double least = resolution * std::sqrt(2.0 * cells / kMaxGridCells);
     const double digit = std::pow(10.0, std::floor(std::log10(least)) - 1.0);
     return std::ceil(least / digit) * digit;
   };
@@ -127,16 +127,16 @@ std::optional<double> check_merged_size(const std::vector<std::string>& names,
           fmt::format("lies too far from zero: with the other maps it may reach beyond {} m", kMaxOrigin));
     const double ratio = map.resolution / resolution;
     double own = static_cast<double>(map.cells.size()) * ratio * ratio;
-    if (own > kMaxCells && count_cells(map).known() > 0)
+    if (own > kMaxGridCells && count_cells(map).known() > 0)
       own = static_cast<double>(crop_to_known(map).cells.size()) * ratio * ratio;
-    if (own > kMaxCells && is_asked_for)
+    if (own > kMaxGridCells && is_asked_for)
       throw FileError(names[i],
                       fmt::format("alone has {:.3g} cells of {:.4g} m, and a merged map may have 2^28: "
                                   "choose an output resolution of {:.2g} m (--output-resolution)",
                                   own, resolution, fitting(own)));
     cells += own;
   }
-  return cells > kMaxCells ? std::optional(fitting(cells)) : std::nullopt;
+  return cells > kMaxGridCells ? std::optional(fitting(cells)) : std::nullopt;
 }
 
 void prepare_merge_output(const fs::path& directory, const std::vector<fs::path>& inputs) {

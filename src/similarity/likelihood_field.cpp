@@ -5,20 +5,19 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 
 #include "grid/for_each_equal.hpp"
 #include "grid/multiversion.hpp"
-#include "grid/unaligned.hpp"
 #include "gridmerge/grid/cancellation.hpp"
+#include "similarity/chamfer.hpp"
 
 namespace gridmerge::internal {
 
 namespace {
 
-constexpr int kMargin = 4;       // cells around the known area, so that distances reach beyond its rim
-constexpr int kSeenReach = 2;    // cells beyond a known one that still count as seen
-constexpr int kChamferStep = 3;  // distance units of one cell
-constexpr int kChamferDiagonal = 4;
+constexpr int kMargin = 4;     // cells around the known area, so that distances reach beyond its rim
+constexpr int kSeenReach = 2;  // cells beyond a known one that still count as seen
 
 constexpr int kFacingReach = 3;  // cells around a wall whose free cells decide which way it faces
 /// The free side must have this share of half the window more than the other.
@@ -32,94 +31,6 @@ constexpr double kAxisFree = 0.3;
 /// apart than this.
 constexpr std::size_t kMinThing = 3;
 constexpr double kLargestThing = 2.5;  // [m]
-
-/// A chamfer distance with a label of the place it was measured to: the label is in the low byte, so that the
-/// smaller of two is the nearer one, and needs no branch.
-using LabelledDistance = std::uint32_t;
-constexpr LabelledDistance kLabels = 256;
-constexpr LabelledDistance kFar = 60000 * kLabels;
-
-constexpr LabelledDistance kStraight = kChamferStep * kLabels;
-constexpr LabelledDistance kDiagonal = kChamferDiagonal * kLabels;
-
-// Eight neighbouring distances of a row.
-using Lanes = LabelledDistance __attribute__((vector_size(32)));
-constexpr int kLanes = sizeof(Lanes) / sizeof(LabelledDistance);
-
-/// What lies `before` them lets no distance be more than one cell farther, and so on through the lanes. Three
-/// steps of one, two and four lanes do what would otherwise take eight, one after the other.
-inline __attribute__((always_inline)) void relax_upwards(Lanes& lanes, const Lanes& before) {
-  const Lanes far = Lanes{} + kFar;
-  Lanes from = __builtin_shufflevector(lanes, far, 8, 0, 1, 2, 3, 4, 5, 6) + kStraight;
-  lanes = lanes < from ? lanes : from;
-  from = __builtin_shufflevector(lanes, far, 8, 9, 0, 1, 2, 3, 4, 5) + 2 * kStraight;
-  lanes = lanes < from ? lanes : from;
-  from = __builtin_shufflevector(lanes, far, 8, 9, 10, 11, 0, 1, 2, 3) + 4 * kStraight;
-  lanes = lanes < from ? lanes : from;
-  from = before + Lanes{1, 2, 3, 4, 5, 6, 7, 8} * kStraight;
-  lanes = lanes < from ? lanes : from;
-}
-
-inline __attribute__((always_inline)) void reverse(Lanes& lanes) {
-  lanes = __builtin_shufflevector(lanes, lanes, 7, 6, 5, 4, 3, 2, 1, 0);
-}
-
-/// row[x] = min(row[x], row[x - 1] + kStraight), for x from 1 to `count` - 1, in this order.
-GRIDMERGE_MULTIVERSION
-void relax_to_the_right(LabelledDistance* row, int count) {
-  int x = 1;
-  Lanes before = Lanes{} + row[0];
-  for (; x + kLanes <= count; x += kLanes) {
-    Lanes lanes;
-    load(row + x, lanes);
-    relax_upwards(lanes, before);
-    store(lanes, row + x);
-    before = __builtin_shufflevector(lanes, lanes, 7, 7, 7, 7, 7, 7, 7, 7);
-  }
-  for (; x < count; ++x) row[x] = std::min(row[x], row[x - 1] + kStraight);
-}
-
-/// row[x] = min(row[x], row[x + 1] + kStraight), for x from `count` - 2 to 0, in this order.
-GRIDMERGE_MULTIVERSION
-void relax_to_the_left(LabelledDistance* row, int count) {
-  int left = count - 1;  // where the done ones begin
-  Lanes before = Lanes{} + row[left];
-  for (; left >= kLanes; left -= kLanes) {
-    Lanes lanes;
-    load(row + left - kLanes, lanes);
-    reverse(lanes);
-    relax_upwards(lanes, before);
-    before = __builtin_shufflevector(lanes, lanes, 7, 7, 7, 7, 7, 7, 7, 7);
-    reverse(lanes);
-    store(lanes, row + left - kLanes);
-  }
-  for (int x = left - 1; x >= 0; --x) row[x] = std::min(row[x], row[x + 1] + kStraight);
-}
-
-/// row[x] = what is nearest of itself and of its three neighbours in the row beside it.
-GRIDMERGE_MULTIVERSION
-void relax_from_row(LabelledDistance* row, const LabelledDistance* beside, int count) {
-  for (int x = 1; x + 1 < count; ++x) {
-    const LabelledDistance diagonal = std::min(beside[x - 1], beside[x + 1]) + kDiagonal;
-    row[x] = std::min(row[x], std::min(beside[x] + kStraight, diagonal));
-  }
-}
-
-/// In place: elsewhere than at the zeros, the chamfer distance to the nearest of them, and its label. The
-/// border must be kFar, and stays it.
-void chamfer_distance(std::vector<LabelledDistance>& distance, int width, int height) {
-  const auto row_at = [&](int y) { return distance.data() + static_cast<std::size_t>(y) * width; };
-  for (int y = 1; y < height; ++y) {
-    throw_if_cancelled();
-    relax_from_row(row_at(y), row_at(y - 1), width);
-    relax_to_the_right(row_at(y), width - 1);
-  }
-  for (int y = height - 2; y >= 0; --y) {
-    throw_if_cancelled();
-    relax_from_row(row_at(y), row_at(y + 1), width);
-    relax_to_the_left(row_at(y) + 1, width - 1);
-  }
-}
 
 /// Marks what lies within kSeenReach of a known cell by the chamfer distance: two cells along a row or a
 /// column, or one diagonally. The border of two cells must not be known.
@@ -261,6 +172,125 @@ void mark_things(LikelihoodField& map, const std::vector<int>& at) {
   }
 }
 
+/// A grid and where its cells lie among those of a field.
+class DrawnGrid {
+ public:
+  DrawnGrid(const OccupancyGrid& grid, const LikelihoodField& map)
+      : grid_(grid), scale_(grid.resolution / map.cell), width_(map.width), cell_x_(grid.width) {
+    for (int column = 0; column < grid.width; ++column)
+      cell_x_[column] = static_cast<int>((column + 0.5) * scale_) + kMargin;
+  }
+
+  const OccupancyGrid& grid() const { return grid_; }
+  int cell_x(std::size_t column) const { return cell_x_[column]; }
+  std::size_t line_of(int row) const {
+    return static_cast<std::size_t>((row + 0.5) * scale_ + kMargin) * width_;
+  }
+
+  /// Where in the field the middle of a grid's row or column lies [cells].
+  float middle(double row_or_column) const {
+    return static_cast<float>((row_or_column + 0.5) * scale_ + kMargin);
+  }
+
+  /// Calls back with the columns of a row's occupied cells.
+  template <typename Visit>
+  void for_each_occupied(int row, Visit visit) const {
+    for_each_equal(grid_.cells.data() + grid_.index(0, row), static_cast<std::size_t>(grid_.width),
+                   Cell::occupied, visit);
+  }
+
+ private:
+  const OccupancyGrid& grid_;
+  double scale_;
+  int width_;
+  std::vector<int> cell_x_;  // by column
+};
+
+/// What a field's cells hold, 0 or 1 each.
+struct CellMarks {
+  std::vector<std::uint8_t> is_known, is_wall, is_free;
+};
+
+CellMarks mark_cells(const DrawnGrid& drawn, std::size_t size) {
+  const OccupancyGrid& grid = drawn.grid();
+  std::vector<std::uint8_t> is_known(size, 0), is_wall(size, 0);
+  for (int row = 0; row < grid.height; ++row) {
+    throw_if_cancelled();
+    const std::size_t line = drawn.line_of(row);
+    const Cell* const cells = grid.cells.data() + grid.index(0, row);
+    for (int column = 0; column < grid.width; ++column)  // no branch: it cannot be foreseen
+      is_known[line + drawn.cell_x(column)] |= static_cast<std::uint8_t>(cells[column] != Cell::unknown);
+    drawn.for_each_occupied(row, [&](std::size_t column) { is_wall[line + drawn.cell_x(column)] = 1; });
+  }
+  std::vector<std::uint8_t> is_free = is_known;
+  for (std::size_t i = 0; i < size; ++i)
+    is_free[i] &= static_cast<std::uint8_t>(is_wall[i] ^ 1);  // a wall hides the free cells in its cell
+  return {std::move(is_known), std::move(is_wall), std::move(is_free)};
+}
+
+/// The walls in the order of their cells, with the way they face. `wall_at` becomes the index of each cell's
+/// wall, and `to_wall`, which must be kFarDistance, the facing where there is one.
+void find_walls(const CellMarks& marks, LikelihoodField& map, std::vector<int>& wall_at,
+                std::vector<LabelledDistance>& to_wall) {
+  const BoxSums free_cells(marks.is_free, map.width, map.height);
+  for (int y = 0; y < map.height; ++y) {
+    throw_if_cancelled();
+    const std::size_t line = static_cast<std::size_t>(y) * map.width;
+    for_each_equal(marks.is_wall.data() + line, static_cast<std::size_t>(map.width), std::uint8_t{1},
+                   [&](std::size_t x) {
+                     std::uint8_t facing = find_side(free_cells, static_cast<int>(x), y);
+                     if (facing == kNoDirection)
+                       facing = find_axis(marks.is_wall, marks.is_free, map.width, static_cast<int>(x), y);
+                     to_wall[line + x] = facing;
+                     wall_at[line + x] = static_cast<int>(map.walls.size());
+                     map.walls.push_back({{}, facing});
+                   });
+  }
+}
+
+/// Puts each wall at the centroid of the occupied cells inside its cell.
+void place_walls(const DrawnGrid& drawn, const std::vector<int>& wall_at, LikelihoodField& map) {
+  std::vector<CellSum> sums(map.walls.size());
+  for (int row = 0; row < drawn.grid().height; ++row) {
+    throw_if_cancelled();
+    const std::size_t line = drawn.line_of(row);
+    const float y = drawn.middle(row);
+    drawn.for_each_occupied(row, [&](std::size_t column) {
+      CellSum& sum = sums[wall_at[line + drawn.cell_x(column)]];
+      sum.x += drawn.middle(static_cast<double>(column));
+      sum.y += y;
+      ++sum.count;
+    });
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const CellSum& sum = sums[i];
+    map.walls[i].position = {static_cast<double>(sum.x) / sum.count, static_cast<double>(sum.y) / sum.count};
+  }
+}
+
+/// What the map says of each place that it has seen, and how often each distance is. `to_wall` is that of
+/// chamfer_distance().
+void fill_places(const std::vector<std::uint8_t>& is_known, const std::vector<LabelledDistance>& to_wall,
+                 LikelihoodField& map) {
+  const std::size_t size = to_wall.size();
+  std::vector<std::uint8_t> is_seen(size, 0);
+  widen(is_known.data(), map.width, map.height, is_seen.data());
+  map.places.resize(size);
+  std::array<std::size_t, kDistanceBins> counts{};
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (is_seen[i] == 0) continue;  // stays unseen
+    const int cells = static_cast<int>(to_wall[i] / kDistanceLabels + kChamferStep / 2) / kChamferStep;
+    const int bin = std::min(cells, kDistanceBins - 1);
+    map.places[i] = {static_cast<std::uint8_t>(bin), static_cast<std::uint8_t>(to_wall[i] % kDistanceLabels)};
+    ++counts[bin];
+    ++seen;
+  }
+  for (int bin = 0; bin < kDistanceBins; ++bin) {  // one more in every bin: no background is ever 0
+    map.background[bin] = static_cast<double>(counts[bin] + 1) / static_cast<double>(seen + kDistanceBins);
+  }
+}
+
 }  // namespace
 
 int steps_of_turn(double theta) {
@@ -271,7 +301,6 @@ int steps_of_turn(double theta) {
 
 LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell) {
   const double scale = grid.resolution / cell;
-
   LikelihoodField map;
   map.cell = cell;
   map.width = static_cast<int>(std::ceil(grid.width * scale)) + 2 * kMargin;
@@ -280,81 +309,15 @@ LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell) {
   map.T_map_grid = {corner.x, corner.y, grid.origin.theta};
 
   const std::size_t size = static_cast<std::size_t>(map.width) * map.height;
-  std::vector<LabelledDistance> to_wall(size, kFar);
-  std::vector<std::uint8_t> is_known(size, 0), is_wall(size, 0);
-  std::vector<int> cell_x(grid.width);
-  for (int column = 0; column < grid.width; ++column)
-    cell_x[column] = static_cast<int>((column + 0.5) * scale) + kMargin;
-  const auto line_of = [&](int row) {
-    return static_cast<std::size_t>((row + 0.5) * scale + kMargin) * map.width;
-  };
-  const auto for_each_occupied = [&](int row, auto visit) {
-    for_each_equal(grid.cells.data() + grid.index(0, row), static_cast<std::size_t>(grid.width),
-                   Cell::occupied, visit);
-  };
-  for (int row = 0; row < grid.height; ++row) {
-    throw_if_cancelled();
-    const std::size_t line = line_of(row);
-    const Cell* const cells = grid.cells.data() + grid.index(0, row);
-    for (int column = 0; column < grid.width; ++column)  // no branch: it cannot be foreseen
-      is_known[line + cell_x[column]] |= static_cast<std::uint8_t>(cells[column] != Cell::unknown);
-    for_each_occupied(row, [&](std::size_t column) { is_wall[line + cell_x[column]] = 1; });
-  }
-  std::vector<std::uint8_t> is_free = is_known;
-  for (std::size_t i = 0; i < size; ++i)
-    is_free[i] &= static_cast<std::uint8_t>(is_wall[i] ^ 1);  // a wall hides the free cells in its cell
-
+  const DrawnGrid drawn(grid, map);
+  const CellMarks marks = mark_cells(drawn, size);
+  std::vector<LabelledDistance> to_wall(size, kFarDistance);
   std::vector<int> wall_at(size, -1);
-  const BoxSums free_cells(is_free, map.width, map.height);
-  for (int y = 0; y < map.height; ++y) {
-    throw_if_cancelled();
-    const std::size_t line = static_cast<std::size_t>(y) * map.width;
-    for_each_equal(is_wall.data() + line, static_cast<std::size_t>(map.width), std::uint8_t{1},
-                   [&](std::size_t x) {
-                     std::uint8_t facing = find_side(free_cells, static_cast<int>(x), y);
-                     if (facing == kNoDirection)
-                       facing = find_axis(is_wall, is_free, map.width, static_cast<int>(x), y);
-                     to_wall[line + x] = facing;
-                     wall_at[line + x] = static_cast<int>(map.walls.size());
-                     map.walls.push_back({{}, facing});
-                   });
-  }
-  std::vector<CellSum> sums(map.walls.size());
-  for (int row = 0; row < grid.height; ++row) {
-    throw_if_cancelled();
-    const std::size_t line = line_of(row);
-    const float y = static_cast<float>((row + 0.5) * scale + kMargin);
-    for_each_occupied(row, [&](std::size_t column) {
-      CellSum& sum = sums[wall_at[line + cell_x[column]]];
-      sum.x += static_cast<float>((static_cast<double>(column) + 0.5) * scale + kMargin);
-      sum.y += y;
-      ++sum.count;
-    });
-  }
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    const CellSum& sum = sums[i];
-    map.walls[i].position = {static_cast<double>(sum.x) / sum.count, static_cast<double>(sum.y) / sum.count};
-  }
-
+  find_walls(marks, map, wall_at, to_wall);
+  place_walls(drawn, wall_at, map);
   mark_things(map, wall_at);
-
   chamfer_distance(to_wall, map.width, map.height);
-  std::vector<std::uint8_t> is_seen(size, 0);
-  widen(is_known.data(), map.width, map.height, is_seen.data());
-  map.places.resize(size);
-  std::array<std::size_t, kDistanceBins> counts{};
-  std::size_t seen = 0;
-  for (std::size_t i = 0; i < size; ++i) {
-    if (is_seen[i] == 0) continue;  // stays unseen
-    const int cells = static_cast<int>(to_wall[i] / kLabels + kChamferStep / 2) / kChamferStep;
-    const int bin = std::min(cells, kDistanceBins - 1);
-    map.places[i] = {static_cast<std::uint8_t>(bin), static_cast<std::uint8_t>(to_wall[i] % kLabels)};
-    ++counts[bin];
-    ++seen;
-  }
-  for (int bin = 0; bin < kDistanceBins; ++bin) {  // one more in every bin: no background is ever 0
-    map.background[bin] = static_cast<double>(counts[bin] + 1) / static_cast<double>(seen + kDistanceBins);
-  }
+  fill_places(marks.is_known, to_wall, map);
   return map;
 }
 

@@ -20,6 +20,8 @@
 #include <cstring>
 #include <new>
 
+#include "../support/own_new.hpp"
+
 extern "C" {
 int __real_main(int argc, char** argv);  // the program's own, by the linker's --wrap
 void* __libc_malloc(size_t size);
@@ -202,47 +204,16 @@ int unlinkat(int at, const char* path, int flags) noexcept {
 }
 }
 
-namespace {
-
-[[noreturn]] void fail_to_allocate() {
-  if (const std::new_handler handler = std::get_new_handler()) handler();
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-// A sanitizer's would not ask malloc().
-void* operator new(std::size_t size) {
-  if (void* const memory = std::malloc(size)) return memory;
-  fail_to_allocate();
-}
-void* operator new[](std::size_t size) {
-  return operator new(size);
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  return std::malloc(size);
-}
-void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+// A sanitizer's operator new would not ask malloc().
+void* gridmerge::test::allocate(std::size_t size) noexcept {
   return std::malloc(size);
 }
 void* operator new(std::size_t size, std::align_val_t alignment) {
   if (void* const memory = memalign(static_cast<std::size_t>(alignment), size)) return memory;
-  fail_to_allocate();
+  gridmerge::test::fail_to_allocate();
 }
 void* operator new[](std::size_t size, std::align_val_t alignment) {
   return operator new(size, alignment);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
   std::free(memory);

@@ -435,6 +435,10 @@ TEST_F(Merge, SaysWhatIsWrongWithInitialPoses) {
   expect_error(run({"merge", left, right, "-o", output, "--fix", other}), other, "none of the maps");
   expect_error(run({"merge", left, right, "-o", output, "--fix", left, "--fix", right}), left,
                "needs a pose");
+  const std::string by_another_way = directory.file("./left.yaml");
+  for (const std::string& again : {left, by_another_way})
+    expect_error(run({"merge", left, right, "-o", output, "--fix", left, "--fix", again}), "--fix " + left,
+                 "is named twice");
 }
 
 TEST_F(Merge, OptionsThatDoNotGoTogetherAreAUsageError) {

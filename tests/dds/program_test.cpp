@@ -223,6 +223,9 @@ TEST_F(NodeProgram, RefusesPosesThatCannotBeUsed) {
   EXPECT_TRUE(has(without_pose.err, "--fix a: needs a pose in a table that --init names"))
       << without_pose.err;
   EXPECT_EQ(run({"node", "--init", directory.file("absent.tsv")}).exit_code, 1);
+  const Outcome twice = run({"node", "--fix", "a", "--fix", "a"});
+  EXPECT_EQ(twice.exit_code, 1);
+  EXPECT_TRUE(has(twice.err, "--fix a: is named twice")) << twice.err;
 }
 
 TEST_F(NodeProgram, NamesAVariableThatRosWouldNotTake) {

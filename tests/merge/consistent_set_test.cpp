@@ -24,7 +24,7 @@ class World {
     std::uniform_real_distribution<double> place(-40.0, 40.0), turn(-3.1, 3.1);
     for (std::size_t i = 0; i < maps; ++i) {
       T_world_map_.push_back({place(random_), place(random_), turn(random_)});
-      problem.maps.push_back({{2.0, -1.0}, 10.0, 30.0});
+      problem.maps.push_back({{{2.0, -1.0}, 10.0, 30.0}});
     }
   }
 
@@ -50,7 +50,8 @@ class World {
   void expect_true(const NodeGroup& group) const {
     for (const PlacedNode& node : group) {
       const SE2 expected = T(group.front().map, node.map);
-      EXPECT_LT(displacement(problem.maps[node.map], node.T_group_map, expected), 0.2) << "map " << node.map;
+      EXPECT_LT(displacement(problem.maps[node.map].extent, node.T_group_map, expected), 0.2)
+          << "map " << node.map;
     }
   }
 
@@ -284,8 +285,9 @@ TEST(ConsistentSet, PosesInACycleShareItsError) {
   world.say(0, 2, 4.0, {0.9, 0.0, 0.0});
   const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
   ASSERT_EQ(consistent_set.groups.size(), 1u);
-  EXPECT_NEAR(displacement(world.problem.maps[2], consistent_set.groups[0][2].T_group_map, world.T(0, 2)),
-              0.6, 0.05);
+  EXPECT_NEAR(
+      displacement(world.problem.maps[2].extent, consistent_set.groups[0][2].T_group_map, world.T(0, 2)), 0.6,
+      0.05);
 }
 
 // Whatever pairs say, the order of the maps must not matter.
@@ -334,7 +336,7 @@ RC_GTEST_PROP(ConsistentSet, OrderOfTheMapsPlaysNoPart, ()) {
     };
     for (const PlacedNode& node : group) {
       const SE2 T = inverse(pose_in(group[0].map)) * pose_in(node.map);
-      RC_ASSERT(displacement(world.problem.maps[node.map], T, node.T_group_map) < 1e-3);
+      RC_ASSERT(displacement(world.problem.maps[node.map].extent, T, node.T_group_map) < 1e-3);
     }
   }
 }
@@ -342,7 +344,7 @@ RC_GTEST_PROP(ConsistentSet, OrderOfTheMapsPlaysNoPart, ()) {
 /// Three pairs of maps, each with one candidate of its own odds.
 JoinProblem three_pairs() {
   JoinProblem problem;
-  problem.maps.assign(6, MapExtent{{0.0, 0.0}, 5.0, 20.0});
+  problem.maps.assign(6, {{{0.0, 0.0}, 5.0, 20.0}});
   for (std::size_t i = 0; i < 3; ++i)
     problem.pairs.push_back(
         {2 * i, 2 * i + 1, {CandidateJoin{{1.0, 0.0, 0.0}, 2.5 + 1.5 * static_cast<double>(i), 0.1}}});

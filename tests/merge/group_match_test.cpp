@@ -41,12 +41,8 @@ class GroupMatchesTest : public testing::Test {
     add(building, {5.0, 0.0, 13.0, 13.0}, {0.0, 4.0, 2.0});
     add(test::draw_building(2), {5.0, 0.0, 13.0, 13.0}, {});
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      problem_.coverage.push_back(&pieces_[i]->coverage);
-      problem_.maps.push_back(pieces_[i]->coverage.extent());
-      inputs_.grids.push_back(&pieces_[i]->grid);
-      inputs_.prepared.push_back(&pieces_[i]->prepared);
-      inputs_.known_poses.emplace_back();
-      inputs_.index.push_back(i);
+      problem_.maps.push_back({pieces_[i]->coverage.extent(), &pieces_[i]->coverage});
+      inputs_.push_back({i, &pieces_[i]->grid, &pieces_[i]->prepared, {}});
       for (std::size_t j = i + 1; j < pieces_.size(); ++j) problem_.pairs.push_back({i, j, {}});
     }
     problem_.pairs.front().candidates.push_back({between(0, 1), 6.0, 0.1});
@@ -64,7 +60,7 @@ class GroupMatchesTest : public testing::Test {
   std::vector<std::unique_ptr<const Piece>> pieces_;
   JoinProblem problem_;
   ConsistentSet consistent_set_;
-  MergeInputs inputs_;
+  std::vector<MergeInput> inputs_;
 };
 
 TEST_F(GroupMatchesTest, PlaceAMapThatFitsTheWholeGroup) {
@@ -73,7 +69,7 @@ TEST_F(GroupMatchesTest, PlaceAMapThatFitsTheWholeGroup) {
   const ConsistentSet after = find_consistent_set(heard, 0.95);
   ASSERT_EQ(after.groups.size(), 2U);
   ASSERT_EQ(after.groups[0].size(), 3U);
-  EXPECT_LT(displacement(problem_.maps[2], after.groups[0][2].T_group_map, between(0, 2)), 0.1);
+  EXPECT_LT(displacement(problem_.maps[2].extent, after.groups[0][2].T_group_map, between(0, 2)), 0.1);
   EXPECT_EQ(after.groups[1].front().map, 3U);
 }
 
@@ -89,7 +85,7 @@ TEST_F(GroupMatchesTest, SpeakOncePerGroup) {
 }
 
 TEST_F(GroupMatchesTest, LeaveMapsAloneOfWhichSomethingIsKnownBeforehand) {
-  inputs_.known_poses[2] = KnownPose{};
+  inputs_[2].known_pose = KnownPose{};
   GroupMatches groups({});
   for (const PairCandidates& pair : groups.heard(problem_, consistent_set_, inputs_).pairs) {
     if (pair.moving == 2) {

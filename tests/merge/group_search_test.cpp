@@ -30,7 +30,7 @@ class LiteralArranger {
     NodeGroup fixed;
     for (std::size_t map = 0; map < problem.maps.size(); ++map) {
       if (weights_.is_fixed(map)) {
-        fixed.push_back({map, *problem.fixed[map]});
+        fixed.push_back({map, *problem.maps[map].T_world_map});
       } else {
         groups_.push_back({PlacedNode{map, {}}});
       }
@@ -236,11 +236,10 @@ JoinProblem drawn(unsigned seed) {
   std::vector<std::size_t> place;
   for (std::size_t i = 0; i < maps; ++i) {
     problem.maps.push_back(
-        {{uniform(-3.0, 3.0), uniform(-3.0, 3.0)}, uniform(6.0, 12.0), uniform(20.0, 30.0)});
+        {{{uniform(-3.0, 3.0), uniform(-3.0, 3.0)}, uniform(6.0, 12.0), uniform(20.0, 30.0)}});
     T_world_map.push_back({uniform(-30.0, 30.0), uniform(-30.0, 30.0), uniform(-3.0, 3.0)});
     place.push_back(random() % 3);
-    problem.fixed.push_back(seed % 4 == 0 && random() % 5 == 0 ? std::optional(T_world_map.back())
-                                                               : std::nullopt);
+    if (seed % 4 == 0 && random() % 5 == 0) problem.maps.back().T_world_map = T_world_map.back();
   }
   for (std::size_t a = 0; a < maps; ++a) {
     for (std::size_t b = a + 1; b < maps; ++b) {

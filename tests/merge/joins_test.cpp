@@ -126,6 +126,12 @@ TEST(FinestResolution, IsTheLeast) {
   EXPECT_EQ(finest_resolution({{&coarse, {}}, {&fine, {}}, {&middle, {}}}), 0.05);
 }
 
+TEST(MergedResolution, IsTheOneAskedForOrTheFinest) {
+  const OccupancyGrid coarse = make_grid(2, 2, 0.2), fine = make_grid(2, 2, 0.05);
+  EXPECT_EQ(merged_resolution(0.3, {{&coarse, {}}, {&fine, {}}}), 0.3);
+  EXPECT_EQ(merged_resolution(0.0, {{&coarse, {}}, {&fine, {}}}), 0.05);
+}
+
 TEST(ValidateMerge, RefusesResolutionsThatMakeNoSense) {
   EXPECT_NO_THROW(validate_merge({}, 0.0));
   EXPECT_NO_THROW(validate_merge({make_grid(1, 1, 0.1)}, 0.3));
