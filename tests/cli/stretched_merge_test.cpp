@@ -165,6 +165,21 @@ TEST_F(StretchedMerge, IsTheSameWithACache) {
   EXPECT_EQ(read_file(output + "/merged.pgm"), pixels);
 }
 
+TEST_F(StretchedMerge, IsTheSameByShards) {
+  const std::string cache = directory.file("matches");
+  for (const char* shard : {"1/2", "2/2", "1/2"})
+    ASSERT_EQ(run({"merge", maps[0], maps[1], maps[2], "--transform", "similarity", "--shard", shard,
+                   "--cache", cache})
+                  .exit_code,
+              0);
+  const Outcome cached = run(merge_call({"--transform", "similarity", "--cache", cache, "--verbose"}));
+  ASSERT_EQ(cached.exit_code, 0) << cached.err;
+  EXPECT_NE((cached.out + cached.err).find(", 0 made"), std::string::npos) << cached.out << cached.err;
+  const std::string found = answer();
+  ASSERT_EQ(run(merge_call({"--transform", "similarity"})).exit_code, 0);
+  EXPECT_EQ(answer(), found);
+}
+
 TEST_F(StretchedMerge, AFixedMapHasTheTrueScale) {
   ASSERT_EQ(run(merge_call({"--transform", "similarity", "--fix", maps[0]})).exit_code, 0);
   const Json found = members();
