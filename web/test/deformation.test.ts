@@ -12,7 +12,7 @@ function anyDeformation(): Deformation {
   const [columns, rows, spacing] = [6, 7, 1.5];
   // Neighbours differ by less than half of their distance: it cannot fold.
   const shifts = Array.from({ length: 2 * columns * rows }, () => random() * 0.36 - 0.18);
-  return { frame: { x: -0.4, y: 0.7, theta: 0.3 }, spacing, columns, rows, shifts };
+  return { kind: "elastic", frame: { x: -0.4, y: 0.7, theta: 0.3 }, spacing, columns, rows, shifts };
 }
 
 test("points are bent and straightened", () => {
