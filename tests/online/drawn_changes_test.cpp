@@ -9,6 +9,7 @@
 #include "explorers.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/merge/fuse.hpp"
+#include "gridmerge/merge/merge.hpp"
 #include "online/robot_map.hpp"
 #include "online/solver.hpp"
 #include "solver_news.hpp"
@@ -203,6 +204,38 @@ TEST(DrawnChangesOfATeam, AreSearchedWhereEveryChangeIs) {
   solver.take(news_of("bert", refurnished(explorers.map(1, 5))));
   solver.solve(Effort::further);
   EXPECT_TRUE(solver.is_settled());
+}
+
+/// While a place is contradicted, small changes confirm that, as others do.
+TEST(DrawnChangesOfATeam, ConfirmWhatContradictsAPlace) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  News news;
+  news["anna"] = map_news(explorers.map(0, 5), 0);
+  solver.take(news);
+  OccupancyGrid map = explorers.map(1, 5);
+  const auto hear = [&] {
+    solver.take(news_of("bert", map));
+    solver.solve(Effort::soon);
+    return status_of(solver.solve(Effort::further), "bert").state == RobotState::placed;
+  };
+  ASSERT_TRUE(hear());
+  // It knows less and less of what they share, until that is too little.
+  const int strip = map.width / 20;
+  for (int column = 0; merge({explorers.map(0, 5), map}).components.size() == 1; column += strip) {
+    ASSERT_TRUE(hear());
+    ASSERT_LT(column, map.width);
+    for (int i = column; i < std::min(column + strip, map.width); ++i) {
+      for (int row = 0; row < map.height; ++row) map.at(i, row) = Cell::unknown;
+    }
+  }
+  ASSERT_TRUE(hear()) << "it is not confirmed yet";
+  int answers = 1;
+  do {
+    map = refurnished(map, 1);
+    ++answers;
+  } while (hear() && answers < 10);
+  EXPECT_LE(answers, TeamOptions().confirmations + 1);
 }
 
 /// A map that is repeated cancels work as any other does. What was not done yet is still to be done.
