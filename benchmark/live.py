@@ -210,8 +210,8 @@ def explore(
     order = [anchor, *(name for name in names if name != anchor)]
     expected = gridmerge.merge([moments[-1][names.index(name)] for name in order])
     largest = next((one for one in expected.components if any(member.map == 0 for member in one.members)), None)
-    same = "-"
-    if largest is not None:
+    same = "no" if answer.components or expected.components else "-"
+    if largest is not None and answer.components:
 
         def is_here() -> bool:
             return bool(merged) and np.array_equal(gridmerge.OccupancyGrid.from_msg(merged[0]).cells, largest.grid.cells)

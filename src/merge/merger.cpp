@@ -131,13 +131,16 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
 
   MergeResult solve(std::size_t most_thorough) {
     MergeResult result;
+    bool are_all_looked_at = false;
+    is_complete_ = false;  // whatever ends this early
     with_threads(options_.match.threads, [&] {
       const std::vector<MapId> all = store_.in_canonical_order();
       const std::vector<Copy> copies = store_.find_copies(all);
       const std::vector<MapId> maps = store_.those_that_count(all, copies);
-      const Solution solution = find_best_solution(maps, most_thorough);
+      const Solution solution = find_best_solution(maps, most_thorough, are_all_looked_at);
       result = make_result(store_, maps, copies, looks_, solution, options_);
     });
+    is_complete_ = are_all_looked_at;
     return result;
   }
 
@@ -195,25 +198,21 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
 
   /// Looks at the chosen pairs quickly, and again at those whose maps that leaves apart: maps that lie in one
   /// component gain little by one more join.
-  /// At most so many pairs are looked at again now: is_complete_ says whether that was all.
-  Solution find_best_solution(const std::vector<MapId>& maps, std::size_t most_thorough) {
-    is_complete_ = false;  // whatever ends this early
+  /// At most so many pairs are looked at again now; says whether that was all.
+  Solution find_best_solution(const std::vector<MapId>& maps, std::size_t most_thorough,
+                              bool& are_all_looked_at) {
     First first = first_ ? *std::exchange(first_, std::nullopt) : *find_first(maps, nullptr);
-    if (!looks_.looks_twice()) {
-      is_complete_ = true;
-      return std::move(first.solution);
-    }
+    are_all_looked_at = !looks_.looks_twice();
+    if (are_all_looked_at) return std::move(first.solution);
     const std::vector<Pair> apart = pairs_for_a_second_look(maps, first);
     std::vector<Pair> due = looks_.due_for_a_second_look(apart);
-    const bool are_all_looked_at = due.size() <= most_thorough;
+    are_all_looked_at = due.size() <= most_thorough;
     due.resize(std::min(due.size(), most_thorough));
     looks_.look_again(due, store_, options_.progress);
     std::set<Pair> again = looks_.seen_again(apart);
     Solution solution =
         again.empty() ? std::move(first.solution) : find_solution(maps, first.chosen, std::move(again));
-    if (are_all_looked_at && !apart.empty()) solution = hear_groups(maps, std::move(solution));
-    is_complete_ = are_all_looked_at;
-    return solution;
+    return are_all_looked_at && !apart.empty() ? hear_groups(maps, std::move(solution)) : solution;
   }
 
   /// Maps that still lie alone are matched with each group, as long as that places more of them.

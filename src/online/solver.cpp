@@ -114,7 +114,7 @@ void TeamSolver::weigh_again(Effort effort, TeamAnswer& answer) {
 }
 
 bool TeamSolver::is_settled() const {
-  if (!pending_.empty() || placements_.is_held_back() || !is_complete()) return false;
+  if (!is_weighed_ || !pending_.empty() || placements_.is_held_back() || !is_complete()) return false;
   return std::all_of(robots_.begin(), robots_.end(),
                      [](const auto& robot) { return robot.second.map == robot.second.searched; });
 }
@@ -146,11 +146,17 @@ void TeamSolver::set_map(const std::string& name, std::shared_ptr<const Occupanc
   Robot& robot = robots_[name];
   if (!robot.id) {
     Weighed weighed = to_be_weighed(map);
+    begin_to_weigh(name);
     const MapId id = merger_.add(*map, robot.known_pose);
-    robot.searched = map;
-    set_weighed(name, robot, std::move(weighed));
-    names_[id] = name;
+    try {
+      names_[id] = name;
+    } catch (...) {
+      merger_.remove(id);
+      throw;
+    }
     robot.id = id;
+    robot.map = robot.searched = std::move(map);
+    robot.weighed = std::move(weighed);
     return;
   }
   if (are_equal(*robot.map, *map)) return;
@@ -165,15 +171,29 @@ void TeamSolver::set_map(const std::string& name, std::shared_ptr<const Occupanc
 
 /// Whether the pose stays. While one is contradicted, what confirms that has to be weighed.
 bool TeamSolver::is_drawn_only(const std::string& name, const Robot& robot, const OccupancyGrid& map) const {
-  if (!is_placed(name) || placements_.is_held_back()) return false;
+  if (!is_placed(name) || placements_.is_held_back() || may_lie_with_copies(name)) return false;
   const std::optional<ChangedCells> changed = count_changed_cells(*robot.weighed.map, map);
   if (!changed) return false;
   const double share = std::min(kDrawnOnly, options_.search_again);
   const auto is_little = [&](std::size_t changed_cells, std::size_t cells) {
     return static_cast<double>(changed_cells) < share * static_cast<double>(cells);
   };
-  return is_little(changed->all, robot.weighed.counts.known()) &&
-         (changed->walls == 0 || is_little(changed->walls, robot.weighed.counts.occupied));
+  if (!is_little(changed->all, robot.weighed.counts.known())) return false;
+  if (changed->walls > 0 && !is_little(changed->walls, robot.weighed.counts.occupied)) return false;
+  return robot.searched == robot.weighed.map ||
+         change_between(*robot.searched, map).share < options_.search_again;
+}
+
+/// Of equal maps one counts, as the merger finds them: it has to see each change of those that lie with them.
+bool TeamSolver::may_lie_with_copies(const std::string& name) const {
+  for (const RobotGroup& group : placements_.groups()) {
+    if (!group.robots.contains(name)) continue;
+    std::set<std::size_t> known_cells;
+    for (const auto& [robot, placement] : group.robots)
+      known_cells.insert(robots_.at(robot).weighed.counts.known());
+    return known_cells.size() < group.robots.size();
+  }
+  return false;
 }
 
 /// Gives the merger the robot's newest map. May be cancelled: all is as before then.
@@ -185,26 +205,25 @@ void TeamSolver::weigh(const std::string& name, Robot& robot, std::shared_ptr<co
       robot.searched == robot.weighed.map ? change.share : change_between(*robot.searched, *map).share;
   const bool searches = change.other_frame || unsearched >= searched_from;
   Weighed weighed = to_be_weighed(map);
+  begin_to_weigh(name);
   if (change.other_frame) {
+    restarted_.insert(name);
     merger_.update(*robot.id, *map);
+    placements_.forget(name);
+    told_robots_.erase(name);
   } else {
     merger_.grow(*robot.id, *map);
     if (searches) merger_.search_again(*robot.id);
   }
-  if (change.other_frame) {
-    placements_.forget(name);
-    told_robots_.erase(name);
-    restarted_.insert(name);
-  }
   if (searches) robot.searched = map;
-  set_weighed(name, robot, std::move(weighed));
+  robot.map = std::move(map);
+  robot.weighed = std::move(weighed);
 }
 
-void TeamSolver::set_weighed(const std::string& name, Robot& robot, Weighed weighed) {
+/// Whatever ends it early: poses may follow from another map of the robot's now.
+void TeamSolver::begin_to_weigh(const std::string& name) {
   is_weighed_ = false;
   fresh_.insert(name);
-  robot.map = weighed.map;
-  robot.weighed = std::move(weighed);
 }
 
 void TeamSolver::weigh_what_changed() {

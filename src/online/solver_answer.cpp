@@ -2,11 +2,9 @@
 // What a team tells of what it found out.
 #include <algorithm>
 #include <memory>
-#include <set>
 #include <utility>
 
 #include "gridmerge/merge/fuse.hpp"
-#include "merge/copies.hpp"
 #include "merge/fuse_changes.hpp"
 #include "merge/joins.hpp"
 #include "online/solver.hpp"
@@ -49,7 +47,7 @@ void TeamSolver::tell_components(MergeResult result, TeamAnswer& answer) const {
     if (same != result.components.end()) {
       told.merged = std::move(*same);
     } else {
-      told.merged.fused = fuse_once(placed);
+      told.merged.fused = fuse(placed, merged_resolution(options_.merge.resolution, placed));
     }
     // Another member than the first may hold the frame.
     const std::string& first = names_.at(ids[told.merged.members.front().map]);
@@ -156,28 +154,11 @@ void TeamSolver::draw_again(TeamAnswer& answer) const {
     if (std::equal(was.begin(), was.end(), now.begin(), is_same)) continue;
     FusedMap& fused = merge->result.components[i].fused;
     fused.grid = *answer.components[i].map;
-    fused = may_hold_copies(answer.components[i].robots)
-                ? fuse_once(now)
-                : fuse_changes(std::move(fused), was, now, merged_resolution(options_.merge.resolution, now));
+    fused = fuse_changes(std::move(fused), was, now, merged_resolution(options_.merge.resolution, now));
     answer.components[i].map = std::make_shared<const OccupancyGrid>(std::move(fused.grid));
     fused.grid = {};
   }
   answer.merge = std::move(merge);
-}
-
-/// Of equal maps one counts, so that such a merged map is not what all make of it.
-bool TeamSolver::may_hold_copies(const std::vector<std::string>& robots) const {
-  std::set<std::size_t> known_cells;
-  for (const std::string& name : robots) known_cells.insert(robots_.at(name).weighed.counts.known());
-  return known_cells.size() < robots.size();
-}
-
-FusedMap TeamSolver::fuse_once(const std::vector<PlacedMap>& maps) const {
-  std::vector<PlacedMap> counted;
-  for (const PlacedMap& map : maps) {
-    if (!internal::is_placed(map, counted)) counted.push_back(map);
-  }
-  return fuse(counted, merged_resolution(options_.merge.resolution, maps));
 }
 
 /// Components and poses that were told last, which belong together; of what has changed since, nothing. A map

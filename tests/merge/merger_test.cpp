@@ -120,6 +120,7 @@ TEST(Merger, WhatWasMatchedBeforeItWasCancelledIsKept) {
   Merger merger(options);
   for (std::size_t i = 0; i < 4; ++i) merger.add(team.maps[i]);
   EXPECT_THROW(with_cancellation(cancelled, [&] { merger.solve(); }), Cancelled);
+  EXPECT_FALSE(merger.is_complete());
   const std::size_t done = totals.size();
   expect_same(merger.solve(), merge({team.maps.begin(), team.maps.begin() + 4}));
   EXPECT_GE(done, 2u);

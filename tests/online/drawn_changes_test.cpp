@@ -69,6 +69,7 @@ std::vector<PlacedMap> placed_by(const TeamAnswer& answer, std::size_t component
 
 void expect_drawn(const TeamAnswer& answer) {
   expect_consistent(answer);
+  ASSERT_FALSE(answer.components.empty());
   for (std::size_t i = 0; i < answer.components.size(); ++i) {
     const OccupancyGrid& map = *answer.components[i].map;
     const FusedMap expected = fuse(placed_by(answer, i), map.resolution);
@@ -77,6 +78,7 @@ void expect_drawn(const TeamAnswer& answer) {
     EXPECT_EQ(map.origin, expected.grid.origin);
     EXPECT_EQ(found.agreeing, expected.agreeing);
     EXPECT_EQ(found.conflicting, expected.conflicting);
+    ASSERT_TRUE(found.omega && expected.omega);
     EXPECT_EQ(found.omega->equal, expected.omega->equal);
   }
 }
@@ -164,6 +166,7 @@ TEST_F(DrawnChanges, AreForgottenWithTheirRobot) {
   solver_.take(news);
   const TeamAnswer answer = solver_.solve(Effort::soon);
   EXPECT_EQ(answer.robots.size(), 2u);
+  EXPECT_EQ(answer.components.at(0).robots.size(), 2u);
   expect_consistent(answer);
   EXPECT_TRUE(solver_.solve(Effort::full).settled);
 }
@@ -190,8 +193,55 @@ TEST_F(DrawnChanges, OfOneOfTwoEqualMaps) {
   solver_.take(news_of("copy", explorers_.map(1, 5)));
   const TeamAnswer both = solver_.solve(Effort::full);
   ASSERT_EQ(both.components.at(0).robots.size(), 4u);
-  const TeamAnswer answer = hear(refurnished(explorers_.map(1, 5)));
-  expect_drawn(answer);
+  expect_drawn(hear(refurnished(explorers_.map(1, 5))));
+}
+
+/// Equal maps count once, whichever other map changes.
+TEST_F(DrawnChanges, BesideTwoEqualMaps) {
+  OccupancyGrid padded = make_grid(explorers_.map(1, 5).width + 7, explorers_.map(1, 5).height + 5,
+                                   explorers_.map(1, 5).resolution, explorers_.map(1, 5).origin);
+  for (int row = 0; row < explorers_.map(1, 5).height; ++row) {
+    for (int column = 0; column < explorers_.map(1, 5).width; ++column)
+      padded.at(column, row) = explorers_.map(1, 5).at(column, row);
+  }
+  for (const OccupancyGrid& copy : {explorers_.map(1, 5), padded}) {
+    solver_.take(news_of("copy", copy));
+    ASSERT_EQ(solver_.solve(Effort::full).components.at(0).robots.size(), 4u);
+    solver_.take(news_of("anna", refurnished(explorers_.map(0, 5))));
+    const TeamAnswer answer = solver_.solve(Effort::soon);
+    std::vector<PlacedMap> distinct;
+    const std::vector<PlacedMap> all = placed_by(answer, 0);
+    for (const PlacedMap& map : all) {
+      if (map.map != answer.merge->maps.at(3).get()) distinct.push_back(map);
+    }
+    ASSERT_EQ(distinct.size(), 3u);
+    const FusedMap expected = fuse(distinct, answer.components.at(0).map->resolution);
+    EXPECT_EQ(answer.components[0].map->cells, expected.grid.cells);
+    EXPECT_EQ(answer.merge->result.components.at(0).fused.agreeing, expected.agreeing);
+    solver_.take(news_of("anna", explorers_.map(0, 5)));
+    solver_.solve(Effort::full);
+  }
+}
+
+/// What was weighed and not searched, and what is drawn, add up.
+TEST(DrawnChangesOfATeam, CountWithWhatWasNotSearchedYet) {
+  const Explorers explorers;
+  TeamOptions options;
+  options.search_again = 0.05;
+  TeamSolver solver(options);
+  solver.take(news_at(explorers, 5));
+  solver.solve(Effort::full);
+  OccupancyGrid map = explorers.map(1, 5);
+  const std::size_t known = count_cells(map).known();
+  const auto is_searched_after = [&](double share) {
+    forget(map, static_cast<std::size_t>(share * static_cast<double>(known)));
+    solver.take(news_of("bert", map));
+    solver.solve(Effort::soon);
+    solver.solve(Effort::further);
+    return solver.is_settled();
+  };
+  EXPECT_FALSE(is_searched_after(0.04));
+  EXPECT_TRUE(is_searched_after(0.015)) << "5.5 % since it was searched, 1.5 % since it was weighed";
 }
 
 TEST(DrawnChangesOfATeam, AreSearchedWhereEveryChangeIs) {
@@ -245,7 +295,7 @@ TEST(DrawnChangesOfATeam, CancelledWorkIsNotSettled) {
   strangers.erase("bert");
   strangers.erase("carl");
   for (const Effort effort : {Effort::further, Effort::full}) {
-    std::size_t unsettled = 0;
+    std::size_t cancelled = 0, unsettled = 0;
     for (auto wait = std::chrono::milliseconds(1);; wait *= 3) {
       TeamSolver solver({});
       solver.take(strangers);
@@ -260,6 +310,7 @@ TEST(DrawnChangesOfATeam, CancelledWorkIsNotSettled) {
         with_cancellation(flag, [&] { solver.solve(effort); });
       } catch (const Cancelled&) {
         is_done = false;
+        ++cancelled;
       }
       stops.join();
       if (is_done) break;
@@ -271,6 +322,7 @@ TEST(DrawnChangesOfATeam, CancelledWorkIsNotSettled) {
       unsettled += answer.settled ? 0 : 1;  // the last of these may have been cancelled when all was done
     }
     EXPECT_GT(unsettled, 0u);
+    EXPECT_GE(unsettled + 1, cancelled);
   }
 }
 
