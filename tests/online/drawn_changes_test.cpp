@@ -198,21 +198,20 @@ TEST_F(DrawnChanges, OfOneOfTwoEqualMaps) {
 
 /// Equal maps count once, whichever other map changes.
 TEST_F(DrawnChanges, BesideTwoEqualMaps) {
-  OccupancyGrid padded = make_grid(explorers_.map(1, 5).width + 7, explorers_.map(1, 5).height + 5,
-                                   explorers_.map(1, 5).resolution, explorers_.map(1, 5).origin);
-  for (int row = 0; row < explorers_.map(1, 5).height; ++row) {
-    for (int column = 0; column < explorers_.map(1, 5).width; ++column)
-      padded.at(column, row) = explorers_.map(1, 5).at(column, row);
+  const OccupancyGrid map = explorers_.map(1, 5);
+  OccupancyGrid padded = make_grid(map.width + 7, map.height + 5, map.resolution, map.origin);
+  for (int row = 0; row < map.height; ++row) {
+    for (int column = 0; column < map.width; ++column) padded.at(column, row) = map.at(column, row);
   }
-  for (const OccupancyGrid& copy : {explorers_.map(1, 5), padded}) {
+  for (const OccupancyGrid& copy : {map, padded}) {
     solver_.take(news_of("copy", copy));
     ASSERT_EQ(solver_.solve(Effort::full).components.at(0).robots.size(), 4u);
     solver_.take(news_of("anna", refurnished(explorers_.map(0, 5))));
     const TeamAnswer answer = solver_.solve(Effort::soon);
     std::vector<PlacedMap> distinct;
     const std::vector<PlacedMap> all = placed_by(answer, 0);
-    for (const PlacedMap& map : all) {
-      if (map.map != answer.merge->maps.at(3).get()) distinct.push_back(map);
+    for (const PlacedMap& one : all) {
+      if (one.map != answer.merge->maps.at(3).get()) distinct.push_back(one);
     }
     ASSERT_EQ(distinct.size(), 3u);
     const FusedMap expected = fuse(distinct, answer.components.at(0).map->resolution);
