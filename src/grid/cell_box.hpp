@@ -2,6 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+
+#include "grid/box.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge::internal {
 
@@ -32,6 +36,31 @@ inline CellBox unite(const CellBox& a, const CellBox& b) {
   if (b.empty()) return a;
   return {std::min(a.left, b.left), std::min(a.bottom, b.bottom), std::max(a.right, b.right),
           std::max(a.top, b.top)};
+}
+
+inline CellBox all_cells(const OccupancyGrid& grid) {
+  return {0, 0, grid.width, grid.height};
+}
+
+/// The cells of one lattice that lie under a box of another one's, and `rim` cells about them; those of
+/// `limits` alone. `T_cells_box` takes points of the box's lattice to the other's, both from their lower-left
+/// corners [m]; resolutions are sides of cells [m]. O(1).
+inline CellBox cells_under(const CellBox& box, double box_resolution, const SE2& T_cells_box,
+                           double resolution, int rim, const CellBox& limits) {
+  Box under;  // [cells]
+  for (const int column : {box.left, box.right}) {
+    for (const int row : {box.bottom, box.top}) {
+      const Point2 corner = T_cells_box * Point2{column * box_resolution, row * box_resolution};
+      under.add(Point2{corner.x / resolution, corner.y / resolution});
+    }
+  }
+  const auto clip = [](double cell, int low, int high) {
+    return static_cast<int>(std::clamp<double>(std::floor(cell), low, high));
+  };
+  return {clip(under.min_x - rim, limits.left, limits.right),
+          clip(under.min_y - rim, limits.bottom, limits.top),
+          clip(under.max_x + rim + 1, limits.left, limits.right),
+          clip(under.max_y + rim + 1, limits.bottom, limits.top)};
 }
 
 }  // namespace gridmerge::internal

@@ -30,8 +30,7 @@ std::optional<CellBox> changed_cells(const OccupancyGrid& before, const Occupanc
   if (before.width != after.width || before.height != after.height || before.resolution != after.resolution ||
       before.origin != after.origin)
     return std::nullopt;
-  if (before.probability.empty() != after.probability.empty())
-    return CellBox{0, 0, after.width, after.height};
+  if (before.probability.empty() != after.probability.empty()) return all_cells(after);
   CellBox changed;
   for (int row = 0; row < after.height; ++row) {
     const std::size_t begin = after.index(0, row);

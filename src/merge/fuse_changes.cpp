@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "merge/fuse_changes.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
-#include "grid/box.hpp"
 #include "grid/changed_cells.hpp"
 #include "merge/fuse_box.hpp"
 #include "merge/log_odds.hpp"
@@ -20,21 +17,12 @@ namespace {
 CellBox lattice_box(const CellBox& cells, const PlacedMap& input, const Lattice& lattice) {
   constexpr int kNeighbours = 1;  // cells that touch at a corner make a band across it
   constexpr int kRounding = 1;
-  const OccupancyGrid& map = *input.map;
-  const SE2 T_output_grid = input.T_output_map * map.origin;
-  Box box;  // [cells of the lattice]
-  for (const int column : {cells.left - kNeighbours, cells.right + kNeighbours}) {
-    for (const int row : {cells.bottom - kNeighbours, cells.top + kNeighbours}) {
-      const Point2 corner = T_output_grid * Point2{column * map.resolution, row * map.resolution};
-      box.add(Point2{(corner.x - lattice.corner.x) / lattice.resolution,
-                     (corner.y - lattice.corner.y) / lattice.resolution});
-    }
-  }
-  const auto clip = [](double cell, int size) {
-    return static_cast<int>(std::clamp<double>(std::floor(cell), 0.0, size));
-  };
-  return {clip(box.min_x - kRounding, lattice.width), clip(box.min_y - kRounding, lattice.height),
-          clip(box.max_x + kRounding + 1, lattice.width), clip(box.max_y + kRounding + 1, lattice.height)};
+  const CellBox reached{cells.left - kNeighbours, cells.bottom - kNeighbours, cells.right + kNeighbours,
+                        cells.top + kNeighbours};
+  const SE2 T_lattice_grid =
+      SE2{-lattice.corner.x, -lattice.corner.y, 0.0} * input.T_output_map * input.map->origin;
+  return cells_under(reached, input.map->resolution, T_lattice_grid, lattice.resolution, kRounding,
+                     lattice.whole());
 }
 
 bool lies_on(const OccupancyGrid& grid, const Lattice& lattice) {

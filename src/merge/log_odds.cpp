@@ -187,10 +187,6 @@ class LogOddsSource {
   std::vector<std::uint8_t> has_band_;
 };
 
-CellBox whole(const OccupancyGrid& map) {
-  return {0, 0, map.width, map.height};
-}
-
 // The lattice cells within `limits` that a box touches, as an empty patch.
 LogOddsPatch patch_over(const Box& box, const Lattice& lattice, const CellBox& limits) {
   LogOddsPatch patch;
@@ -217,30 +213,15 @@ void keep_strongest(std::int16_t& target, std::int16_t value) {
   if (value != 0 && (target == 0 || value > target)) target = value;
 }
 
-// The map's cells under a patch, with a rim.
-CellBox cells_under(const LogOddsPatch& patch, const Lattice& lattice, const PlacedMap& input) {
-  const SE2 T_grid_output = inverse(input.T_output_map * input.map->origin);
-  Box under;  // [cells]
-  for (const int column : {patch.column, patch.column + patch.width}) {
-    for (const int row : {patch.row, patch.row + patch.height}) {
-      const Point2 corner = T_grid_output * Point2{lattice.corner.x + column * lattice.resolution,
-                                                   lattice.corner.y + row * lattice.resolution};
-      under.add(Point2{corner.x / input.map->resolution, corner.y / input.map->resolution});
-    }
-  }
-  constexpr double kRim = 2.0;  // for neighbours across a corner, and rounding
-  const auto clip = [](double cell, int size) {
-    return static_cast<int>(std::clamp<double>(std::floor(cell), 0.0, size));
-  };
-  const OccupancyGrid& map = *input.map;
-  return {clip(under.min_x - kRim, map.width), clip(under.min_y - kRim, map.height),
-          clip(under.max_x + kRim + 1.0, map.width), clip(under.max_y + kRim + 1.0, map.height)};
-}
-
 // Looks up the map under `samples` x `samples` points of every cell of the patch.
 void sample_map(const PlacedMap& input, const Lattice& lattice, int samples, LogOddsPatch& patch) {
-  const LogOddsSource source(*input.map, cells_under(patch, lattice, input));
+  constexpr int kRim = 2;  // for neighbours across a corner, and rounding
   const SE2 T_grid_output = inverse(input.T_output_map * input.map->origin);
+  const LogOddsSource source(
+      *input.map,
+      cells_under({patch.column, patch.row, patch.column + patch.width, patch.row + patch.height},
+                  lattice.resolution, T_grid_output * SE2{lattice.corner.x, lattice.corner.y, 0.0},
+                  input.map->resolution, kRim, all_cells(*input.map)));
   const double map_resolution = input.map->resolution;
   const double c = std::cos(T_grid_output.theta) / map_resolution;
   const double s = std::sin(T_grid_output.theta) / map_resolution;
@@ -302,7 +283,7 @@ class StraightenedGrid {
 // As sample_map() for a bent map.
 void sample_bent_map(const PlacedMap& input, const Deformation& deformation, const Lattice& lattice,
                      int samples, LogOddsPatch& patch) {
-  const LogOddsSource source(*input.map, whole(*input.map));
+  const LogOddsSource source(*input.map, all_cells(*input.map));
   const StraightenedGrid straightened(input, deformation, lattice, patch);
   parallel_rows(0, patch.height, [&](int row) {
     std::size_t target = patch.index(0, row);

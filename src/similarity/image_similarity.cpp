@@ -316,7 +316,7 @@ CommonClasses SimilarityMeter::count_common(const SE2& T_fixed_moving) {
   const OccupancyGrid& fixed = maps_->fixed;
   const CellsOnLattice& moving = scratch_->moving;
   CommonClasses common;
-  const CellBox box = intersect(moving.box, {0, 0, fixed.width, fixed.height});
+  const CellBox box = intersect(moving.box, all_cells(fixed));
   for (int row = box.bottom; row < box.top; ++row) {
     for (int column = box.left; column < box.right; ++column) {
       const auto ours = static_cast<std::uint8_t>(fixed.at(column, row));

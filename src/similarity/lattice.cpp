@@ -15,10 +15,6 @@ using namespace internal;
 
 namespace {
 
-CellBox whole(const OccupancyGrid& lattice) {
-  return {0, 0, lattice.width, lattice.height};
-}
-
 /// The map's cells on the lattice, where the box has cells. Empty if there are none.
 CellsOnLattice draw_within(const OccupancyGrid& lattice, const CellBox& limits, const PlacedMap& map) {
   validate(lattice);
@@ -27,7 +23,7 @@ CellsOnLattice draw_within(const OccupancyGrid& lattice, const CellBox& limits, 
   check_resolutions(lattice, *map.map);
   const SE2 T_lattice_grid = between_grids(lattice, *map.map, map.T_output_map);
   const CellBox box = intersect(box_on_lattice(*map.map, T_lattice_grid, lattice.resolution),
-                                intersect(limits, whole(lattice)));
+                                intersect(limits, all_cells(lattice)));
   CellsOnLattice drawn;
   if (box.width() > 0 && box.height() > 0)
     draw_nearest_cells(*map.map, T_lattice_grid, lattice.resolution, box, 1, drawn);
@@ -37,7 +33,7 @@ CellsOnLattice draw_within(const OccupancyGrid& lattice, const CellBox& limits, 
 }  // namespace
 
 OccupancyGrid draw_on_lattice(const OccupancyGrid& lattice, const PlacedMap& map) {
-  const CellsOnLattice drawn = draw_within(lattice, whole(lattice), map);
+  const CellsOnLattice drawn = draw_within(lattice, all_cells(lattice), map);
   OccupancyGrid grid = make_grid(lattice.width, lattice.height, lattice.resolution, lattice.origin);
   for (int row = drawn.box.bottom; row < drawn.box.top; ++row) {
     for (int column = drawn.box.left; column < drawn.box.right; ++column)
@@ -47,7 +43,7 @@ OccupancyGrid draw_on_lattice(const OccupancyGrid& lattice, const PlacedMap& map
 }
 
 std::int64_t count_equal_cells(const OccupancyGrid& lattice, std::span<const PlacedMap> maps) {
-  return internal::count_equal_cells(lattice, maps, whole(lattice));
+  return internal::count_equal_cells(lattice, maps, all_cells(lattice));
 }
 
 std::int64_t internal::count_equal_cells(const OccupancyGrid& lattice, std::span<const PlacedMap> maps,
@@ -89,7 +85,8 @@ bool lie_on_each_other(const OccupancyGrid& fixed, const OccupancyGrid& moving, 
   if (!is_within_lattice(known_moving, between_grids(known_fixed, known_moving, T_fixed_moving),
                          known_fixed.resolution))
     return false;
-  const CellsOnLattice drawn = draw_within(known_fixed, whole(known_fixed), {&known_moving, T_fixed_moving});
+  const CellsOnLattice drawn =
+      draw_within(known_fixed, all_cells(known_fixed), {&known_moving, T_fixed_moving});
   return std::any_of(drawn.spans.begin(), drawn.spans.end(),
                      [](const CellsOnLattice::Span& span) { return span.left < span.right; });
 }
