@@ -32,6 +32,12 @@ std::optional<SE2> between(const std::vector<RobotGroup>& groups,
 
 }  // namespace
 
+const RobotGroup* group_of(const std::vector<RobotGroup>& groups, const std::string& robot) {
+  const auto group = std::find_if(groups.begin(), groups.end(),
+                                  [&](const RobotGroup& one) { return one.robots.contains(robot); });
+  return group == groups.end() ? nullptr : &*group;
+}
+
 void Placements::forget(const std::string& robot) {
   for (RobotGroup& group : groups_) group.robots.erase(robot);
   std::erase_if(groups_, [](const RobotGroup& group) { return group.robots.size() < 2; });

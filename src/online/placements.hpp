@@ -25,6 +25,9 @@ struct RobotGroup {
   bool in_world_frame = false;              ///< the frame is that of fixed poses
 };
 
+/// The group that a robot lies in; null if there is none. O(groups * log robots).
+const RobotGroup* group_of(const std::vector<RobotGroup>& groups, const std::string& robot);
+
 /// Groups of robots that change by evidence, not by every whim: what was said before is given up for
 /// something that contradicts it only when that was said often enough in a row.
 class Placements {

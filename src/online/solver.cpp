@@ -160,7 +160,7 @@ void TeamSolver::set_map(const std::string& name, std::shared_ptr<const Occupanc
     return;
   }
   if (are_equal(*robot.map, *map)) return;
-  if (are_equal(*robot.weighed.map, *map)) {  // a change was taken back
+  if (robot.map != robot.weighed.map && are_equal(*robot.weighed.map, *map)) {  // a change was taken back
     robot.map = robot.weighed.map;
   } else if (is_drawn_only(name, robot, *map)) {
     robot.map = std::move(map);
@@ -186,14 +186,12 @@ bool TeamSolver::is_drawn_only(const std::string& name, const Robot& robot, cons
 
 /// Of equal maps one counts, as the merger finds them: it has to see each change of those that lie with them.
 bool TeamSolver::may_lie_with_copies(const std::string& name) const {
-  for (const RobotGroup& group : placements_.groups()) {
-    if (!group.robots.contains(name)) continue;
-    std::set<std::size_t> known_cells;
-    for (const auto& [robot, placement] : group.robots)
-      known_cells.insert(robots_.at(robot).weighed.counts.known());
-    return known_cells.size() < group.robots.size();
-  }
-  return false;
+  const RobotGroup* const group = group_of(placements_.groups(), name);
+  if (group == nullptr) return false;
+  std::set<std::size_t> known_cells;
+  for (const auto& [robot, placement] : group->robots)
+    known_cells.insert(robots_.at(robot).weighed.counts.known());
+  return known_cells.size() < group->robots.size();
 }
 
 /// Gives the merger the robot's newest map. May be cancelled: all is as before then.
@@ -249,9 +247,7 @@ void TeamSolver::remove(const std::string& name) {
 }
 
 bool TeamSolver::is_placed(const std::string& name) const {
-  const auto& groups = placements_.groups();
-  return std::any_of(groups.begin(), groups.end(),
-                     [&](const RobotGroup& group) { return group.robots.contains(name); });
+  return group_of(placements_.groups(), name) != nullptr;
 }
 
 void TeamSolver::search_what_changed() {

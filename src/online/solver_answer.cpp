@@ -94,10 +94,7 @@ RobotStatus TeamSolver::status_of(const std::string& name, const Robot& robot,
   status.name = name;
   status.maps_heard = robot.maps_heard;
   status.heard_first = robot.since;
-  const std::vector<RobotGroup>& groups = placements_.groups();
-  const auto group = std::find_if(groups.begin(), groups.end(),
-                                  [&](const RobotGroup& one) { return one.robots.contains(name); });
-  if (group != groups.end()) {
+  if (const RobotGroup* const group = group_of(placements_.groups(), name)) {
     status.state = RobotState::placed;
     status.why = say_placed(name, *group);
     status.T_world_map = group->robots.at(name).T_group_map;
@@ -141,9 +138,11 @@ const std::string& TeamSolver::first_heard(const std::map<std::string, Placement
 void TeamSolver::draw_again(TeamAnswer& answer) const {
   answer.components = told_components_;
   answer.merge = told_merge_;
+  std::vector<std::shared_ptr<const OccupancyGrid>> maps;
+  for (const std::string& name : told_merge_->names) maps.push_back(robots_.at(name).map);
+  if (maps == told_merge_->maps) return;
   auto merge = std::make_shared<TeamMerge>(*told_merge_);
-  for (std::size_t i = 0; i < merge->names.size(); ++i) merge->maps[i] = robots_.at(merge->names[i]).map;
-  if (merge->maps == told_merge_->maps) return;
+  merge->maps = std::move(maps);
   for (std::size_t i = 0; i < answer.components.size(); ++i) {
     std::vector<PlacedMap> was, now;
     for (const Member& member : merge->result.components[i].members) {

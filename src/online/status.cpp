@@ -11,12 +11,6 @@ namespace gridmerge::internal {
 
 namespace {
 
-const RobotGroup* group_of(const std::vector<RobotGroup>& groups, const std::string& robot) {
-  const auto group = std::find_if(groups.begin(), groups.end(),
-                                  [&](const RobotGroup& one) { return one.robots.contains(robot); });
-  return group == groups.end() ? nullptr : &*group;
-}
-
 SE2 between(const RobotGroup& group, const std::string& first, const std::string& second) {
   return inverse(group.robots.at(first).T_group_map) * group.robots.at(second).T_group_map;
 }
