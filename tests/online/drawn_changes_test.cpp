@@ -20,7 +20,6 @@ namespace {
 using Effort = TeamSolver::Effort;
 using test::expect_consistent;
 using test::Explorers;
-using test::kNames;
 using test::map_news;
 using test::news_at;
 using test::status_of;
@@ -100,6 +99,16 @@ class DrawnChanges : public testing::Test {
   TeamSolver solver_{{}};
   TeamAnswer before_;
 };
+
+/// A team that has searched all, and searches a map anew from such a change on.
+TeamSolver searched_team(const Explorers& explorers, double search_again) {
+  TeamOptions options;
+  options.search_again = search_again;
+  TeamSolver solver(options);
+  solver.take(news_at(explorers, 5));
+  solver.solve(Effort::full);
+  return solver;
+}
 
 TEST_F(DrawnChanges, ShowAtOnceAndAreWeighedLater) {
   ASSERT_EQ(before_.components.at(0).robots.size(), 3u);
@@ -225,11 +234,7 @@ TEST_F(DrawnChanges, BesideTwoEqualMaps) {
 /// What was weighed and not searched, and what is drawn, add up.
 TEST(DrawnChangesOfATeam, CountWithWhatWasNotSearchedYet) {
   const Explorers explorers;
-  TeamOptions options;
-  options.search_again = 0.05;
-  TeamSolver solver(options);
-  solver.take(news_at(explorers, 5));
-  solver.solve(Effort::full);
+  TeamSolver solver = searched_team(explorers, 0.05);
   OccupancyGrid map = explorers.map(1, 5);
   const std::size_t known = count_cells(map).known();
   const auto is_searched_after = [&](double share) {
@@ -245,11 +250,7 @@ TEST(DrawnChangesOfATeam, CountWithWhatWasNotSearchedYet) {
 
 TEST(DrawnChangesOfATeam, AreSearchedWhereEveryChangeIs) {
   const Explorers explorers;
-  TeamOptions options;
-  options.search_again = 0.0;
-  TeamSolver solver(options);
-  solver.take(news_at(explorers, 5));
-  solver.solve(Effort::full);
+  TeamSolver solver = searched_team(explorers, 0.0);
   solver.take(news_of("bert", refurnished(explorers.map(1, 5))));
   solver.solve(Effort::further);
   EXPECT_TRUE(solver.is_settled());
