@@ -178,10 +178,13 @@ std::optional<SE2> PoseJudge::best_cell_on_cell(const SE2& T_cells) const {
     // Said exactly, since the product of a pose and its inverse need not be.
     return T == SE2{} && fixed.origin == moving.origin ? SE2{} : fixed.origin * T * inverse(moving.origin);
   };
+  const auto is_near = [&](const SE2& T_fixed_moving) {
+    return metric_.displacement(T_cells, to_cells(T_fixed_moving, maps_.fixed_walls, maps_.moving_walls)) <
+           kSnapWithin;
+  };
   double column = std::round(T_grids.x / fixed.resolution), row = std::round(T_grids.y / fixed.resolution);
   SE2 best = between_maps(column, row);
-  if (!(metric_.displacement(T_cells, to_cells(best, maps_.fixed_walls, maps_.moving_walls)) < kSnapWithin))
-    return std::nullopt;
+  if (!is_near(best)) return std::nullopt;
   double most = agreement(best);
   for (bool improved = true; improved;) {
     improved = false;
@@ -190,6 +193,8 @@ std::optional<SE2> PoseJudge::best_cell_on_cell(const SE2& T_cells) const {
       const int right = i % 3 - 1, up = i / 3 - 1;
       const double next_column = from_column + right, next_row = from_row + up;
       const SE2 next = between_maps(next_column, next_row);
+      // Farther away the share that agrees may be larger, of cells that are fewer.
+      if (!is_near(next)) continue;
       const double agreeing = agreement(next);
       if (agreeing <= most) continue;
       most = agreeing;

@@ -193,6 +193,22 @@ TEST(PoseJudge, SettlesAPartOfAMapOnItsCells) {
   }
 }
 
+TEST(PoseJudge, StaysNearWhatItSettlesWhereMoreAgreesFartherAway) {
+  // A wedge that grows thinner to the right: an empty room agrees more with every column that it moves there.
+  constexpr int kColumns = 90, kRows = 40;
+  OccupancyGrid wedge = make_grid(kColumns, kRows, 0.1, {}, Cell::free);
+  for (int column = 0; column < kColumns; ++column) {
+    for (int row = 0; row < (kColumns - column) / 3; ++row) wedge.at(column, row) = Cell::occupied;
+  }
+  const PreparedMap a(wedge), b(hall(3.0));
+  const ComparedMaps maps(a, b);
+  const PoseJudge judge(maps);
+  const SE2 start{1.0, 0.5, 0.0};
+  const Settled settled = judge.settle(judge.judge(to_cells(start, maps.fixed_walls, maps.moving_walls)));
+  const SE2& found = settled.hypothesis.T_fixed_moving;
+  EXPECT_LT(std::hypot(found.x - start.x, found.y - start.y), 0.5);
+}
+
 TEST(Weigh, PutsTheMostProbableFirstAndSaysByHowMuch) {
   const PreparedMap map(test::draw_building(1));
   const ComparedMaps maps(map, map);
