@@ -153,10 +153,13 @@ fresh_root() {
   copy_settings  # installing ca-certificates makes its own
 }
 
-# in_root COMMAND...: its output is shown if it fails.
+# in_root COMMAND...: with none of this build's variables except those of proxies. Its output is shown if it fails.
 in_root() {
-  local output
-  output=$(chroot build/roots/tried "$@" </dev/null 2>&1) || { printf '%s\n' "$output"; die "release: in a bare root, this failed: $*"; }
+  local output name variables=(HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin)
+  for name in http_proxy https_proxy no_proxy; do
+    [[ ! -v $name ]] || variables+=("$name=${!name}")
+  done
+  output=$(env -i "${variables[@]}" chroot build/roots/tried "$@" </dev/null 2>&1) || { printf '%s\n' "$output"; die "release: in a bare root, this failed: $*"; }
 }
 
 # check_merge TRANSFORMS: what a bare root has made of the example is what this build makes of it.
