@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The table of rooms in CONTRIBUTING.md says of each room which others it may use: holds the includes against it.
+"""Tables of the documentation, held against what they tell of: the includes of each room against the table of rooms in
+CONTRIBUTING.md, and the list of components against README's table of them.
 
 usage: rooms_test.py PROJECT
 """
@@ -13,8 +14,7 @@ ROW = re.compile(r"^\| `(?P<room>[a-z]+)` \|.*\| (?P<uses>[^|]*) \|$", re.MULTIL
 INCLUDE = re.compile(r'^#include "(?:gridmerge/)?([a-z]+)/', re.MULTILINE)
 
 
-def main() -> None:
-    project = pathlib.Path(sys.argv[1])
+def faults_of_rooms(project: pathlib.Path) -> list[str]:
     rooms = {path.name for path in (project / "src").iterdir() if path.is_dir()}
     rows = ROW.findall((project / "CONTRIBUTING.md").read_text())
     told = {room: set(re.findall(r"`([a-z]+)`", uses)) for room, uses in rows if room in rooms}
@@ -30,6 +30,35 @@ def main() -> None:
         faults += [
             f"{room} and {other}: each may use the other" for other in told[room] if room in told[other]
         ]
+    return faults
+
+
+COMPONENT = re.compile(r"^\| `(?P<component>[a-z]+)` \|[^|]*\|(?P<needs>[^|]*)\|$", re.MULTILINE)
+NEEDS = re.compile(r"^set\(gridmerge_([a-z]+)_needs([a-z ]*)\)", re.MULTILINE)
+
+
+def all_needs(component: str, needs: dict[str, set[str]]) -> set[str]:
+    """What a component needs, and what that needs."""
+    direct = needs.get(component, set())
+    return direct.union(*(all_needs(other, needs) for other in direct))
+
+
+def faults_of_components(project: pathlib.Path) -> list[str]:
+    listed = (project / "cmake" / "GridmergeComponents.cmake").read_text()
+    needs = {component: set(others.split()) for component, others in NEEDS.findall(listed)}
+    rows = COMPONENT.findall((project / "README.md").read_text())
+    told = {component: set(re.findall(r"`([a-z]+)`", others)) for component, others in rows}
+    faults = [f"README's table of components lacks {one}" for one in sorted(needs.keys() - told.keys())]
+    faults += [f"README's table has the component {one}, which is none" for one in sorted(told.keys() - needs.keys())]
+    for component in sorted(told.keys() & needs.keys()):
+        if all_needs(component, told) != all_needs(component, needs):
+            faults.append(f"README says other needs of {component} than {sorted(all_needs(component, needs))}")
+    return faults
+
+
+def main() -> None:
+    project = pathlib.Path(sys.argv[1])
+    faults = faults_of_rooms(project) + faults_of_components(project)
     sys.exit("\n".join(faults) if faults else 0)
 
 
