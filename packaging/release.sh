@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # What `./dev release` does. dev reads this file: say, die, install_missing, build, use_ccache and make_venv are its own.
 
-release_packages=(dpkg-dev lintian debootstrap)
+release_packages=(dpkg-dev lintian debootstrap python3-pil)
 release_folder=build/package
 example_maps=(robot_1.yaml robot_2.yaml robot_3.yaml elsewhere.yaml)
 
@@ -194,7 +194,7 @@ check_wheel() {
   say "Trying the wheel in a bare Debian '$suite'"
   fresh_root "$suite" python3-numpy python3-pip
   cp packaging/try_wheel.py "$root/"
-  python3 -c 'import sys; from PIL import Image; Image.open(sys.argv[1]).save(sys.argv[2])' "$root/maps/robot_2.pgm" "$root/maps/robot_2.png"
+  /usr/bin/python3 -c 'import sys; from PIL import Image; Image.open(sys.argv[1]).save(sys.argv[2])' "$root/maps/robot_2.pgm" "$root/maps/robot_2.png"
   sed 's/robot_2\.pgm/robot_2.png/' "$root/maps/robot_2.yaml" >"$root/maps/png.yaml"
   in_root sh -c 'pip install --break-system-packages --only-binary :all: /release/*.whl'
   in_root sh -c "cd /maps && python3 /try_wheel.py ${example_maps[*]}"
