@@ -49,10 +49,14 @@ def faults_of_components(project: pathlib.Path) -> list[str]:
     rows = COMPONENT.findall((project / "README.md").read_text())
     told = {component: set(re.findall(r"`([a-z]+)`", others)) for component, others in rows}
     faults = [f"README's table of components lacks {one}" for one in sorted(needs.keys() - told.keys())]
-    faults += [f"README's table has the component {one}, which is none" for one in sorted(told.keys() - needs.keys())]
+    faults += [
+        f"README's table has the component {one}, which is none" for one in sorted(told.keys() - needs.keys())
+    ]
     for component in sorted(told.keys() & needs.keys()):
         if all_needs(component, told) != all_needs(component, needs):
-            faults.append(f"README says other needs of {component} than {sorted(all_needs(component, needs))}")
+            faults.append(
+                f"README says other needs of {component} than {sorted(all_needs(component, needs))}"
+            )
     return faults
 
 
