@@ -11,9 +11,9 @@
 
 namespace gridmerge {
 
-/// A cell of an occupancy above this is occupied, where nothing else is said: nav2's usual occupied_thresh.
+/// A cell of at least this occupancy is occupied, where nothing else is said: nav2's usual occupied_thresh.
 inline constexpr double kOccupiedThreshold = 0.65;
-/// A cell of an occupancy below this is free, where nothing else is said: nav2's usual free_thresh.
+/// A cell of at most this occupancy is free, where nothing else is said: nav2's usual free_thresh.
 inline constexpr double kFreeThreshold = 0.196;
 
 /// The occupancies at which a cell is occupied or free.
@@ -31,7 +31,7 @@ GRIDMERGE_EXPORT Cell cell_of_percentage(int percentage, const OccupancyThreshol
 GRIDMERGE_EXPORT float probability_of_percentage(int percentage);
 
 /// The grid that the values of a message make: width * height percentages, row 0 at the bottom, -1 where
-/// unknown. The grid has probabilities if any value is neither -1 nor 0 nor 100, so that a map of these three
+/// unknown. The grid has probabilities if any value lies between 0 and 100, so that a map of these three
 /// equals the trinary map file of the same content. Throws std::invalid_argument for a grid that validate()
 /// refuses. O(cells).
 GRIDMERGE_EXPORT OccupancyGrid grid_of_percentages(int width, int height, double resolution,

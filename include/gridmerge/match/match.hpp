@@ -76,7 +76,9 @@ GRIDMERGE_EXPORT MatchResult match(const OccupancyGrid& fixed, const OccupancyGr
                                    const MatchOptions& options = {});
 
 /// The same of maps that are matched with several others: of their known parts. Runs in the calling TBB
-/// arena, for which `options.threads` changes nothing; may be called by several threads at once.
+/// arena, for which `options.threads` changes nothing, except that a random walk heeds it; may be called by
+/// several threads at once. A drawing in which no cell is free has no walls then, and with
+/// `options.scales` it throws std::invalid_argument: match its grid.
 GRIDMERGE_EXPORT MatchResult match(const PreparedMap& fixed, const PreparedMap& moving,
                                    const MatchOptions& options = {});
 

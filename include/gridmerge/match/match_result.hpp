@@ -98,11 +98,11 @@ struct PairPose {
 struct MatchResult : PairPose {
   Verdict verdict = Verdict::refused;          ///< on the best hypothesis
   Reason reason = Reason::nothing_to_compare;  ///< why it was refused
-  double seconds = 0.0;                        ///< wall time from grids in memory to the verdict
+  double seconds = 0.0;  ///< wall time to the verdict, of prepared maps without preparing
   /// What the moving map is enlarged by before its pose applies: p_fixed = scale * R * p_moving + t, R and t
   /// those of T_fixed_moving. 1 unless MatchOptions::scales asks for others.
   double scale = 1.0;
-  /// Distinct, most probable first; empty only when a map has nothing to go by.
+  /// Distinct, most probable first; empty only when a map has nothing to go by, or none was asked for.
   std::vector<Hypothesis> hypotheses;
 };
 

@@ -16,11 +16,13 @@ class DrawnWalls;
 /// map that it is matched with. May be used by several threads at once.
 class GRIDMERGE_EXPORT PreparedMap {
  public:
-  /// Copies what is known of `grid`. Throws std::invalid_argument for an invalid grid (see validate()).
+  /// Copies what robots have seen of `grid`: without painted cells (see without_painted()), so nothing of a
+  /// drawing in which no cell is free. Throws std::invalid_argument for an invalid grid (see validate()).
+  /// O(cells).
   explicit PreparedMap(const OccupancyGrid& grid);
   ~PreparedMap();
 
-  const OccupancyGrid& known() const { return known_; }  ///< cropped to its known cells
+  const OccupancyGrid& known() const { return known_; }  ///< cropped, and turned by quarters
   const CellCounts& counts() const { return counts_; }   ///< of known()
 
  private:

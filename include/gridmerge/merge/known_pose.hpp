@@ -12,7 +12,8 @@
 
 namespace gridmerge {
 
-/// What is known beforehand of where a map lies. All known poses are in one frame, the world's.
+/// What is known beforehand of where a map lies. All known poses are in one frame, the world's. One that is
+/// not fixed has to be given its deviations.
 struct KnownPose {
   SE2 T_world_map;           ///< takes the map's frame to the world's
   double sd_position = 0.0;  ///< standard deviation of the map's middle [m]

@@ -18,10 +18,10 @@ namespace gridmerge {
 /// How maps are merged.
 struct MergeOptions {
   /// How each pair is matched, and from which probability on maps are joined; its progress callback is
-  /// not used.
+  /// not used. Neither `scales` nor the random walk is allowed.
   MatchOptions match;
   /// So many joins of the whole merge may be expected to be false, beside what `match.accept_probability`
-  /// asks of each: the least sure ones are not made (see find_consistent_set_within()). Of more than 50
+  /// asks of each: the least sure ones are not made. Of more than 50
   /// maps, so many for every 50.
   double max_false_joins = 0.05;
   /// Of more than 50 maps only likely pairs are matched: those left out hide, as far as is known, at most
@@ -41,11 +41,11 @@ struct MergeOptions {
 /// Merges `maps` by what all pairs of them say together.
 ///
 /// Every pair is matched, or of many maps the likely ones (see MergeOptions::max_missed), and all hypotheses
-/// are kept. The consistent set of all maps that they speak for most is chosen (see
-/// find_consistent_set_within()): a weak pair that agrees with the others is used, a strong one that
-/// contradicts them is not. Then all poses are adjusted together, to what the pairs and the maps' walls say
-/// (robust least squares), and the maps of each component are fused in one pass. Maps that nothing joins
-/// surely enough are left out; groups between which nothing is sure are components of their own.
+/// are kept. The consistent set of all maps that they speak for most is chosen: a weak pair that agrees with
+/// the others is used, a strong one that contradicts them is not. Then all poses are adjusted together, to
+/// what the pairs and the maps' walls say (robust least squares), and the maps of each component are fused in
+/// one pass. Maps that nothing joins surely enough are left out; groups between which nothing is sure are
+/// components of their own.
 ///
 /// `known_poses[i]`, where there is one, is what is known of map i beforehand; it may be shorter than `maps`.
 /// Known poses of two maps that are not fixed speak for joining them so: the maps' own hypothesis there

@@ -70,14 +70,15 @@ class GRIDMERGE_EXPORT Team {
 
   /// Another node of the same team has heard the robot since then (RobotStatus::heard_first of its answer).
   /// Nodes that tell each other agree on who was heard first, so on frames, though they heard robots in
-  /// another order or started anew.
+  /// another order or started anew. Of a robot without a map it says nothing.
   void hear_age(const std::string& robot, TeamTime heard_first);
 
   /// The robot is gone, and its map with it. From now on answer() gives no pose that is of this map; the
   /// merged map goes without it from the next answer on. O(robots).
   void forget(const std::string& robot);
 
-  /// What is known of where a robot's map lies, heard or not yet. Throws std::invalid_argument as merge().
+  /// What is known of where a robot's map lies, heard or not yet. Throws std::invalid_argument as
+  /// merge(), and for a robot too many.
   void set_known_pose(const std::string& robot, std::optional<KnownPose> known_pose);
 
   /// The newest, never null.

@@ -17,7 +17,7 @@ namespace gridmerge {
 struct MergeRecord {
   std::vector<std::string> names;  ///< of all maps, in their order
   /// As merge() returned it, but for what is not kept: the fused maps have their omega and no more (see
-  /// fuse_again()), and of a join's match there are no features and no times.
+  /// fuse_again()), and of a join's match there are no times.
   MergeResult result;
 };
 
@@ -33,8 +33,8 @@ GRIDMERGE_EXPORT MergeRecord read_merge_record(const std::filesystem::path& dire
 /// Fuses the maps of every component anew, at the resolutions of the merged maps that lie in `directory`,
 /// which gives what merge() gave if the maps are the same. `maps[i]` is map i of the record, with as many
 /// maps as names. Returns the components, ascending, whose file holds other cells: it or a map has been
-/// changed since. Throws FileError for a merged map that cannot be read, or not be fused again. Time as
-/// fuse().
+/// changed since. Throws FileError for a merged map that cannot be read, or not be fused again, and
+/// std::invalid_argument for another number of maps. Time as fuse().
 GRIDMERGE_EXPORT std::vector<std::size_t> fuse_again(MergeRecord& record,
                                                      const std::vector<OccupancyGrid>& maps,
                                                      const std::filesystem::path& directory);
