@@ -194,6 +194,7 @@ check_wheel() {
   say "Trying the wheel in a bare Debian '$suite'"
   fresh_root "$suite" python3-numpy python3-pip
   cp packaging/try_wheel.py "$root/"
+  # Debian's Python, which has Debian's Pillow: another one may come first in PATH.
   /usr/bin/python3 -c 'import sys; from PIL import Image; Image.open(sys.argv[1]).save(sys.argv[2])' "$root/maps/robot_2.pgm" "$root/maps/robot_2.png"
   sed 's/robot_2\.pgm/robot_2.png/' "$root/maps/robot_2.yaml" >"$root/maps/png.yaml"
   in_root sh -c 'pip install --break-system-packages --only-binary :all: /release/*.whl'

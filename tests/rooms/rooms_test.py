@@ -12,12 +12,19 @@ import sys
 
 ROW = re.compile(r"^\| `(?P<room>[a-z]+)` \|.*\| (?P<uses>[^|]*) \|$", re.MULTILINE)
 INCLUDE = re.compile(r'^#include "(?:gridmerge/)?([a-z]+)/', re.MULTILINE)
+COMPONENT = re.compile(r"^\| `(?P<component>[a-z]+)` \|[^|]*\|(?P<needs>[^|]*)\|$", re.MULTILINE)
+NEEDS = re.compile(r"^set\(gridmerge_([a-z]+)_needs([a-z ]*)\)", re.MULTILINE)
+
+
+def named_in(cell: str) -> set[str]:
+    """The rooms or components that a table's cell names."""
+    return set(re.findall(r"`([a-z]+)`", cell))
 
 
 def faults_of_rooms(project: pathlib.Path) -> list[str]:
     rooms = {path.name for path in (project / "src").iterdir() if path.is_dir()}
     rows = ROW.findall((project / "CONTRIBUTING.md").read_text())
-    told = {room: set(re.findall(r"`([a-z]+)`", uses)) for room, uses in rows if room in rooms}
+    told = {room: named_in(uses) for room, uses in rows if room in rooms}
     faults = [f"{room}: is not in the table" for room in sorted(rooms - told.keys())]
     for room in sorted(told):
         used = set()
@@ -33,10 +40,6 @@ def faults_of_rooms(project: pathlib.Path) -> list[str]:
     return faults
 
 
-COMPONENT = re.compile(r"^\| `(?P<component>[a-z]+)` \|[^|]*\|(?P<needs>[^|]*)\|$", re.MULTILINE)
-NEEDS = re.compile(r"^set\(gridmerge_([a-z]+)_needs([a-z ]*)\)", re.MULTILINE)
-
-
 def all_needs(component: str, needs: dict[str, set[str]]) -> set[str]:
     """What a component needs, and what that needs."""
     direct = needs.get(component, set())
@@ -47,7 +50,7 @@ def faults_of_components(project: pathlib.Path) -> list[str]:
     listed = (project / "cmake" / "GridmergeComponents.cmake").read_text()
     needs = {component: set(others.split()) for component, others in NEEDS.findall(listed)}
     rows = COMPONENT.findall((project / "README.md").read_text())
-    told = {component: set(re.findall(r"`([a-z]+)`", others)) for component, others in rows}
+    told = {component: named_in(others) for component, others in rows}
     faults = [f"README's table of components lacks {one}" for one in sorted(needs.keys() - told.keys())]
     faults += [
         f"README's table has the component {one}, which is none" for one in sorted(told.keys() - needs.keys())

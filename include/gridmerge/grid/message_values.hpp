@@ -31,7 +31,7 @@ GRIDMERGE_EXPORT Cell cell_of_percentage(int percentage, const OccupancyThreshol
 GRIDMERGE_EXPORT float probability_of_percentage(int percentage);
 
 /// The grid that the values of a message make: width * height percentages, row 0 at the bottom, -1 where
-/// unknown. The grid has probabilities if any value lies between 0 and 100, so that a map of these three
+/// unknown. The grid has probabilities if any value is from 1 to 99, so that a map of these three
 /// equals the trinary map file of the same content. Throws std::invalid_argument for a grid that validate()
 /// refuses. O(cells).
 GRIDMERGE_EXPORT OccupancyGrid grid_of_percentages(int width, int height, double resolution,

@@ -15,9 +15,8 @@ struct Point2 {
 };
 
 /// A rigid transform of the plane: a counter-clockwise rotation by `theta` about the origin, then the
-/// translation
-/// (`x`, `y`) (Birk & Carpin 2006, eq. 1). Metres and radians; what operators and functions give has `theta`
-/// in (-pi, pi]. Named after its frames: `T_a_b` takes a point given in frame b to frame a.
+/// translation (`x`, `y`) (Birk & Carpin 2006, eq. 1). Metres and radians; what operators and functions give
+/// has `theta` in (-pi, pi]. Named after its frames: `T_a_b` takes a point given in frame b to frame a.
 struct SE2 {
   double x = 0.0;      ///< [m]
   double y = 0.0;      ///< [m]
