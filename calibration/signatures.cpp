@@ -8,7 +8,7 @@
 
 #include "grid/parallel.hpp"
 #include "gridmerge/io/map_file.hpp"
-#include "gridmerge/match/prepared_map.hpp"
+#include "gridmerge/match/match.hpp"
 #include "preselect/compare.hpp"
 
 using namespace gridmerge;

@@ -11,7 +11,7 @@ if(CMAKE_SCRIPT_MODE_FILE)
   string(SHA256 digest "${digests}")
   string(SUBSTRING ${digest} 0 16 digest)
   file(WRITE ${OUTPUT} "// Written by cmake/GridmergeEngineId.cmake.
-#include \"gridmerge/match/match_key.hpp\"
+#include \"gridmerge/match/stored_match.hpp\"
 
 namespace gridmerge {
 

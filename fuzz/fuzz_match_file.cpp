@@ -7,7 +7,7 @@
 #include "cache/match_file.hpp"
 #include "fuzz_target.hpp"
 #include "grid/sha256.hpp"
-#include "gridmerge/match/match_bytes.hpp"
+#include "gridmerge/match/stored_match.hpp"
 
 using namespace gridmerge;
 using namespace gridmerge::internal;

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "gridmerge/io/file_error.hpp"
-#include "gridmerge/match/match_key.hpp"
+#include "gridmerge/match/stored_match.hpp"
 
 namespace gridmerge::cli {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "console.hpp"
-#include "gridmerge/cache/match_work.hpp"
+#include "gridmerge/cache/match_cache.hpp"
 #include "gridmerge/merge/merge.hpp"
 
 namespace gridmerge::cli {

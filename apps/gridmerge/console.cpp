@@ -14,7 +14,7 @@
 #include <system_error>
 
 #include "grid/parallel.hpp"
-#include "gridmerge/bag/any_map.hpp"
+#include "gridmerge/bag/bag.hpp"
 #include "io/atomic_file.hpp"
 
 namespace gridmerge::cli {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gridmerge/report/interchange.hpp"
+#include "gridmerge/report/merge_output.hpp"
 
 namespace gridmerge::cli {
 

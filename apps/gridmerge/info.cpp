@@ -11,7 +11,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "gridmerge/bag/any_map.hpp"
+#include "gridmerge/bag/bag.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/io/map_file.hpp"
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "console.hpp"
-#include "gridmerge/bag/any_map.hpp"
+#include "gridmerge/bag/bag.hpp"
 #include "gridmerge/io/initial_poses.hpp"
 
 namespace gridmerge::cli {

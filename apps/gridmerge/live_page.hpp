@@ -5,7 +5,7 @@
 #include <mutex>
 #include <string>
 
-#include "gridmerge/online/team_answer.hpp"
+#include "gridmerge/online/team.hpp"
 #include "page_server.hpp"
 
 namespace gridmerge::cli {

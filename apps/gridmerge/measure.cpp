@@ -16,8 +16,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "gridmerge/report/json.hpp"
-#include "gridmerge/similarity/distance_map.hpp"
-#include "gridmerge/similarity/lattice.hpp"
+#include "gridmerge/similarity/image_similarity.hpp"
 #include "io/atomic_file.hpp"
 #include "report/distance_picture.hpp"
 

@@ -20,7 +20,7 @@
 #include "exports.hpp"
 #include "grid/equal_grids.hpp"
 #include "grid/parallel.hpp"
-#include "gridmerge/bag/any_map.hpp"
+#include "gridmerge/bag/bag.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "gridmerge/bag/any_map.hpp"
+#include "gridmerge/bag/bag.hpp"
 #include "report/plan_json.hpp"
 #include "report/wording.hpp"
 #include "search_options.hpp"

@@ -4,7 +4,7 @@
 #include <system_error>
 #include <utility>
 
-#include "gridmerge/bag/any_map.hpp"
+#include "gridmerge/bag/bag.hpp"
 #include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_record.hpp"
 

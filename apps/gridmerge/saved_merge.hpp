@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "console.hpp"
-#include "gridmerge/report/named_merge.hpp"
+#include "gridmerge/report/merge_output.hpp"
 
 namespace gridmerge::cli {
 

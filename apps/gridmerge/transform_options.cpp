@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "gridmerge/grid/map_transform.hpp"
+#include "gridmerge/grid/deformation.hpp"
 
 namespace gridmerge::cli {
 

@@ -7,7 +7,6 @@
 
 #include "../../tests/similarity/literal_similarity.hpp"
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/similarity/distance_map.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 #include "office.hpp"
 

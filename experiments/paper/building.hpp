@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "gridmerge/simulate/building.hpp"
+#include "gridmerge/simulate/simulate.hpp"
 
 namespace gridmerge::paper {
 

@@ -11,7 +11,7 @@
 
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/search/random_walk.hpp"
-#include "gridmerge/similarity/distance_map.hpp"
+#include "gridmerge/similarity/image_similarity.hpp"
 #include "io/atomic_file.hpp"
 #include "pictures.hpp"
 #include "report/distance_picture.hpp"

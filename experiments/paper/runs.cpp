@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "gridmerge/evaluate/displacement.hpp"
+#include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 

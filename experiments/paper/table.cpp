@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "gridmerge/evaluate/displacement.hpp"
+#include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/match/random_walk_match.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/tree.hpp"

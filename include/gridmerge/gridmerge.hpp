@@ -4,7 +4,6 @@
 
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/match/measure.hpp"
-#include "gridmerge/match/refine_pose.hpp"
 #include "gridmerge/version.hpp"
 
 #if __has_include("gridmerge/merge/merge.hpp")
@@ -19,14 +18,13 @@
 #include "gridmerge/io/initial_poses.hpp"
 #include "gridmerge/io/map_file.hpp"
 #endif
-#if __has_include("gridmerge/cache/match_work.hpp")
-#include "gridmerge/cache/match_work.hpp"
+#if __has_include("gridmerge/cache/match_cache.hpp")
+#include "gridmerge/cache/match_cache.hpp"
 #endif
-#if __has_include("gridmerge/bag/any_map.hpp")
-#include "gridmerge/bag/any_map.hpp"
+#if __has_include("gridmerge/bag/bag.hpp")
+#include "gridmerge/bag/bag.hpp"
 #endif
 #if __has_include("gridmerge/report/merge_output.hpp")
-#include "gridmerge/report/interchange.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/merge_record.hpp"
 #endif

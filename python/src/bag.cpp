@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "gridmerge/bag/bag.hpp"
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,7 +11,6 @@
 
 #include "bag/growing_map.hpp"
 #include "bindings.hpp"
-#include "gridmerge/bag/any_map.hpp"
 #include "io/blaming.hpp"
 #include "worker.hpp"
 

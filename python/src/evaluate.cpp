@@ -6,7 +6,7 @@
 #include "bindings.hpp"
 #include "evaluate/count.hpp"
 #include "evaluate/tables.hpp"
-#include "gridmerge/match/match_bytes.hpp"
+#include "gridmerge/match/stored_match.hpp"
 #include "merge.hpp"
 #include "worker.hpp"
 

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "bindings.hpp"
-#include "gridmerge/bag/any_map.hpp"
+#include "gridmerge/bag/bag.hpp"
 #include "gridmerge/io/initial_poses.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "worker.hpp"

@@ -8,8 +8,7 @@
 #include "bindings.hpp"
 #include "grid/parallel.hpp"
 #include "gridmerge/search/random_walk.hpp"
-#include "gridmerge/similarity/distance_map.hpp"
-#include "gridmerge/similarity/lattice.hpp"
+#include "gridmerge/similarity/image_similarity.hpp"
 #include "table.hpp"
 #include "worker.hpp"
 

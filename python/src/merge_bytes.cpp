@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "gridmerge/match/match_bytes.hpp"
+#include "gridmerge/match/stored_match.hpp"
 #include "match/pair_pose_bytes.hpp"
 
 namespace gridmerge::python {

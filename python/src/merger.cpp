@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "gridmerge/match/match_bytes.hpp"
+#include "gridmerge/match/stored_match.hpp"
 #include "merge.hpp"
 #include "worker.hpp"
 

@@ -2,9 +2,8 @@
 // Matches that are made apart from the merge that needs them, in this process or another one.
 #include "bindings.hpp"
 #include "grid/parallel.hpp"
-#include "gridmerge/bag/any_map.hpp"
-#include "gridmerge/match/match_bytes.hpp"
-#include "gridmerge/match/match_key.hpp"
+#include "gridmerge/bag/bag.hpp"
+#include "gridmerge/match/stored_match.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {

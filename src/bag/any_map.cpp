@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/bag/any_map.hpp"
-
 #include <fmt/format.h>
 
 #include <system_error>
@@ -9,6 +7,7 @@
 #include "bag/bag_content.hpp"
 #include "bag/metadata.hpp"
 #include "bag/random_access_file.hpp"
+#include "gridmerge/bag/bag.hpp"
 
 namespace gridmerge {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "grid/sha256.hpp"
-#include "gridmerge/match/match_bytes.hpp"
+#include "gridmerge/match/stored_match.hpp"
 
 namespace gridmerge::internal {
 

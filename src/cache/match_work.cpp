@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/cache/match_work.hpp"
-
 #include <fmt/format.h>
 
 #include <map>
@@ -10,9 +8,10 @@
 #include <utility>
 
 #include "grid/parallel.hpp"
+#include "gridmerge/cache/match_cache.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/io/file_error.hpp"
-#include "gridmerge/match/match_key.hpp"
+#include "gridmerge/match/stored_match.hpp"
 
 namespace gridmerge {
 

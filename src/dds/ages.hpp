@@ -12,7 +12,7 @@
 
 #include "dds/entity.hpp"
 #include "dds/participant.hpp"
-#include "gridmerge/online/team_answer.hpp"
+#include "gridmerge/online/team.hpp"
 
 namespace gridmerge::internal {
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "gridmerge/evaluate/displacement.hpp"
 #include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string>
 
-#include "gridmerge/evaluate/truth.hpp"
+#include "gridmerge/evaluate/evaluate.hpp"
 #include "io/add_map.hpp"
 
 namespace gridmerge::internal {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/evaluate/displacement.hpp"
-
 #include <cmath>
+
+#include "gridmerge/evaluate/evaluate.hpp"
 
 namespace gridmerge {
 

@@ -7,7 +7,7 @@
 
 #include "evaluate/count.hpp"
 #include "evaluate/map_cache.hpp"
-#include "gridmerge/bag/any_map.hpp"
+#include "gridmerge/bag/bag.hpp"
 
 namespace gridmerge {
 

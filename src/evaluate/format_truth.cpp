@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "gridmerge/evaluate/truth.hpp"
+#include "gridmerge/evaluate/evaluate.hpp"
 
 namespace gridmerge {
 

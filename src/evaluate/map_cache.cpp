@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "gridmerge/bag/any_map.hpp"
+#include "gridmerge/bag/bag.hpp"
 
 namespace gridmerge::internal {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "gridmerge/evaluate/displacement.hpp"
+#include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/io/map_file.hpp"
 

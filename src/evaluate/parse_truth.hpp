@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gridmerge/evaluate/truth.hpp"
+#include "gridmerge/evaluate/evaluate.hpp"
 
 namespace gridmerge::internal {
 

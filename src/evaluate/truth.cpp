@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/evaluate/truth.hpp"
-
 #include "evaluate/parse_truth.hpp"
+#include "gridmerge/evaluate/evaluate.hpp"
 #include "io/file_reader.hpp"
 
 namespace gridmerge {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/grid/map_transform.hpp"
-
 #include <array>
 #include <cstddef>
+
+#include "gridmerge/grid/deformation.hpp"
 
 namespace gridmerge {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <mutex>
 
-#include "gridmerge/match/prepared_map.hpp"
+#include "gridmerge/match/match.hpp"
 #include "internal_export.hpp"
 #include "similarity/likelihood_field.hpp"
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/match/prepared_map.hpp"
 #include "match/refine.hpp"
 #include "match/verdict.hpp"
 #include "match/walls_met.hpp"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/match_bytes.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <stdexcept>
 
+#include "gridmerge/match/stored_match.hpp"
 #include "match/pair_pose_bytes.hpp"
 
 namespace gridmerge {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/match_key.hpp"
-
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
 #include "grid/sha256.hpp"
+#include "gridmerge/match/stored_match.hpp"
 #include "match/bytes.hpp"
 
 namespace gridmerge {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "grid/parallel.hpp"
-#include "gridmerge/match/refine_pose.hpp"
-#include "gridmerge/similarity/lattice.hpp"
+#include "gridmerge/match/match.hpp"
+#include "gridmerge/similarity/image_similarity.hpp"
 #include "similarity/lattice_frames.hpp"
 
 namespace gridmerge {

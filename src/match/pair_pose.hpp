@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "gridmerge/match/match.hpp"
 #include "gridmerge/match/match_result.hpp"
-#include "gridmerge/match/prepared_map.hpp"
 #include "internal_export.hpp"
 #include "similarity/agreement.hpp"
 

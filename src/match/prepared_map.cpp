@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/prepared_map.hpp"
-
 #include <array>
 #include <tuple>
 #include <utility>
 
 #include "gridmerge/grid/resample.hpp"
+#include "gridmerge/match/match.hpp"
 #include "match/drawn_walls.hpp"
 #include "match/scaled_pose.hpp"
 

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "grid/parallel.hpp"
-#include "gridmerge/similarity/lattice.hpp"
+#include "gridmerge/similarity/image_similarity.hpp"
 #include "match/pair_pose.hpp"
 
 namespace gridmerge {

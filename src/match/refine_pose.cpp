@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/refine_pose.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "gridmerge/match/match.hpp"
 #include "match/drawn_walls.hpp"
 #include "match/looks.hpp"
 #include "match/pair_pose.hpp"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "gridmerge/match/prepared_map.hpp"
+#include "gridmerge/match/match.hpp"
 #include "gridmerge/merge/known_pose.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merge_result.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gridmerge/grid/se2.hpp"
-#include "gridmerge/match/prepared_map.hpp"
+#include "gridmerge/match/match.hpp"
 #include "gridmerge/merge/known_pose.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 #include "internal_export.hpp"

@@ -7,7 +7,6 @@
 
 #include "grid/parallel.hpp"
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/match/prepared_map.hpp"
 #include "match/drawn_walls.hpp"
 #include "merge/elastic_walls.hpp"
 

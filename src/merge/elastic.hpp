@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "gridmerge/grid/deformation.hpp"
-#include "gridmerge/match/prepared_map.hpp"
+#include "gridmerge/match/match.hpp"
 #include "merge/elastic_pairs.hpp"
 
 namespace gridmerge::internal {

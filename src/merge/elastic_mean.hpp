@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "gridmerge/grid/affine.hpp"
+#include "gridmerge/grid/deformation.hpp"
 #include "merge/elastic.hpp"
 #include "merge/elastic_pairs.hpp"
 

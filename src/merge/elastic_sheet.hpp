@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "grid/spline.hpp"
-#include "gridmerge/grid/affine.hpp"
 #include "gridmerge/grid/deformation.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 

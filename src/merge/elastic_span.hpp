@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "gridmerge/grid/map_transform.hpp"
+#include "gridmerge/grid/deformation.hpp"
 #include "merge/elastic_sheet.hpp"
 
 namespace gridmerge::internal {

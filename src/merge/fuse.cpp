@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "gridmerge/similarity/lattice.hpp"
+#include "gridmerge/similarity/image_similarity.hpp"
 #include "merge/fuse_box.hpp"
 #include "merge/log_odds.hpp"
 

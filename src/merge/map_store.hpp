@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
-#include "gridmerge/match/prepared_map.hpp"
+#include "gridmerge/match/match.hpp"
 #include "gridmerge/merge/known_pose.hpp"
 #include "merge/component.hpp"
 #include "merge/copies.hpp"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/match/prepared_map.hpp"
 
 namespace gridmerge::internal {
 

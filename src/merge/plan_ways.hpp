@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "gridmerge/match/prepared_map.hpp"
+#include "gridmerge/match/match.hpp"
 #include "merge/plan_parts.hpp"
 
 namespace gridmerge::internal {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "gridmerge/match/refine_pose.hpp"
+#include "gridmerge/match/match.hpp"
 #include "internal_export.hpp"
 #include "merge/log_odds.hpp"
 

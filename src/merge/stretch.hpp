@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "gridmerge/grid/map_transform.hpp"
+#include "gridmerge/grid/deformation.hpp"
 #include "merge/elastic.hpp"
 
 namespace gridmerge::internal {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gridmerge/online/team_answer.hpp"
+#include "gridmerge/online/team.hpp"
 #include "online/placements.hpp"
 
 namespace gridmerge::internal {

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "gridmerge/report/preview.hpp"
+#include "gridmerge/report/merge_output.hpp"
 #include "io/png.hpp"
 #include "report/font.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "gridmerge/similarity/distance_map.hpp"
+#include "gridmerge/similarity/image_similarity.hpp"
 #include "internal_export.hpp"
 
 namespace gridmerge::internal {

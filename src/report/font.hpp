@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "gridmerge/report/preview.hpp"
+#include "gridmerge/report/merge_output.hpp"
 
 namespace gridmerge::internal {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/interchange.hpp"
+#include "report/interchange.hpp"
 
 #include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <system_error>
 
+#include "gridmerge/report/merge_output.hpp"
 #include "io/atomic_file.hpp"
-#include "report/interchange.hpp"
 
 namespace gridmerge {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gridmerge/report/named_merge.hpp"
+#include "gridmerge/report/merge_output.hpp"
 
 namespace gridmerge::internal {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "gridmerge/report/named_merge.hpp"
+#include "gridmerge/report/merge_output.hpp"
 #include "internal_export.hpp"
 
 namespace gridmerge::internal {

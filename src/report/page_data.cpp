@@ -11,7 +11,7 @@
 #include "grid/parallel.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "gridmerge/report/json.hpp"
-#include "gridmerge/report/preview.hpp"
+#include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/version.hpp"
 #include "report/deformation_json.hpp"
 #include "report/shown_map.hpp"

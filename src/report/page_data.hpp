@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "gridmerge/report/named_merge.hpp"
+#include "gridmerge/report/merge_output.hpp"
 #include "report/json_values.hpp"
 
 namespace gridmerge::internal {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/preview.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/report/json.hpp"
+#include "gridmerge/report/merge_output.hpp"
 #include "report/canvas.hpp"
 #include "report/map_panel.hpp"
 #include "report/short_names.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gridmerge/grid/se2.hpp"
-#include "gridmerge/match/refine_pose.hpp"
+#include "gridmerge/match/match.hpp"
 #include "internal_export.hpp"
 
 namespace gridmerge::internal {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "gridmerge/report/preview.hpp"
+#include "gridmerge/report/merge_output.hpp"
 
 namespace gridmerge::internal {
 

@@ -5,7 +5,7 @@
 
 #include "grid/multiversion.hpp"
 #include "grid/unaligned.hpp"
-#include "gridmerge/similarity/distance_map.hpp"
+#include "gridmerge/similarity/image_similarity.hpp"
 
 namespace gridmerge::internal {
 inline namespace multiversion {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/similarity/distance_map.hpp"
-
 #include <algorithm>
 #include <stdexcept>
 #include <string>
 
+#include "gridmerge/similarity/image_similarity.hpp"
 #include "similarity/distance_kernels.hpp"
 
 namespace gridmerge {

@@ -8,8 +8,6 @@
 #include <string>
 
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/similarity/distance_map.hpp"
-#include "gridmerge/similarity/lattice.hpp"
 #include "similarity/distance_kernels.hpp"
 #include "similarity/lattice_frames.hpp"
 #include "similarity/nearest_cells.hpp"

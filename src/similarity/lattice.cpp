@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/similarity/lattice.hpp"
-
 #include <algorithm>
 #include <vector>
 
 #include "gridmerge/grid/resample.hpp"
+#include "gridmerge/similarity/image_similarity.hpp"
 #include "similarity/equal_cells.hpp"
 #include "similarity/lattice_frames.hpp"
 #include "similarity/nearest_cells.hpp"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/simulate/building.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
+#include "gridmerge/simulate/simulate.hpp"
 #include "simulate/building_parts.hpp"
 #include "simulate/floor_plan.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "gridmerge/simulate/building.hpp"
+#include "gridmerge/simulate/simulate.hpp"
 #include "simulate/draughtsman.hpp"
 #include "simulate/random.hpp"
 

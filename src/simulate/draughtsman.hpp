@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "gridmerge/simulate/building.hpp"
+#include "gridmerge/simulate/simulate.hpp"
 
 namespace gridmerge::internal {
 

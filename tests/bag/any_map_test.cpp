@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Maps by name, of files and of bags.
-#include "gridmerge/bag/any_map.hpp"
-
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -9,6 +7,7 @@
 #include <string>
 
 #include "bag/support.hpp"
+#include "gridmerge/bag/bag.hpp"
 #include "io/support.hpp"
 #include "support/temporary_directory.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "gridmerge/bag/any_map.hpp"
+#include "gridmerge/bag/bag.hpp"
 #include "gridmerge/grid/message_values.hpp"
 
 namespace gridmerge {

@@ -11,7 +11,7 @@
 
 #include "cache/match_file.hpp"
 #include "gridmerge/io/file_error.hpp"
-#include "gridmerge/match/match_bytes.hpp"
+#include "gridmerge/match/stored_match.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/cache/match_work.hpp"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -8,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "gridmerge/cache/match_cache.hpp"
 #include "gridmerge/grid/cancellation.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "merge/team.hpp"

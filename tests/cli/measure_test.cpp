@@ -6,9 +6,7 @@
 #include <sstream>
 
 #include "fixture.hpp"
-#include "gridmerge/similarity/distance_map.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
-#include "gridmerge/similarity/lattice.hpp"
 #include "io/png.hpp"
 
 namespace gridmerge::test {

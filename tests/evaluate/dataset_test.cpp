@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "gridmerge/evaluate/truth.hpp"
+#include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "support/temporary_directory.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/evaluate/displacement.hpp"
-
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "gridmerge/evaluate/evaluate.hpp"
 
 namespace gridmerge {
 namespace {

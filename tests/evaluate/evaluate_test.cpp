@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "evaluate/map_cache.hpp"
-#include "gridmerge/evaluate/displacement.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "support/building.hpp"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/evaluate/truth.hpp"
-
 #include <gtest/gtest.h>
 
 #include <clocale>
 #include <functional>
 
+#include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "support/temporary_directory.hpp"
 

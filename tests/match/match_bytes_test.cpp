@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/match_bytes.hpp"
-
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -10,7 +8,7 @@
 #include <string>
 
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/match/match_key.hpp"
+#include "gridmerge/match/stored_match.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/similarity/lattice.hpp"
+#include "gridmerge/similarity/image_similarity.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/match/refine_pose.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/report/interchange.hpp"
+#include "gridmerge/report/merge_output.hpp"
 #include "merge/coverage.hpp"
 #include "merge/pose_graph.hpp"
 #include "report/interchange_support.hpp"

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "gridmerge/report/interchange.hpp"
+#include "gridmerge/report/merge_output.hpp"
 #include "io/support.hpp"
 #include "merge/drawing.hpp"
 #include "report/fleet.hpp"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/interchange.hpp"
-
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
@@ -11,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "gridmerge/report/merge_output.hpp"
 #include "report/interchange_support.hpp"
 #include "report/results.hpp"
 #include "support/temporary_directory.hpp"

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/report/preview.hpp"
+#include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/version.hpp"
 #include "io/support.hpp"
 #include "merge/drawing.hpp"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/preview.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "gridmerge/report/merge_output.hpp"
 #include "io/png.hpp"
 #include "merge/drawing.hpp"
 #include "report/results.hpp"

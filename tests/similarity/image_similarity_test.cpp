@@ -9,7 +9,6 @@
 #include <random>
 #include <utility>
 
-#include "gridmerge/similarity/distance_map.hpp"
 #include "literal_similarity.hpp"
 #include "support/effort.hpp"
 

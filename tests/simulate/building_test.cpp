@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/simulate/building.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "gridmerge/simulate/simulate.hpp"
 #include "simulate/floor_plan.hpp"
 #include "simulate/visit.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "gridmerge/simulate/building.hpp"
+#include "gridmerge/simulate/simulate.hpp"
 #include "simulate/explore.hpp"
 #include "simulate/random.hpp"
 

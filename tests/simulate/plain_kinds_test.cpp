@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "gridmerge/simulate/building.hpp"
+#include "gridmerge/simulate/simulate.hpp"
 #include "simulate/arena.hpp"
 #include "simulate/floor_plan.hpp"
 #include "simulate/painted_floor.hpp"

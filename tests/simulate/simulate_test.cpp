@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "gridmerge/evaluate/displacement.hpp"
+#include "gridmerge/evaluate/evaluate.hpp"
 #include "similarity/agreement.hpp"
 #include "support/effort.hpp"
 

@@ -1,15 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "gridmerge/export.hpp"
-#include "gridmerge/grid/affine.hpp"
-#include "gridmerge/grid/map_transform.hpp"
 #include "gridmerge/grid/se2.hpp"
 
 namespace gridmerge {
+
+/// What may be done to a map so that it fits others.
+enum class MapTransform {
+  rigid,       ///< it is turned and shifted
+  similarity,  ///< it has a scale of its own, too
+  affine,      ///< it has scales along two axes, and shear
+  elastic,     ///< it is bent
+};
+
+/// A transform: the one place where its name and meaning stand.
+struct MapTransformName {
+  MapTransform transform;  ///< which one
+  const char* name;        ///< as the command line, Python and outputs spell it
+  const char* meaning;     ///< in a few words
+};
+
+/// All of them, each with more freedom than the one before it.
+GRIDMERGE_EXPORT std::span<const MapTransformName> map_transforms();
+
+/// "rigid", ...
+GRIDMERGE_EXPORT const char* name_of(MapTransform transform);
+
+/// The transform of that name; none if there is none.
+GRIDMERGE_EXPORT std::optional<MapTransform> map_transform(std::string_view name);
+
+/// An affine function of the plane: p goes to (xx * p.x + xy * p.y + shift.x, yx * p.x + yy * p.y + shift.y).
+struct Affine {
+  double xx = 1.0;  ///< of x in x
+  double xy = 0.0;  ///< of y in x
+  double yx = 0.0;  ///< of x in y
+  double yy = 1.0;  ///< of y in y
+  Point2 shift;     ///< where the origin goes [m]
+
+  /// Where a point goes [m].
+  Point2 operator*(const Point2& p) const {
+    return {xx * p.x + xy * p.y + shift.x, yx * p.x + yy * p.y + shift.y};
+  }
+  /// By how much it enlarges areas; negative if it mirrors.
+  double determinant() const { return xx * yy - xy * yx; }
+  /// By how much it enlarges lengths, in the geometric mean over its two axes: the root of the determinant,
+  /// which must not be negative.
+  double scale() const { return std::sqrt(determinant()); }
+  /// Whether it turns, shifts and enlarges alone: no entry is farther than `tolerance` from such a
+  /// function's.
+  bool is_similarity(double tolerance = 1e-9) const {
+    return std::abs(xx - yy) <= 2.0 * tolerance && std::abs(xy + yx) <= 2.0 * tolerance;
+  }
+
+  /// Whether both are the same, to the bit.
+  friend bool operator==(const Affine&, const Affine&) = default;
+};
 
 /// A smooth deformation of a map that neither tears nor folds it: every point is shifted, and no two points
 /// become one.

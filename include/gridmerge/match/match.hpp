@@ -3,17 +3,49 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/match_result.hpp"
-#include "gridmerge/match/prepared_map.hpp"
 #include "gridmerge/match/random_walk_match.hpp"
 
 namespace gridmerge {
+
+namespace internal {
+class DrawnWalls;
+}
+
+/// A map with all that matches of it have in common, so that it is worked out once and not for every other
+/// map that it is matched with. May be used by several threads at once.
+class GRIDMERGE_EXPORT PreparedMap {
+ public:
+  /// Copies what robots have seen of `grid`: without painted cells (see without_painted()), so nothing of a
+  /// drawing in which no cell is free. Throws std::invalid_argument for an invalid grid (see validate()).
+  /// O(cells).
+  explicit PreparedMap(const OccupancyGrid& grid);
+  ~PreparedMap();
+
+  const OccupancyGrid& known() const { return known_; }  ///< cropped, and turned by quarters
+  const CellCounts& counts() const { return counts_; }   ///< of known()
+
+ private:
+  friend class internal::DrawnWalls;
+  /// `known` as a prepared map has it.
+  PreparedMap(OccupancyGrid known, const CellCounts& counts);
+
+  OccupancyGrid known_;
+  CellCounts counts_;
+  std::unique_ptr<internal::DrawnWalls> drawn_;
+};
+
+/// Orders maps by what they hold, not by where they come from: by their known area, and what differs between
+/// maps of the same area. Of two maps the smaller is searched in the larger one.
+GRIDMERGE_EXPORT bool is_smaller(const PreparedMap& a, const PreparedMap& b);
 
 /// How match() searches the poses of a pair.
 enum class SearchMethod {
@@ -88,5 +120,33 @@ GRIDMERGE_EXPORT double working_cell(const PreparedMap& fixed, const PreparedMap
 
 /// Throws std::invalid_argument for options that make no sense.
 GRIDMERGE_EXPORT void validate(const MatchOptions& options);
+
+/// A pose that somebody proposed, put right.
+struct RefinedPose : PairPose {
+  double score = 0.0;        ///< log-likelihood ratio "same place" against "unrelated" [nats]
+  double start_score = 0.0;  ///< the same of the pose that was proposed
+  double moved = 0.0;        ///< root mean square displacement of the moving map's walls from there [m]
+};
+
+/// Climbs from `T_start` to the local maximum of the evidence near it: the best one that is reached from
+/// poses within about a metre and seven degrees of it, by the evidence by which match() ranks its hypotheses.
+/// Where none is better than the start, that is the answer. With cells of less than 2 cm it looks less far
+/// than a metre: 50 to 100 cells, the more the larger the maps.
+///
+/// The probability is what match() would give to the pose were it one of its hypotheses: the same model of
+/// the same figures, against all distinct hypotheses of a full search. Where another pose explains the maps
+/// better the probability is below a half; where the pose explains nothing it is 0. That somebody proposed
+/// the pose counts for nothing in it.
+///
+/// Throws std::invalid_argument for a start that is not finite. Neither pose nor figures depend on which map
+/// is called fixed, but for rounding, nor on the number of threads. Runs in the calling TBB arena; about
+/// twice the time of match().
+GRIDMERGE_EXPORT RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving,
+                                         const SE2& T_start);
+
+/// What the engine says of a pose as it stands: its score, its figures, and the probability that
+/// refine_pose() would give it. Argument, errors, threads and time as there.
+GRIDMERGE_EXPORT Hypothesis judge_pose(const PreparedMap& fixed, const PreparedMap& moving,
+                                       const SE2& T_fixed_moving);
 
 }  // namespace gridmerge

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gridmerge/export.hpp"
-#include "gridmerge/grid/map_transform.hpp"
+#include "gridmerge/grid/deformation.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/merge/known_pose.hpp"

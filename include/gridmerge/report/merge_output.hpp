@@ -1,16 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/io/file_error.hpp"
-#include "gridmerge/report/named_merge.hpp"
+#include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
+
+/// A merge as outputs show it: with its maps, and what they are called. Not owned: all three outlive it. What
+/// takes one throws std::out_of_range when there are fewer names than maps.
+struct NamedMerge {
+  const std::vector<std::string>& names;   ///< `names[i]` is what to call map i
+  const std::vector<OccupancyGrid>& maps;  ///< as given to merge()
+  const MergeResult& result;               ///< as merge() returned it
+};
 
 /// Whether a file of this name in the output directory is a merge's own: written, replaced or removed by it.
 GRIDMERGE_EXPORT bool is_merge_output(const std::filesystem::path& name);
@@ -49,5 +60,71 @@ GRIDMERGE_EXPORT void write_merge_output(const std::filesystem::path& directory,
 /// FileError, also when one of the inputs would be replaced.
 GRIDMERGE_EXPORT void write_report(const std::filesystem::path& directory,
                                    const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge);
+
+/// What other programs read of a merge; docs/exports.md describes each.
+enum class ExportFormat {
+  /// A pose graph, as g2o's text files hold it: https://github.com/RainerKuemmerle/g2o/wiki/File-Format
+  g2o,
+  /// The points by which Open-RMF's fleet adapters find where a robot's map lies (YAML):
+  /// https://github.com/open-rmf/fleet_adapter_template
+  open_rmf,
+  /// Outlines of maps (RFC 7946), in metres of the merged map's frame.
+  geojson,
+};
+
+/// All of them, in the order in which they are told.
+GRIDMERGE_EXPORT const std::vector<ExportFormat>& export_formats();
+
+/// As users spell it: "g2o", "open-rmf", "geojson".
+GRIDMERGE_EXPORT const char* name_of(ExportFormat format);
+
+/// The one that name_of() calls so, if there is one.
+GRIDMERGE_EXPORT std::optional<ExportFormat> export_format(std::string_view name);
+
+/// What the file beside transforms.json is called, unless it is named: "merged.g2o", "open_rmf.yaml",
+/// "merged.geojson".
+GRIDMERGE_EXPORT const char* export_file(ExportFormat format);
+
+/// The text of such a file: of all maps that were placed, those of each component in its own frame. Names are
+/// text in it, whatever bytes they hold. The same merge gives the same bytes. Throws std::invalid_argument if
+/// no map was placed, and std::out_of_range when there are fewer names or maps than the result speaks of.
+/// O(cells + joins).
+GRIDMERGE_EXPORT std::string export_text(ExportFormat format, const NamedMerge& merge);
+
+/// Writes it to a file, which is replaced as a whole. Throws FileError, also if no map was placed, or if the
+/// file is one of `inputs`: files that the maps were read from.
+GRIDMERGE_EXPORT void write_export(ExportFormat format, const std::filesystem::path& file,
+                                   const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge);
+
+/// A colour, 8 bits a channel.
+struct Colour {
+  std::uint8_t red = 0;    ///< 0 to 255
+  std::uint8_t green = 0;  ///< 0 to 255
+  std::uint8_t blue = 0;   ///< 0 to 255
+
+  /// Whether all channels are equal.
+  friend bool operator==(const Colour&, const Colour&) = default;
+};
+
+/// The colours of a preview. Free space that one map saw has a light tint of the map's colour.
+struct PreviewColours {
+  static constexpr Colour kUnknown{221, 221, 217};     ///< known to no map
+  static constexpr Colour kSharedFree{255, 255, 255};  ///< free in two maps or more
+  static constexpr Colour kSharedWall{32, 32, 36};     ///< occupied in two maps or more
+  /// Free in as many maps as occupied; nothing else has it. The fewer say otherwise than the rest, the nearer
+  /// to what the rest say.
+  static constexpr Colour kDisagreement{213, 94, 0};
+};
+
+/// The colour of input map i, of its walls. The first six are distinct to colour-blind eyes too; further maps
+/// get darker and lighter shades of them.
+GRIDMERGE_EXPORT Colour map_colour(std::size_t map);
+
+/// A PNG that shows a merge: each component with its maps in their own colours, what they share and where
+/// they disagree, a scale bar in metres, and the colours' meaning; below, the maps that were left out, each
+/// by itself in its own frame. Of each kind the first twelve are shown, and how many more there are. Small
+/// maps are magnified, large ones drawn at a coarser resolution: the picture is at most 2400 pixels wide, and
+/// no map in it higher. Names are UTF-8; folders that all of them lie in are not shown.
+GRIDMERGE_EXPORT std::string preview_png(const NamedMerge& merge);
 
 }  // namespace gridmerge

@@ -12,6 +12,67 @@
 
 namespace gridmerge {
 
+/// In a DistanceMap: the grid has no cell of the value.
+inline constexpr std::uint16_t kNoDistance = 0xffff;
+
+/// Manhattan distances between cells are kept in 16 bits: width + height must not exceed this.
+inline constexpr int kMaxDistanceMapSides = 32000;
+
+/// d-map_c of Birk & Carpin 2006: for every cell of a grid the Manhattan distance [cells] to the nearest cell
+/// of one value, row-major as the grid; kNoDistance everywhere if there is none.
+struct DistanceMap {
+  int width = 0;                         ///< columns
+  int height = 0;                        ///< rows
+  std::vector<std::uint16_t> distances;  ///< width * height values [cells]
+
+  /// The distance at a cell, which has to be inside.
+  std::uint16_t at(int column, int row) const {
+    return distances[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(column)];
+  }
+};
+
+/// Algorithm 2 of the paper, with its two passes split by direction: both ways along the columns, then both
+/// ways along the rows, sixteen of which go at a time. Throws std::invalid_argument if width + height >
+/// kMaxDistanceMapSides. O(cells); vectorised.
+GRIDMERGE_EXPORT DistanceMap make_distance_map(const OccupancyGrid& grid, Cell value);
+
+/// Algorithm 2 of the paper to look at: what its two passes leave.
+struct DistanceMapPasses {
+  DistanceMap start;     ///< 0 at the cells of the value, kNoDistance elsewhere
+  DistanceMap forward;   ///< after the pass from the upper left corner on: the left and the upper neighbour
+  DistanceMap backward;  ///< after the pass from the lower right corner on: d-map_c
+};
+
+/// The passes as the paper writes them, cell by cell; `backward` equals make_distance_map(), which is ten
+/// times as fast. The upper row is the last one: y points up. Throws as make_distance_map(). O(cells).
+GRIDMERGE_EXPORT DistanceMapPasses trace_distance_map(const OccupancyGrid& grid, Cell value);
+
+// Birk & Carpin (2006) compare cells of maps that lie on one lattice. These functions lay maps at poses on
+// the lattice of any grid: its size, resolution and origin count, its cells do not. Each cell takes the value
+// of the map's cell in which its centre falls (nearest cell), and is unknown where there is none. A centre
+// that falls on the edge between two cells, to about a millionth of a cell, may go to either.
+//
+// All throw std::invalid_argument for invalid grids, resolutions that differ by more than 100 times, sides of
+// more than a million cells, and a transform that is not finite or puts the map that far away.
+
+/// T(m), the map that a transform makes of a map (definition 4 of the paper), on `lattice`: a grid of its
+/// size, resolution and origin. `map.T_output_map` takes the map's frame to the lattice's [m, rad].
+/// Probabilities are dropped. O(cells of the lattice).
+GRIDMERGE_EXPORT OccupancyGrid draw_on_lattice(const OccupancyGrid& lattice, const PlacedMap& map);
+
+/// omega for k maps at poses (eq. 3): cells of the lattice at which all of them have the same value, unknown
+/// included. The order of the maps plays no part. Every cell counts for a single map, none for no map.
+/// O(k * cells of the lattice).
+GRIDMERGE_EXPORT std::int64_t count_equal_cells(const OccupancyGrid& lattice,
+                                                std::span<const PlacedMap> maps);
+
+/// Whether the rectangles that hold the maps' known cells share a cell of the fixed map's lattice: the maps
+/// can have something in common only then. False for a transform that is not finite or puts the maps more
+/// than a million cells apart. Throws for the grids as above. O(cells of both).
+GRIDMERGE_EXPORT bool lie_on_each_other(const OccupancyGrid& fixed, const OccupancyGrid& moving,
+                                        const SE2& T_fixed_moving);
+
 // The measures of A. Birk and S. Carpin, "Merging occupancy grid maps from multiple robots", Proc. IEEE,
 // 2006.
 //

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
-#include <gridmerge/cache/match_work.hpp>
+#include <gridmerge/cache/match_cache.hpp>
 
 int main() {
   const std::filesystem::path directory = std::filesystem::temp_directory_path() / "gridmerge-consumer";

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a match is a match of, wherever its maps lie.
+// Matches for who keeps them or sends them elsewhere: what each is a match of, and its bytes.
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match.hpp"
+#include "gridmerge/match/match_result.hpp"
 
 namespace gridmerge {
 
@@ -22,5 +24,13 @@ GRIDMERGE_EXPORT std::string content_id(const OccupancyGrid& grid);
 /// 64 hexadecimal digits. Throws std::invalid_argument for a random walk, which has more options than these.
 GRIDMERGE_EXPORT std::string match_key(const std::string& fixed_content, const std::string& moving_content,
                                        const MatchOptions& options);
+
+/// A match in a form that another process reads, on any machine: every bit of it. About 200 bytes a
+/// hypothesis.
+GRIDMERGE_EXPORT std::string to_bytes(const MatchResult& match);
+
+/// What to_bytes() was given. Throws std::invalid_argument, with a message that begins with a verb, for bytes
+/// that are no match. O(bytes).
+GRIDMERGE_EXPORT MatchResult match_from_bytes(std::string_view bytes);
 
 }  // namespace gridmerge
