@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/match/match.hpp"
+#include "match/prepared_map.hpp"
 #include "preselect/compare.hpp"
 
 using namespace gridmerge;

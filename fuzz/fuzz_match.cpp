@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz_target.hpp"
 #include "gridmerge/match/match.hpp"
+#include "match/prepared_map.hpp"
 #include "tiny_maps.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gridmerge;
+  using internal::is_smaller;
   FuzzedDataProvider bytes(data, size);
   MatchOptions options;
   options.search =

@@ -79,7 +79,7 @@ CachedEngine::CachedEngine(const CacheOptions& options, Console& console)
 MergeResult CachedEngine::merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
                                 const std::vector<std::optional<KnownPose>>& known_poses) {
   if (!cache_) return gridmerge::merge(maps, options, known_poses);
-  Merger merger = merger_of(maps, options, known_poses);
+  Merger merger(maps, options, known_poses);
   MatchWorkOptions work;
   work.progress = options.progress;
   const MatchWork done = match_with_cache(merger, maps, *cache_, work);
@@ -105,7 +105,7 @@ MatchResult CachedEngine::match(const OccupancyGrid& fixed, const OccupancyGrid&
 
 std::string CachedEngine::make_shard(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
                                      const std::vector<std::optional<KnownPose>>& known_poses) {
-  Merger merger = merger_of(maps, options, known_poses);
+  Merger merger(maps, options, known_poses);
   MatchWorkOptions work;
   work.shard = to_shard(options_.shard).value();
   work.goes_on_when_full = false;

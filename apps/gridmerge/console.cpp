@@ -15,6 +15,7 @@
 
 #include "grid/parallel.hpp"
 #include "gridmerge/bag/bag.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "io/atomic_file.hpp"
 
 namespace gridmerge::cli {
@@ -145,7 +146,7 @@ std::vector<LoadedMap> MapReader::read_all(const std::vector<std::string>& paths
   for (std::size_t begin = 0; begin < paths.size(); begin += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, paths.size() - begin);
     console_.progress("reading maps", static_cast<double>(begin) / static_cast<double>(paths.size()));
-    internal::with_threads(threads, [&] {
+    with_threads(threads, [&] {
       internal::parallel_for(count, [&](std::size_t i) {
         try {
           maps[begin + i] = load_any_map(paths[begin + i], options_);

@@ -8,6 +8,7 @@
 
 #include "console.hpp"
 #include "gridmerge/report/merge_output.hpp"
+#include "report/output_names.hpp"
 
 namespace gridmerge::cli {
 
@@ -76,7 +77,7 @@ std::vector<Export> exports_of(const ExportOptions& options, const std::string& 
 void try_result_file(const std::filesystem::path& file, const std::string& directory,
                      const std::vector<std::filesystem::path>& inputs) {
   const bool beside = normal_folder(file.parent_path()) == normal_folder(directory);
-  if (beside && is_merge_output(file.filename()))
+  if (beside && internal::is_merge_output(file.filename()))
     throw FileError(file, "is a file that the merge itself writes: choose another name");
   if (!beside || std::filesystem::exists(directory)) try_output_file(file.string(), inputs);
 }

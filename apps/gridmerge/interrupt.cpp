@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge::cli {
 

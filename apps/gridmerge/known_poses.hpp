@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "console.hpp"
-#include "gridmerge/merge/known_pose.hpp"
+#include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merge_result.hpp"
+#include "merge/unused_poses.hpp"
 
 namespace gridmerge::cli {
 
@@ -55,7 +56,7 @@ class KnownPoses {
   std::string describe_unused(const std::vector<OccupancyGrid>& maps, const MergeResult& result) const;
 
  private:
-  std::string describe(const UnusedPose& unused) const;
+  std::string describe(const internal::UnusedPose& unused) const;
   bool would_do_in_degrees(const std::vector<OccupancyGrid>& maps, const MergeResult& result,
                            std::size_t unused) const;
 

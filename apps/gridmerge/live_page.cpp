@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "refine_answer.hpp"
 #include "report/page.hpp"
 

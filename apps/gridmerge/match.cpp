@@ -14,8 +14,8 @@
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "gridmerge/report/json.hpp"
 #include "match/verdict.hpp"
+#include "report/json_lines.hpp"
 #include "scale_hint.hpp"
 #include "search_options.hpp"
 

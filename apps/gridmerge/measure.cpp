@@ -15,10 +15,10 @@
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "gridmerge/report/json.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 #include "io/atomic_file.hpp"
 #include "report/distance_picture.hpp"
+#include "report/json_lines.hpp"
 
 namespace gridmerge::cli {
 

@@ -19,10 +19,9 @@
 #include "console.hpp"
 #include "exports.hpp"
 #include "grid/equal_grids.hpp"
-#include "grid/parallel.hpp"
 #include "gridmerge/bag/bag.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/merge/tree.hpp"
-#include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "known_poses.hpp"
 #include "merge_summary.hpp"
@@ -207,7 +206,7 @@ int run_merge(const MergeCommandOptions& options) {
   if (inputs.plan)
     result = inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
   console.progress("writing the result");
-  internal::with_threads(options.common.threads, [&] {
+  with_threads(options.common.threads, [&] {
     write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   });
   matcher.write_trace();

@@ -8,9 +8,8 @@
 #include <iterator>
 
 #include "console.hpp"
-#include "gridmerge/merge/doubled_walls.hpp"
-#include "gridmerge/report/json.hpp"
-#include "report/wording.hpp"
+#include "gridmerge/report/merge_record.hpp"
+#include "merge/doubled_walls.hpp"
 
 namespace gridmerge::cli {
 
@@ -159,7 +158,7 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
   if (result.expected_false_joins && !result.components.empty())
     fmt::format_to(out, "of these joins, {:.3f} are expected to be false\n", *result.expected_false_joins);
   for (const LeftOut& one : result.left_out)
-    fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain_left_out(result, one));
+    fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain(result, one));
   text += describe_open_ways(names, result);
   for (const Join& join : result.joins) {
     const std::string pair =

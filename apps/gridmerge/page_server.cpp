@@ -23,7 +23,7 @@
 #include <utility>
 
 #include "address.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "http_server.hpp"
 #include "interrupt.hpp"
 

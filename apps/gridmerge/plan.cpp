@@ -11,7 +11,6 @@
 
 #include "gridmerge/bag/bag.hpp"
 #include "report/plan_json.hpp"
-#include "report/wording.hpp"
 #include "search_options.hpp"
 
 namespace gridmerge::cli {
@@ -85,8 +84,8 @@ std::string describe_plan(const std::vector<std::string>& names, const MergeResu
         fmt::format_to(out, "  {}: {}\n", fmt::join(maps, ", "), describe_pose(part.T_plan_first));
       continue;
     }
-    fmt::format_to(out, "off the plan: {}: {} (probability {:.4f})\n", fmt::join(maps, ", "),
-                   explain_off_plan(part.reason), part.probability);
+    fmt::format_to(out, "off the plan: {}: {} (probability {:.4f})\n", fmt::join(maps, ", "), explain(part),
+                   part.probability);
   }
   return text;
 }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "merge/refine_member.hpp"
 #include "report/refine_request.hpp"
 

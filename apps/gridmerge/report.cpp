@@ -4,7 +4,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "exports.hpp"
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "saved_merge.hpp"
 

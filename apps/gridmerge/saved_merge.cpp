@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "gridmerge/bag/bag.hpp"
-#include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_record.hpp"
 
 namespace gridmerge::cli {

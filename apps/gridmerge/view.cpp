@@ -6,7 +6,7 @@
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "page_server.hpp"
 #include "refine_answer.hpp"
 #include "report/page.hpp"

@@ -3,7 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "office.hpp"
 #include "search/exhaustive.hpp"
@@ -48,7 +48,7 @@ void bm_search_all_poses(benchmark::State& state) {
   const LikelihoodField moving =
       gridmerge::internal::make_likelihood_field(pair.moving, pair.moving.resolution);
   for (auto _ : state) {
-    gridmerge::internal::with_threads(
+    gridmerge::with_threads(
         1, [&] { benchmark::DoNotOptimize(gridmerge::internal::search_all_poses(fixed, moving)); });
   }
 }

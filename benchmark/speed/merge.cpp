@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <random>
 
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "merge/consistent_set.hpp"
 
 namespace gridmerge::internal {

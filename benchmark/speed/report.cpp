@@ -3,7 +3,6 @@
 // pairs one was compared. "bytes" is the size of transforms.json.
 #include <benchmark/benchmark.h>
 
-#include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_record.hpp"
 #include "report/fleet.hpp"
 

@@ -9,9 +9,9 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
-#include "grid/cell_limit.hpp"
 #include "grid/equal_grids.hpp"
 #include "gridmerge/grid/message_values.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
@@ -44,9 +44,9 @@ OccupancyGrid frame(const char* name, const Input<Value>& values, double resolut
   const std::size_t height = values.shape(0), width = values.shape(1);
   const std::string shape = "its shape is (" + std::to_string(height) + ", " + std::to_string(width) + ")";
   if (height == 0 || width == 0) throw std::invalid_argument(name + (": has no cells: " + shape));
-  if (height > internal::kMaxGridCells / width)
-    throw std::invalid_argument(
-        name + (": has more than " + std::to_string(internal::kMaxGridCells) + " cells: " + shape));
+  if (height > kMaxGridCells / width)
+    throw std::invalid_argument(name +
+                                (": has more than " + std::to_string(kMaxGridCells) + " cells: " + shape));
   OccupancyGrid grid;
   grid.width = static_cast<int>(width);
   grid.height = static_cast<int>(height);

@@ -45,7 +45,7 @@ void bind_io(nb::module_& module) {
       .def_prop_ro("name", [](const InitialPose& pose) { return to_str(pose.name); })
       .def_prop_ro("path", [](const InitialPose& pose) { return to_str(pose.path.string()); })
       .def_prop_ro("transform", [](const InitialPose& pose) { return to_pose(pose.T_world_map); })
-      .def_ro("sd", &InitialPose::sd)
+      .def_ro("sd", &InitialPose::sd_position)
       .def_ro("sd_theta", &InitialPose::sd_theta);
   module.def(
       "read_initial_poses", [](const nb::bytes& path) { return read_initial_poses(to_string(path)); },

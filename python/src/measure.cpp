@@ -6,7 +6,7 @@
 #include <map>
 
 #include "bindings.hpp"
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/search/random_walk.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 #include "table.hpp"

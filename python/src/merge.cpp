@@ -3,12 +3,11 @@
 
 #include <utility>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "merge_bytes.hpp"
-#include "report/wording.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
@@ -157,8 +156,7 @@ void bind_results(nb::module_& module) {
                    [](const Merged& merged) {
                      std::vector<std::tuple<std::size_t, std::string, std::string>> left_out;
                      for (const LeftOut& one : merged.result->left_out)
-                       left_out.emplace_back(one.map, name_of(one.reason),
-                                             explain_left_out(*merged.result, one));
+                       left_out.emplace_back(one.map, name_of(one.reason), explain(*merged.result, one));
                      return left_out;
                    })
       .def("state",

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "merge.hpp"
-#include "report/wording.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
@@ -48,7 +47,7 @@ void bind_plan(nb::module_& module) {
       .def_ro("probability", &PlanPart::probability)
       .def_prop_ro("on_plan", &PlanPart::on_plan)
       .def_prop_ro("reason", [](const PlanPart& part) { return name_of(part.reason); })
-      .def_prop_ro("explanation", [](const PlanPart& part) { return explain_off_plan(part.reason); });
+      .def_prop_ro("explanation", [](const PlanPart& part) { return explain(part); });
   nb::class_<PlanPlacement>(module, "PlanPlacement")
       .def_prop_ro("name", [](const PlanPlacement& plan) { return to_str(plan.name); })
       .def_ro("scale", &PlanPlacement::scale)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Matches that are made apart from the merge that needs them, in this process or another one.
 #include "bindings.hpp"
-#include "grid/parallel.hpp"
 #include "gridmerge/bag/bag.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/match/stored_match.hpp"
 #include "worker.hpp"
 

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge::python {
 

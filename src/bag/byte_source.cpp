@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "io/parse_error.hpp"
 
 namespace gridmerge::internal {

@@ -10,7 +10,7 @@
 #include <limits>
 #include <system_error>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/io/file_error.hpp"
 
 namespace gridmerge::internal {

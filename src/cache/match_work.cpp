@@ -9,7 +9,7 @@
 
 #include "grid/parallel.hpp"
 #include "gridmerge/cache/match_cache.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "gridmerge/match/stored_match.hpp"
 

@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "grid/cell_limit.hpp"
 #include "gridmerge/grid/message_values.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge::internal {
 

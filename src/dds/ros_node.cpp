@@ -22,7 +22,7 @@
 #include "dds/publisher.hpp"
 #include "dds/selection.hpp"
 #include "dds/status.hpp"
-#include "grid/cell_limit.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge {
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluate/known_moments.hpp"
 #include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 

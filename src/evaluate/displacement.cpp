@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "evaluate/known_moments.hpp"
 #include "gridmerge/evaluate/evaluate.hpp"
 
 namespace gridmerge {
+
+namespace internal {
 
 KnownMoments known_moments(const OccupancyGrid& map) {
   // In cells about the grid's middle, row by row: within a row all sums are exact integers, and keeping the
@@ -46,8 +49,10 @@ double rms_displacement(const KnownMoments& moving, const SE2& T_estimate, const
   return std::hypot(estimate.x - truth.x, estimate.y - truth.y, turned);
 }
 
+}  // namespace internal
+
 double rms_displacement(const OccupancyGrid& moving, const SE2& T_estimate, const SE2& T_truth) {
-  return rms_displacement(known_moments(moving), T_estimate, T_truth);
+  return rms_displacement(internal::known_moments(moving), T_estimate, T_truth);
 }
 
 }  // namespace gridmerge

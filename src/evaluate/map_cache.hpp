@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "evaluate/known_moments.hpp"
 #include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/io/map_file.hpp"

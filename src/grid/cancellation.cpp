@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/grid/cancellation.hpp"
-
 #include "grid/cancellation_scope.hpp"
+#include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge {
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "grid/seen_from.hpp"
 #include "grid/spline.hpp"
 
 namespace gridmerge {
@@ -52,7 +53,6 @@ Deformation::Deformation(const SE2& T_map_lattice, double spacing, int columns, 
       "a lattice's frame must be finite");
   for (const Point2& shift : shifts_) {
     require(std::isfinite(shift.x) && std::isfinite(shift.y), "a lattice's shifts must be finite");
-    shift_bound_ = std::max(shift_bound_, std::hypot(shift.x, shift.y));
   }
   strain_bound_ = internal::strain_bound(shifts_, columns, rows, spacing);
   require(strain_bound_ <= kMostStrain,
@@ -126,7 +126,7 @@ MapTransform Deformation::kind() const {
   return as_affine->is_similarity() ? MapTransform::similarity : MapTransform::affine;
 }
 
-Deformation seen_from(const SE2& T_a_b, const Deformation& deformation) {
+Deformation internal::seen_from(const SE2& T_a_b, const Deformation& deformation) {
   if (deformation.is_identity()) return deformation;
   return {T_a_b * deformation.T_map_lattice(), deformation.spacing(), deformation.columns(),
           deformation.rows(), deformation.shifts()};

@@ -12,13 +12,17 @@
 
 #include <algorithm>
 #include <atomic>
+#include <stdexcept>
 
 #include "grid/cancellation_scope.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 
-namespace gridmerge::internal {
+namespace gridmerge {
+
+using namespace internal;
 
 void with_threads(int threads, const std::function<void()>& work) {
+  if (threads < 0) throw std::invalid_argument("threads must not be negative");
   std::atomic<int> begun{0};
   std::atomic<int> ended{0};
   const std::atomic<bool>* const cancellation = current_cancellation();
@@ -34,6 +38,8 @@ void with_threads(int threads, const std::function<void()>& work) {
   });
   (void)ended.load(std::memory_order_acquire);
 }
+
+namespace internal {
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
   std::atomic<int> begun{0};
@@ -58,4 +64,6 @@ void parallel_tasks(std::size_t count, const std::function<void(std::size_t)>& t
   }
 }
 
-}  // namespace gridmerge::internal
+}  // namespace internal
+
+}  // namespace gridmerge

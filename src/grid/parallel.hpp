@@ -8,10 +8,6 @@
 
 namespace gridmerge::internal {
 
-/// Runs `work` so that every parallel_for() in it uses up to `threads` threads; 0 = one a core.
-/// An exception of `work` is passed on.
-GRIDMERGE_INTERNAL_EXPORT void with_threads(int threads, const std::function<void()>& work);
-
 /// Calls `body(i)` for every i in [0, count), in any order and several at a time, and returns when all calls
 /// have returned. No call may touch what another one writes. When calls throw, one of the exceptions is
 /// passed on.

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "gridmerge/grid/resample.hpp"
+#include "grid/painted.hpp"
 
 namespace gridmerge::internal {
 

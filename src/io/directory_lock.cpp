@@ -10,7 +10,7 @@
 #include <chrono>
 #include <thread>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "io/durable.hpp"
 

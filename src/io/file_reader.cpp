@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/io/file_error.hpp"
 
 namespace gridmerge::internal {

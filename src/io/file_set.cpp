@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "io/destination.hpp"
 #include "io/directory_names.hpp"

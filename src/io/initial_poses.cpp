@@ -47,7 +47,7 @@ std::vector<InitialPose> parse_initial_poses(const std::filesystem::path& path, 
     pose.theta_as_written = table.number(row, "theta");
     pose.T_world_map = {place(table, row, "x"), place(table, row, "y"),
                         normalize_angle(pose.theta_as_written)};
-    pose.sd = deviation(table, row, "sd", pose.sd);
+    pose.sd_position = deviation(table, row, "sd", pose.sd_position);
     pose.sd_theta = deviation(table, row, "sd_theta", pose.sd_theta);
     poses.push_back(std::move(pose));
   }

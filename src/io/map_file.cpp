@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include "grid/cell_limit.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 #include "io/add_map.hpp"
 #include "io/blaming.hpp"
 #include "io/file_reader.hpp"

@@ -7,8 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "grid/cell_limit.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/grid/resample.hpp"
 
 namespace gridmerge::internal {

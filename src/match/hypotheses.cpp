@@ -8,6 +8,7 @@
 
 #include "grid/longer_side.hpp"
 #include "match/drawn_walls.hpp"
+#include "match/prepared_map.hpp"
 #include "similarity/wall_lines.hpp"
 
 namespace gridmerge::internal {

@@ -7,24 +7,18 @@
 #include <stdexcept>
 #include <utility>
 
-#include "grid/longer_side.hpp"
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "match/drawing.hpp"
 #include "match/looks.hpp"
 #include "match/match_at_scales.hpp"
 #include "match/pair_pose.hpp"
+#include "match/prepared_map.hpp"
 
 namespace gridmerge {
 
 using namespace internal;
 
 namespace {
-
-/// Larger maps are compared in larger cells, but no larger than rooms and doors allow...
-constexpr double kCellsAlongSide = 800.0;
-constexpr double kCoarsestCell = 0.1;  // [m], unless the maps themselves are coarser
-/// ...up to where time and memory have to be bounded.
-constexpr double kMaxCellsAlongSide = 4000.0;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -79,21 +73,12 @@ MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const
 
 MatchResult match(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options) {
   validate(options);
-  if (options.search == SearchMethod::random_walk) return walk(fixed.known(), moving.known(), options);
+  if (options.search == SearchMethod::random_walk || options.scales)
+    throw std::invalid_argument("prepared maps are matched at one scale, and not by the random walk");
   const auto start = std::chrono::steady_clock::now();
-  MatchResult result =
-      options.scales ? match_at_scales(fixed, moving, options) : match_in_arena(fixed, moving, options);
+  MatchResult result = match_in_arena(fixed, moving, options);
   result.seconds = seconds_since(start);
   return result;
-}
-
-double working_cell(const PreparedMap& fixed, const PreparedMap& moving) {
-  const double resolution = std::max(fixed.known().resolution, moving.known().resolution);
-  const double side = std::max(longer_side(fixed.known()), longer_side(moving.known())) / resolution;
-  const double wanted = std::ceil(side / kCellsAlongSide);
-  const double least = std::ceil(side / kMaxCellsAlongSide);
-  const double most = std::floor(kCoarsestCell / resolution + 1e-9);
-  return resolution * std::max({1.0, least, std::min(wanted, most)});
 }
 
 void validate(const ScaleRange& scales) {
@@ -109,6 +94,7 @@ void validate(const MatchOptions& options) {
     if (options.search == SearchMethod::random_walk)
       throw std::invalid_argument("scales are not searched by the random walk");
   }
+  if (options.search == SearchMethod::random_walk) validate(options.random_walk);
   if (options.threads < 0) throw std::invalid_argument("threads must not be negative");
   if (!(options.accept_probability >= 0.0 && options.accept_probability <= 1.0)) {
     throw std::invalid_argument("accept_probability must lie in [0, 1]");

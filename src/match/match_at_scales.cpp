@@ -10,8 +10,9 @@
 #include <utility>
 
 #include "grid/longer_side.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "match/drawn_walls.hpp"
+#include "match/prepared_map.hpp"
 #include "match/scaled_pair.hpp"
 #include "match/scaled_verdict.hpp"
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gridmerge/match/match.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -16,6 +17,7 @@ std::vector<double> levels_of(const ScaleRange& scales);
 /// and are each other's rivals. The look is the quick one unless SearchMethod::thorough asks for the other.
 /// Throws std::invalid_argument for a map without walls. Runs in the calling TBB arena. O(levels) times a
 /// match.
-MatchResult match_at_scales(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options);
+GRIDMERGE_INTERNAL_EXPORT MatchResult match_at_scales(const PreparedMap& fixed, const PreparedMap& moving,
+                                                      const MatchOptions& options);
 
 }  // namespace gridmerge::internal

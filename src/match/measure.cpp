@@ -5,9 +5,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
+#include "match/refine_pose.hpp"
 #include "similarity/lattice_frames.hpp"
 
 namespace gridmerge {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "match/pair_pose.hpp"
 
+#include "match/prepared_map.hpp"
+
 namespace gridmerge::internal {
 
 void set_common(const AgreementCounts& counts, const OccupancyGrid& fixed, const OccupancyGrid& moving,

@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "match/prepared_map.hpp"
+
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
+#include "grid/longer_side.hpp"
+#include "grid/painted.hpp"
+#include "grid/quarter_turned.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/match.hpp"
 #include "match/drawn_walls.hpp"
@@ -13,6 +20,12 @@ namespace gridmerge {
 using namespace internal;
 
 namespace {
+
+/// Larger maps are compared in larger cells, but no larger than rooms and doors allow...
+constexpr double kCellsAlongSide = 800.0;
+constexpr double kCoarsestCell = 0.1;  // [m], unless the maps themselves are coarser
+/// ...up to where time and memory have to be bounded.
+constexpr double kMaxCellsAlongSide = 4000.0;
 
 /// How many occupied cells lie in the quarters of a grid, counter-clockwise from the lower left; those on a
 /// middle row or column are in none.
@@ -77,6 +90,8 @@ const LikelihoodField& DrawnWalls::of(const PreparedMap& map, double cell) {
   return *walls;
 }
 
+namespace internal {
+
 bool is_smaller(const PreparedMap& a, const PreparedMap& b) {
   const auto key = [](const PreparedMap& map) {
     const OccupancyGrid& grid = map.known();
@@ -87,5 +102,16 @@ bool is_smaller(const PreparedMap& a, const PreparedMap& b) {
   const auto key_b = key(b);
   return key_a != key_b ? key_a < key_b : a.known().cells < b.known().cells;
 }
+
+double working_cell(const PreparedMap& fixed, const PreparedMap& moving) {
+  const double resolution = std::max(fixed.known().resolution, moving.known().resolution);
+  const double side = std::max(longer_side(fixed.known()), longer_side(moving.known())) / resolution;
+  const double wanted = std::ceil(side / kCellsAlongSide);
+  const double least = std::ceil(side / kMaxCellsAlongSide);
+  const double most = std::floor(kCoarsestCell / resolution + 1e-9);
+  return resolution * std::max({1.0, least, std::min(wanted, most)});
+}
+
+}  // namespace internal
 
 }  // namespace gridmerge

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 #include "match/pair_pose.hpp"
 
@@ -22,20 +23,6 @@ using namespace internal;
 namespace {
 
 constexpr double kDistinct = 10.0;  // cells at the corners of the moving map
-
-void validate(const RandomWalkMatchOptions& options) {
-  RandomWalkOptions walk = options.walk;
-  if (options.restarts < 1) throw std::invalid_argument("restarts must be at least 1");
-  if (options.threads < 0) throw std::invalid_argument("threads must not be negative");
-  if (options.c_locks.empty()) throw std::invalid_argument("at least one c_lock is needed");
-  for (const double c_lock : options.c_locks) {
-    walk.c_lock = c_lock;
-    validate(walk);
-  }
-  if (options.least_common_cells < 0) throw std::invalid_argument("least_common_cells must not be negative");
-  if (!(options.accept_acceptance_index >= 0.0 && options.accept_acceptance_index <= 1.0))
-    throw std::invalid_argument("accept_acceptance_index must lie in [0, 1]");
-}
 
 double c_lock_of(const RandomWalkMatchOptions& options, int walk) {
   return options.c_locks[static_cast<std::size_t>(walk) % options.c_locks.size()];
@@ -157,6 +144,27 @@ MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid
       options.on_walk(i, c_lock_of(options, i), walks[static_cast<std::size_t>(i)]);
   }
   return result;
+}
+
+void validate(const RandomWalkMatchOptions& options) {
+  RandomWalkOptions walk = options.walk;
+  if (options.restarts < 1) throw std::invalid_argument("restarts must be at least 1");
+  if (options.threads < 0) throw std::invalid_argument("threads must not be negative");
+  if (options.start_pose) {
+    const SE2& T = *options.start_pose;
+    if (!std::isfinite(T.x) || !std::isfinite(T.y) || !std::isfinite(T.theta))
+      throw std::invalid_argument("the start pose must be finite");
+  } else {
+    validate(options.start);
+  }
+  if (options.c_locks.empty()) throw std::invalid_argument("at least one c_lock is needed");
+  for (const double c_lock : options.c_locks) {
+    walk.c_lock = c_lock;
+    validate(walk);
+  }
+  if (options.least_common_cells < 0) throw std::invalid_argument("least_common_cells must not be negative");
+  if (!(options.accept_acceptance_index >= 0.0 && options.accept_acceptance_index <= 1.0))
+    throw std::invalid_argument("accept_acceptance_index must lie in [0, 1]");
 }
 
 }  // namespace gridmerge

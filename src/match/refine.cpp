@@ -8,7 +8,7 @@
 
 #include "grid/displacement.hpp"
 #include "grid/parallel.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "match/ascend.hpp"
 #include "search/thorough.hpp"
 

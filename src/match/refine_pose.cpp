@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "match/refine_pose.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -7,6 +9,7 @@
 #include "match/drawn_walls.hpp"
 #include "match/looks.hpp"
 #include "match/pair_pose.hpp"
+#include "match/prepared_map.hpp"
 #include "similarity/lattice_frames.hpp"
 
 namespace gridmerge {
@@ -113,7 +116,8 @@ RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, con
   return refined;
 }
 
-Hypothesis judge_pose(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_fixed_moving) {
+Hypothesis internal::judge_pose(const PreparedMap& fixed, const PreparedMap& moving,
+                                const SE2& T_fixed_moving) {
   check_finite(T_fixed_moving);
   const bool swapped = is_smaller(fixed, moving);
   const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);

@@ -7,6 +7,7 @@
 #include "grid/parallel.hpp"
 #include "match/drawn_walls.hpp"
 #include "match/pair_pose.hpp"
+#include "match/prepared_map.hpp"
 
 namespace gridmerge::internal {
 

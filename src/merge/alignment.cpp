@@ -7,6 +7,7 @@
 
 #include "gridmerge/match/match.hpp"
 #include "match/drawn_walls.hpp"
+#include "match/prepared_map.hpp"
 #include "merge/pose_problem.hpp"
 #include "merge/wall_error.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/merge/known_pose.hpp"
+#include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 #include "merge/map_extent.hpp"
 #include "merge/pose_graph.hpp"

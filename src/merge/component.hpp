@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/merge/known_pose.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 #include "merge/consistent_set.hpp"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "grid/equal_grids.hpp"
+#include "grid/seen_from.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "merge/joins.hpp"
 

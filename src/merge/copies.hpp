@@ -7,7 +7,7 @@
 
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/merge/known_pose.hpp"
+#include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 #include "internal_export.hpp"
 

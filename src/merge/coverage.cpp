@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge::internal {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/doubled_walls.hpp"
+#include "merge/doubled_walls.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,10 @@
 #include "grid/parallel.hpp"
 #include "gridmerge/match/match.hpp"
 #include "match/drawn_walls.hpp"
+#include "match/prepared_map.hpp"
 #include "merge/elastic_walls.hpp"
 
-namespace gridmerge {
-
-using namespace internal;
+namespace gridmerge::internal {
 
 namespace {
 
@@ -77,4 +76,4 @@ DoubledWalls measure_doubled_walls(const std::vector<OccupancyGrid>& maps, const
   return all;
 }
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "grid/parallel.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "merge/elastic_system.hpp"
 
 namespace gridmerge::internal {

@@ -7,6 +7,7 @@
 #include "grid/longer_side.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match.hpp"
+#include "match/prepared_map.hpp"
 
 namespace gridmerge::internal {
 

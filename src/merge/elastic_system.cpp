@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "grid/parallel.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "merge/elastic_span.hpp"
 
 namespace gridmerge::internal {

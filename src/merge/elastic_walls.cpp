@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge::internal {
 

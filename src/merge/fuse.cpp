@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "grid/seen_from.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 #include "merge/fuse_box.hpp"
 #include "merge/log_odds.hpp"

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "grid/logistic.hpp"
+#include "grid/painted.hpp"
 #include "grid/parallel.hpp"
-#include "gridmerge/grid/resample.hpp"
 
 namespace gridmerge::internal {
 

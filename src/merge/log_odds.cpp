@@ -9,9 +9,9 @@
 #include <tuple>
 
 #include "grid/box.hpp"
-#include "grid/cell_limit.hpp"
 #include "grid/parallel.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge::internal {
 

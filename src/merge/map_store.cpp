@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "match/prepared_map.hpp"
+
 namespace gridmerge::internal {
 
 MapStore::Input::Input(std::shared_ptr<const OccupancyGrid> map)

@@ -9,7 +9,7 @@
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/merge/known_pose.hpp"
+#include "gridmerge/merge/merge.hpp"
 #include "merge/component.hpp"
 #include "merge/copies.hpp"
 #include "merge/coverage.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/merge/merge_result.hpp"
 
+#include "merge/left_out.hpp"
+
 namespace gridmerge {
 
 const char* name_of(JoinOutcome outcome) {
@@ -17,6 +19,31 @@ const char* name_of(JoinOutcome outcome) {
       break;
   }
   return "refused";
+}
+
+const char* explain(const MergeResult& result, const LeftOut& one) {
+  const bool alone = result.components.empty() && result.left_out.size() == 1;
+  if (alone && one.reason == Reason::nothing_to_compare) return "there is no other map to merge it with";
+  return internal::explain_left_out(one.reason);
+}
+
+const char* explain(const PlanPart& part) {
+  switch (part.reason) {
+    case Reason::nothing_to_compare:
+      return "there is too little to compare";
+    case Reason::ambiguous:
+      return "the plan has more than one place that fits";
+    case Reason::contradiction:
+      return "the plan has walls where there are none, or none where there are some";
+    case Reason::too_little_overlap:
+      return "the plan agrees, but on too little to be sure";
+    case Reason::contradicts_others:
+      return "what speaks for a place contradicts other maps";
+    case Reason::several:
+    case Reason::none:
+      break;
+  }
+  return "nothing speaks for a place on the plan clearly enough";
 }
 
 }  // namespace gridmerge

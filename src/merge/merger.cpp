@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "merge/candidates.hpp"
 #include "merge/group_match.hpp"
 #include "merge/joins.hpp"
@@ -26,17 +27,7 @@ using namespace internal;
 namespace {
 
 MergeOptions checked(MergeOptions options) {
-  validate(options.match);
-  if (options.match.search == SearchMethod::random_walk)
-    throw std::invalid_argument(
-        "joint merging needs several hypotheses for each pair, with probabilities: a random walk has none "
-        "(merge_up_tree() takes it)");
-  if (options.match.scales)
-    throw std::invalid_argument("maps are merged at one scale: only match() searches scales");
-  validate_merge({}, options.resolution);
-  false_joins_allowed(options.max_false_joins, 0);  // throws for one that makes no sense
-  if (!(options.max_missed >= 0.0 && options.max_missed < 1.0))
-    throw std::invalid_argument("max_missed must be a share in [0, 1)");
+  validate(options);
   options.match.progress = nullptr;
   options.match.max_hypotheses = std::max(options.match.max_hypotheses, kKeptHypotheses);
   return options;
@@ -324,10 +315,10 @@ bool Merger::is_complete() const {
   return state_->is_complete();
 }
 
-Merger merger_of(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
-                 const std::vector<std::optional<KnownPose>>& known_poses) {
+Merger::Merger(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
+               const std::vector<std::optional<KnownPose>>& known_poses)
+    : Merger(options) {
   if (known_poses.size() > maps.size()) throw std::invalid_argument("there are more known poses than maps");
-  Merger merger(options);
   std::vector<std::unique_ptr<const MapStore::Input>> inputs(maps.size());
   std::vector<std::string> faults(maps.size());
   with_threads(options.match.threads, [&] {
@@ -342,12 +333,11 @@ Merger merger_of(const std::vector<OccupancyGrid>& maps, const MergeOptions& opt
   for (std::size_t i = 0; i < maps.size(); ++i) {
     try {
       if (!inputs[i]) throw std::invalid_argument(faults[i]);
-      merger.state_->add(std::move(inputs[i]), i < known_poses.size() ? known_poses[i] : std::nullopt);
+      state_->add(std::move(inputs[i]), i < known_poses.size() ? known_poses[i] : std::nullopt);
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("map " + std::to_string(i) + ": " + error.what());
     }
   }
-  return merger;
 }
 
 }  // namespace gridmerge

@@ -9,8 +9,10 @@
 
 #include "grid/equal_grids.hpp"
 #include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/merge/plan.hpp"
 #include "match/drawing.hpp"
+#include "match/prepared_map.hpp"
 #include "merge/consistent_set.hpp"
 #include "merge/joins.hpp"
 #include "merge/on_plan.hpp"

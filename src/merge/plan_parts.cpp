@@ -7,6 +7,8 @@
 
 #include "grid/parallel.hpp"
 #include "gridmerge/merge/fuse.hpp"
+#include "match/match_at_scales.hpp"
+#include "match/prepared_map.hpp"
 #include "merge/copies.hpp"
 
 namespace gridmerge::internal {
@@ -75,7 +77,7 @@ void hear(std::vector<MergePart>& parts, const PreparedMap& plan, const MatchOpt
   std::size_t done = 0;
   if (progress && !voices.empty()) progress(0, voices.size());
   parallel_tasks(voices.size(), [&](std::size_t i) {
-    voices[i]->match = match(voices[i]->input->prepared, plan, options);
+    voices[i]->match = match_at_scales(voices[i]->input->prepared, plan, options);
     const std::scoped_lock lock(telling);
     ++done;
     if (progress) progress(done, voices.size());

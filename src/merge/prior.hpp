@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "gridmerge/merge/known_pose.hpp"
+#include "gridmerge/merge/merge.hpp"
 #include "merge/pair_candidates.hpp"
 
 namespace gridmerge::internal {

@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "grid/equal_grids.hpp"
-#include "grid/parallel.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "online/robot_map.hpp"
 

@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "online/solver.hpp"
 
 namespace gridmerge {
@@ -54,6 +54,7 @@ std::shared_ptr<const TeamAnswer> without_forgotten(std::shared_ptr<const TeamAn
 }  // namespace
 
 void validate(const TeamOptions& options) {
+  validate(options.merge);
   if (!(options.search_again >= 0.0 && options.search_again <= 1.0))
     throw std::invalid_argument("search_again must lie in [0, 1]");
   if (options.confirmations < 1) throw std::invalid_argument("confirmations must be at least 1");

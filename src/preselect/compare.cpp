@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "grid/quarter_turned.hpp"
 #include "preselect/dot_products.hpp"
 
 namespace gridmerge::internal {

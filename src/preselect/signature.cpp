@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "grid/box.hpp"
+#include "grid/quarter_turned.hpp"
 
 namespace gridmerge::internal {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/report/json.hpp"
+#include "gridmerge/report/merge_record.hpp"
 #include "merge/coverage.hpp"
 #include "merge/pose_graph.hpp"
 #include "report/interchange.hpp"

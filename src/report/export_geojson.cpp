@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "gridmerge/report/json.hpp"
+#include "gridmerge/report/merge_record.hpp"
 #include "report/interchange.hpp"
 #include "report/json_values.hpp"
 

@@ -35,7 +35,7 @@ const Format& of(ExportFormat format) {
 
 }  // namespace
 
-const std::vector<ExportFormat>& export_formats() {
+std::span<const ExportFormat> export_formats() {
   static const std::vector<ExportFormat> formats = [] {
     std::vector<ExportFormat> all;
     for (const Format& one : kFormats) all.push_back(one.format);

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "grid/parallel.hpp"
+#include "report/preview_colours.hpp"
 #include "report/style.hpp"
 
 namespace gridmerge::internal {

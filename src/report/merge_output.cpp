@@ -12,14 +12,15 @@
 #include <system_error>
 #include <utility>
 
-#include "grid/cell_limit.hpp"
 #include "grid/parallel.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/io/map_file.hpp"
-#include "gridmerge/report/json.hpp"
+#include "gridmerge/report/merge_record.hpp"
 #include "io/add_map.hpp"
 #include "io/directory_names.hpp"
 #include "io/made_directories.hpp"
+#include "report/output_names.hpp"
 #include "report/page.hpp"
 
 namespace gridmerge {
@@ -47,7 +48,7 @@ bool is_merged_map(const fs::path& file) {
 
 }  // namespace
 
-bool is_merge_output(const fs::path& name) {
+bool internal::is_merge_output(const fs::path& name) {
   return is_merged_map(name) || name == kPreview || name == kReport || name == kTransforms;
 }
 
@@ -121,14 +122,14 @@ std::optional<double> check_merged_size(const std::vector<std::string>& names,
     const OccupancyGrid& map = maps[i];
     if (std::max(std::abs(map.origin.x), std::abs(map.origin.y)) + diagonals > kMaxOrigin)
       throw FileError(
-          names[i],
+          names.at(i),
           fmt::format("lies too far from zero: with the other maps it may reach beyond {} m", kMaxOrigin));
     const double ratio = map.resolution / resolution;
     double own = static_cast<double>(map.cells.size()) * ratio * ratio;
     if (own > kMaxGridCells && count_cells(map).known() > 0)
       own = static_cast<double>(crop_to_known(map).cells.size()) * ratio * ratio;
     if (own > kMaxGridCells && is_asked_for)
-      throw FileError(names[i],
+      throw FileError(names.at(i),
                       fmt::format("alone has {:.3g} cells of {:.4g} m, and a merged map may have 2^28: "
                                   "choose an output resolution of {:.2g} m (--output-resolution)",
                                   own, resolution, fitting(own)));

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "gridmerge/io/map_file.hpp"
-#include "gridmerge/report/json.hpp"
 #include "io/file_reader.hpp"
 #include "merge/copies.hpp"
 #include "report/deformation_json.hpp"

@@ -10,13 +10,12 @@
 
 #include "grid/parallel.hpp"
 #include "gridmerge/merge/fuse.hpp"
-#include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"
+#include "gridmerge/report/merge_record.hpp"
 #include "gridmerge/version.hpp"
 #include "report/deformation_json.hpp"
 #include "report/shown_map.hpp"
 #include "report/told_joins.hpp"
-#include "report/wording.hpp"
 
 namespace gridmerge::internal {
 
@@ -172,7 +171,7 @@ Json page_data(const NamedMerge& merge) {
   Json left_out = Json::array();
   for (const LeftOut& one : result.left_out)
     left_out.push_back(
-        {{"map", one.map}, {"reason", name_of(one.reason)}, {"explanation", explain_left_out(result, one)}});
+        {{"map", one.map}, {"reason", name_of(one.reason)}, {"explanation", explain(result, one)}});
   Json page{{"version", kVersion},
             {"live", false},
             {"maps", std::move(shown_maps)},

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/report/json.hpp"
+#include "gridmerge/report/merge_record.hpp"
 #include "report/record_values.hpp"
 
 namespace gridmerge::internal {

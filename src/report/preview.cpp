@@ -7,10 +7,11 @@
 #include <span>
 
 #include "gridmerge/grid/resample.hpp"
-#include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_output.hpp"
+#include "gridmerge/report/merge_record.hpp"
 #include "report/canvas.hpp"
 #include "report/map_panel.hpp"
+#include "report/preview_colours.hpp"
 #include "report/short_names.hpp"
 #include "report/style.hpp"
 

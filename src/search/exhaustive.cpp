@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "search/correlate.hpp"
 #include "search/rotations.hpp"
 #include "search/search_frame.hpp"

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "grid/parallel.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "similarity/lattice_frames.hpp"
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "search/correlate.hpp"
 #include "search/rotations.hpp"
 #include "search/search_frame.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge::internal {
 

@@ -6,7 +6,7 @@
 
 #include "grid/multiversion.hpp"
 #include "grid/unaligned.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge::internal {
 

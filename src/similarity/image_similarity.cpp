@@ -344,19 +344,4 @@ std::int64_t count_equal_cells(const OccupancyGrid& fixed, const OccupancyGrid& 
   return count_equal_cells(fixed, maps);
 }
 
-std::int64_t count_equal_cells(std::span<const OccupancyGrid> maps) {
-  if (maps.empty()) return 0;
-  for (const OccupancyGrid& map : maps) {
-    validate(map);
-    if (map.width != maps[0].width || map.height != maps[0].height)
-      throw std::invalid_argument("the maps must be of one size");
-  }
-  std::int64_t equal = 0;
-  for (std::size_t i = 0; i < maps[0].cells.size(); ++i) {
-    equal += std::all_of(maps.begin() + 1, maps.end(),
-                         [&](const OccupancyGrid& map) { return map.cells[i] == maps[0].cells[i]; });
-  }
-  return equal;
-}
-
 }  // namespace gridmerge

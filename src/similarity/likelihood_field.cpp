@@ -9,7 +9,7 @@
 
 #include "grid/for_each_equal.hpp"
 #include "grid/multiversion.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "similarity/chamfer.hpp"
 
 namespace gridmerge::internal {

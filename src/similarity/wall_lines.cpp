@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge::internal {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge::internal {
 

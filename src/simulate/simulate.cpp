@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "simulate/survey.hpp"
 #include "simulate/team.hpp"
 

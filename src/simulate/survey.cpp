@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "simulate/drift.hpp"
 #include "simulate/mapper.hpp"
 #include "simulate/tidy.hpp"

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "bag/support.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "io/support.hpp"
 #include "support/temporary_directory.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gridmerge/cache/match_cache.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "merge/team.hpp"
 

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "evaluate/known_moments.hpp"
+
 namespace gridmerge {
 
 using namespace internal;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "evaluate/known_moments.hpp"
 #include "gridmerge/evaluate/evaluate.hpp"
 
 namespace gridmerge {
@@ -48,7 +49,7 @@ RC_GTEST_PROP(RmsDisplacement, EqualsTheSumOverAllCells, ()) {
 }
 
 RC_GTEST_PROP(RmsDisplacement, DoesNotDependOnWhichTransformIsTheTruth, ()) {
-  const KnownMoments moments = known_moments(any_map());
+  const internal::KnownMoments moments = internal::known_moments(any_map());
   const SE2 a = any_pose(), b = any_pose();
   RC_ASSERT(rms_displacement(moments, a, b) == rms_displacement(moments, b, a));
   RC_ASSERT(rms_displacement(moments, a, a) == 0.0);
@@ -66,7 +67,7 @@ TEST(RmsDisplacement, AnglesOnBothSidesOfHalfATurnAreClose) {
 
 TEST(RmsDisplacement, OfAMapWithNoKnownCellIsThatOfItsMiddle) {
   const OccupancyGrid map = make_grid(20, 10, 0.1, {3.0, 0.0, 0.0});
-  EXPECT_EQ(known_moments(map).centroid, (Point2{4.0, 0.5}));
+  EXPECT_EQ(internal::known_moments(map).centroid, (Point2{4.0, 0.5}));
   EXPECT_EQ(rms_displacement(map, {1.0, 0.0, 0.0}, {}), 1.0);
 }
 

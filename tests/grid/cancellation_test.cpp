@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/grid/cancellation.hpp"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -8,6 +6,7 @@
 #include <stdexcept>
 
 #include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge {
 

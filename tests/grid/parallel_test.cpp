@@ -13,6 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "gridmerge/grid/execution.hpp"
+
 namespace gridmerge {
 
 using namespace internal;
@@ -44,6 +46,10 @@ TEST(ParallelFor, PassesAnExceptionOn) {
   };
   EXPECT_THROW(with_threads(1, work), std::runtime_error);
   EXPECT_THROW(with_threads(2, work), std::runtime_error);
+}
+
+TEST(WithThreads, RefusesLessThanNone) {
+  EXPECT_THROW(with_threads(-1, [] { FAIL(); }), std::invalid_argument);
 }
 
 TEST(ParallelTasks, ATaskOfSeveralStaysOnItsThread) {

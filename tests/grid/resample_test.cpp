@@ -10,6 +10,8 @@
 #include <stdexcept>
 
 #include "grid/generators.hpp"
+#include "grid/painted.hpp"
+#include "grid/quarter_turned.hpp"
 
 namespace gridmerge {
 namespace {
@@ -180,7 +182,7 @@ TEST(TransformGrid, FindsNothingUnderAFarCentre) {
 RC_GTEST_PROP(QuarterTurned, KeepsEveryCellWhereItIsInTheMapFrame, ()) {
   OccupancyGrid grid = *any_grid();
   const int quarters = *rc::gen::inRange(-5, 6);
-  const OccupancyGrid turned = quarter_turned(grid, quarters);
+  const OccupancyGrid turned = internal::quarter_turned(grid, quarters);
   RC_ASSERT(turned.cells.size() == grid.cells.size());
   const SE2 T_grid_map = inverse(grid.origin);
   for (int row = 0; row < turned.height; ++row) {
@@ -198,8 +200,8 @@ TEST(QuarterTurned, FourQuartersAreNone) {
   OccupancyGrid grid = make_grid(3, 2, 0.5, {1.0, -2.0, 0.3});
   grid.at(2, 0) = Cell::occupied;
   grid.at(0, 1) = Cell::free;
-  EXPECT_EQ(quarter_turned(grid, 4).cells, grid.cells);
-  const OccupancyGrid back = quarter_turned(quarter_turned(grid, 1), 3);
+  EXPECT_EQ(internal::quarter_turned(grid, 4).cells, grid.cells);
+  const OccupancyGrid back = internal::quarter_turned(internal::quarter_turned(grid, 1), 3);
   EXPECT_EQ(back.cells, grid.cells);
   EXPECT_EQ(back.width, 3);
   EXPECT_NEAR(back.origin.x, 1.0, 1e-12);
@@ -215,7 +217,7 @@ RC_GTEST_PROP(WithoutPainted, ForgetsWhatNoFreeCellIsNear, (unsigned seed)) {
   }
   const double reach = *rc::gen::inRange(1, 9) / 10.0;
   const int cells = std::max(3, static_cast<int>(reach / grid.resolution));
-  const OccupancyGrid seen = without_painted(grid, reach);
+  const OccupancyGrid seen = internal::without_painted(grid, reach);
   for (int row = 0; row < grid.height; ++row) {
     for (int column = 0; column < grid.width; ++column) {
       bool is_near = false;
@@ -234,16 +236,16 @@ TEST(IsMostlyPainted, AsksForMoreThanHalfOfTheKnownCells) {
   OccupancyGrid grid = make_grid(100, 100, 0.05);
   for (int y = 40; y < 60; ++y)
     for (int x = 40; x < 60; ++x) grid.at(x, y) = Cell::free;
-  EXPECT_FALSE(is_mostly_painted(grid));
+  EXPECT_FALSE(internal::is_mostly_painted(grid));
   const auto paint = [&](int rows) {
     for (int y = 0; y < rows; ++y)
       for (int x = 0; x < 100; ++x) grid.at(x, y) = Cell::occupied;
   };
   paint(4);  // as many cells as are free
-  EXPECT_FALSE(is_mostly_painted(grid));
+  EXPECT_FALSE(internal::is_mostly_painted(grid));
   paint(5);
-  EXPECT_TRUE(is_mostly_painted(grid));
-  EXPECT_FALSE(is_mostly_painted(make_grid(10, 10, 0.05)));
+  EXPECT_TRUE(internal::is_mostly_painted(grid));
+  EXPECT_FALSE(internal::is_mostly_painted(make_grid(10, 10, 0.05)));
 }
 
 }  // namespace

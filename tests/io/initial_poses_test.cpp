@@ -19,7 +19,7 @@ TEST(InitialPoses, AreReadWithTheirDeviations) {
   EXPECT_EQ(poses[0].T_world_map.x, 1.5);
   EXPECT_EQ(poses[0].T_world_map.y, -2.0);
   EXPECT_NEAR(poses[0].T_world_map.theta, 7.0 - 2.0 * std::numbers::pi, 1e-12);
-  EXPECT_EQ(poses[0].sd, 0.25);
+  EXPECT_EQ(poses[0].sd_position, 0.25);
   EXPECT_EQ(poses[0].sd_theta, 0.125);
 }
 
@@ -27,7 +27,7 @@ TEST(InitialPoses, HaveUsualDeviations) {
   const auto poses = parse_initial_poses("poses.tsv", "theta\ty\tx\tmap\n0\t2\t1\ta.yaml\n");
   ASSERT_EQ(poses.size(), 1u);
   EXPECT_EQ(poses[0].T_world_map.x, 1.0);
-  EXPECT_EQ(poses[0].sd, 1.0);
+  EXPECT_EQ(poses[0].sd_position, 1.0);
   EXPECT_EQ(poses[0].sd_theta, 0.1);
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "gridmerge/match/match.hpp"
+#include "match/prepared_map.hpp"
 #include "match/refine.hpp"
 #include "similarity/agreement.hpp"
 #include "support/building.hpp"

@@ -9,7 +9,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "match/drawn_walls.hpp"
 #include "support/building.hpp"

@@ -5,6 +5,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "gridmerge/match/match.hpp"
+#include "match/prepared_map.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {

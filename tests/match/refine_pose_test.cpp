@@ -7,7 +7,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/match/match.hpp"
 #include "support/building.hpp"
 

@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "grid/quarter_turned.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/match.hpp"
 #include "support/building.hpp"
@@ -198,7 +199,7 @@ TEST(Steady, AQuarterTurnOfAnInputChangesNothingElse) {
   const MatchResult usual = match(left, right);
   ASSERT_EQ(usual.verdict, Verdict::accepted);
   for (const int quarters : {1, 2, 3}) {
-    const MatchResult turned = match(left, quarter_turned(right, quarters));
+    const MatchResult turned = match(left, internal::quarter_turned(right, quarters));
     EXPECT_NEAR(turned.probability, usual.probability, 1e-9) << quarters;
     EXPECT_NEAR(turned.T_fixed_moving.x, usual.T_fixed_moving.x, 1e-6) << quarters;
     EXPECT_NEAR(turned.T_fixed_moving.y, usual.T_fixed_moving.y, 1e-6) << quarters;

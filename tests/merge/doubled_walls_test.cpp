@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/doubled_walls.hpp"
+#include "merge/doubled_walls.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-namespace gridmerge {
+namespace gridmerge::internal {
 namespace {
 
 /// A corridor of 30 m x 4 m along x, open at its ends: walls that face up and down.
@@ -73,4 +73,4 @@ TEST(DoubledWalls, FollowTheBendOfTheirMaps) {
 }
 
 }  // namespace
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

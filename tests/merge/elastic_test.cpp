@@ -8,10 +8,10 @@
 #include <cmath>
 #include <random>
 
-#include "grid/parallel.hpp"
-#include "gridmerge/merge/doubled_walls.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "gridmerge/merge/merge.hpp"
+#include "merge/doubled_walls.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "grid/equal_grids.hpp"
-#include "gridmerge/grid/resample.hpp"
 #include "merge/drawing.hpp"
 
 namespace gridmerge::internal {

@@ -11,7 +11,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "gridmerge/grid/resample.hpp"
+#include "grid/painted.hpp"
 #include "merge/drawing.hpp"
 
 namespace gridmerge {
@@ -69,7 +69,7 @@ TEST(Fuse, BlackPaintHidesNothingThatOthersHaveSeen) {
   for (int row = 2; row < 20; ++row)
     for (int column = 2; column < 20; ++column) sheet.at(column, row) = Cell::free;
   const OccupancyGrid beside = make_grid(20, 20, 0.1, {3.0, 0.0, 0.0}, Cell::free);
-  const OccupancyGrid seen = without_painted(sheet);
+  const OccupancyGrid seen = internal::without_painted(sheet);
   ASSERT_LT(count_cells(seen).occupied, 300u);
   const FusedMap painted = fuse({{&sheet, {}}, {&beside, {}}}, 0.1);
   const FusedMap expected = fuse({{&seen, {}}, {&beside, {}}}, 0.1);

@@ -9,8 +9,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "gridmerge/grid/cancellation.hpp"
-#include "gridmerge/grid/resample.hpp"
+#include "grid/quarter_turned.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/merge/merger.hpp"
 #include "merge/maps_left_out.hpp"
 #include "merge/team.hpp"
@@ -260,7 +260,7 @@ TEST(Merge, BlackPaintHidesNothingThatOthersHaveSeen) {
 
 /// A map given again, from another frame and turned by a quarter, as a file that was saved twice may be.
 OccupancyGrid saved_again(const OccupancyGrid& map) {
-  OccupancyGrid copy = quarter_turned(map, 1);
+  OccupancyGrid copy = internal::quarter_turned(map, 1);
   copy.origin = SE2{4.0, -7.0, 0.4} * copy.origin;
   return copy;
 }

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "merge/team.hpp"
 #include "support/building.hpp"
 

@@ -157,7 +157,7 @@ TEST(PairChoice, HostileMapsAmongManyAreLeftOut) {
   fleet.maps.push_back(make_grid(50, 50, 0.05, {}, Cell::occupied));
   fleet.maps.push_back(make_grid(1, 1, 0.05));
   fleet.maps.push_back(fleet.maps[0]);  // a copy
-  Merger merger = merger_of(fleet.maps, options(0.9));
+  Merger merger(fleet.maps, options(0.9));
   for (std::vector<DueMatch> due = merger.due(); !due.empty(); due = merger.due()) {
     for (const DueMatch& one : due) {
       const bool both_good = std::max(one.fixed, one.moving) < good;

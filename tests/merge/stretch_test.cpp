@@ -9,10 +9,10 @@
 #include <random>
 #include <stdexcept>
 
-#include "grid/parallel.hpp"
-#include "gridmerge/merge/doubled_walls.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "gridmerge/merge/merge.hpp"
+#include "merge/doubled_walls.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "explorers.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "online/robot_map.hpp"

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "explorers.hpp"
-#include "gridmerge/grid/cancellation.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "solver_news.hpp"
 

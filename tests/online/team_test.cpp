@@ -251,6 +251,7 @@ TEST(Team, RefusesWhatMakesNoSense) {
   const auto refuses = [](auto change) {
     TeamOptions bad;
     change(bad);
+    EXPECT_THROW(validate(bad), std::invalid_argument);
     EXPECT_THROW(Team{bad}, std::invalid_argument);
   };
   refuses([](TeamOptions& o) { o.search_again = -0.1; });

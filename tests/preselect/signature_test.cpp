@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drawn_signature.hpp"
+#include "grid/quarter_turned.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "preselect/chance.hpp"
 #include "preselect/compare.hpp"

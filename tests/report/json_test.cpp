@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/report/json.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "gridmerge/report/merge_record.hpp"
+#include "report/json_lines.hpp"
 #include "report/results.hpp"
 
 namespace gridmerge {
+
+using namespace internal;
+
 namespace {
 
 MatchResult any_match() {

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "gridmerge/io/map_file.hpp"
-#include "gridmerge/report/json.hpp"
 #include "io/support.hpp"
 #include "merge/drawing.hpp"
 #include "report/page.hpp"

@@ -11,6 +11,7 @@
 #include "gridmerge/report/merge_output.hpp"
 #include "io/png.hpp"
 #include "merge/drawing.hpp"
+#include "report/preview_colours.hpp"
 #include "report/results.hpp"
 
 namespace gridmerge {
@@ -20,7 +21,7 @@ namespace {
 
 using test::map_from;
 using Rgb = std::tuple<int, int, int>;
-using Colours = PreviewColours;
+using Colours = internal::PreviewColours;
 
 Rgb rgb(Colour colour) {
   return {colour.red, colour.green, colour.blue};

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "gridmerge/io/file_error.hpp"
-#include "gridmerge/report/json.hpp"
 #include "gridmerge/report/merge_record.hpp"
 #include "io/support.hpp"
 #include "report/fleet.hpp"

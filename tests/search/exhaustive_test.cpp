@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "../similarity/random_grid.hpp"
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "similarity/evidence.hpp"
 
 namespace gridmerge {

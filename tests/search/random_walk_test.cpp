@@ -7,14 +7,13 @@
 #include <numbers>
 
 #include "../similarity/random_grid.hpp"
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "support/building.hpp"
 #include "support/effort.hpp"
 
 namespace gridmerge {
 
-using namespace internal;
 namespace {
 
 double error_at(const Point2& p, const SE2& found, const SE2& truth) {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "../similarity/random_grid.hpp"
-#include "grid/parallel.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "similarity/evidence.hpp"
 #include "support/building.hpp"
 #include "support/effort.hpp"

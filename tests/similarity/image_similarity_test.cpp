@@ -309,19 +309,5 @@ TEST(Omega, CountsEqualValues) {
   EXPECT_EQ(count_equal_cells(m1, m2, {1.0, 0.0, 0.0}), 2);  // what is beyond the moving map is unknown
 }
 
-TEST(Omega, OfManyMapsCountsWhereAllAreEqual) {
-  std::mt19937 random(7);
-  std::vector<OccupancyGrid> maps;
-  EXPECT_EQ(count_equal_cells(maps), 0);
-  for (int i = 0; i < 3; ++i) maps.push_back(random_map(random, 9, 8));
-  std::int64_t expected = 0;
-  for (std::size_t i = 0; i < maps[0].cells.size(); ++i)
-    expected += maps[0].cells[i] == maps[1].cells[i] && maps[1].cells[i] == maps[2].cells[i];
-  EXPECT_EQ(count_equal_cells(maps), expected);
-  EXPECT_EQ(count_equal_cells(std::span(maps).first(1)), 72);
-  maps.push_back(make_grid(8, 9, 0.1));
-  EXPECT_THROW(count_equal_cells(maps), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace gridmerge

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gridmerge/export.hpp"
-#include "gridmerge/merge/known_pose.hpp"
+#include "gridmerge/merge/merge.hpp"
 #include "gridmerge/online/team.hpp"
 
 namespace gridmerge {

@@ -111,8 +111,6 @@ class GRIDMERGE_EXPORT Deformation {
 
   /// An upper bound of the shift's derivative (Frobenius norm of its Jacobian matrix); 0 without a lattice.
   double strain_bound() const { return strain_bound_; }
-  /// An upper bound of the shift's length [m]; 0 without a lattice.
-  double shift_bound() const { return shift_bound_; }
 
   const SE2& T_map_lattice() const { return T_map_lattice_; }    ///< of the lattice in the map frame
   double spacing() const { return spacing_; }                    ///< [m]; 0 without a lattice
@@ -132,11 +130,6 @@ class GRIDMERGE_EXPORT Deformation {
   int rows_ = 0;
   std::vector<Point2> shifts_;
   double strain_bound_ = 0.0;
-  double shift_bound_ = 0.0;
 };
-
-/// The deformation seen from another frame of the same map: bends points of frame a as `deformation` bends
-/// those of frame b. O(1) and a copy of the lattice.
-GRIDMERGE_EXPORT Deformation seen_from(const SE2& T_a_b, const Deformation& deformation);
 
 }  // namespace gridmerge

@@ -50,6 +50,10 @@ struct OccupancyGrid {
   }
 };
 
+/// No grid that the library makes has more cells, nor one that it reads from a message; a file's may have
+/// more if its reader is told so. Of 32 bits, so that it is exact as a floating point number too.
+inline constexpr std::uint32_t kMaxGridCells = std::uint32_t{1} << 28;
+
 /// A grid of `width` x `height` cells, all of them `fill`.
 GRIDMERGE_EXPORT OccupancyGrid make_grid(int width, int height, double resolution, const SE2& origin = {},
                                          Cell fill = Cell::unknown);

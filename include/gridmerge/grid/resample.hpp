@@ -10,22 +10,6 @@ namespace gridmerge {
 /// coordinates in the map frame. A grid with no known cell becomes a single unknown cell. O(cells).
 GRIDMERGE_EXPORT OccupancyGrid crop_to_known(const OccupancyGrid& grid);
 
-/// The same map with its rows and columns turned by `quarters` quarters of a turn, counter-clockwise; the
-/// origin turns back, so points keep their coordinates in the map frame. Nothing is resampled. O(cells).
-GRIDMERGE_EXPORT OccupancyGrid quarter_turned(const OccupancyGrid& grid, int quarters);
-
-/// Walls are no thicker than this from where they can be seen [m].
-inline constexpr double kWallDepth = 0.15;
-
-/// The grid without occupied cells that are farther than `reach` metres (and three cells) from every free
-/// one, along a row or a column: they become unknown. Such cells were never seen by a robot: somebody painted
-/// them. O(cells).
-GRIDMERGE_EXPORT OccupancyGrid without_painted(const OccupancyGrid& grid, double reach = kWallDepth);
-
-/// Whether more than half of the known cells are such: all that no robot has seen was painted black.
-/// O(cells).
-GRIDMERGE_EXPORT bool is_mostly_painted(const OccupancyGrid& grid);
-
 /// The grid with cells `factor` times as large (factor >= 1): occupied where any of the factor x factor cells
 /// is, else free where any is, else unknown. Same origin. Probabilities are dropped. Throws
 /// std::invalid_argument when the factor is below 1. O(cells).
@@ -34,7 +18,7 @@ GRIDMERGE_EXPORT OccupancyGrid downsample(const OccupancyGrid& grid, int factor)
 /// The grid seen from another frame: T_target_map is applied to the map, and the result is drawn on an
 /// upright (yaw 0) grid of `resolution` that just holds it. Every target cell takes the value of the source
 /// cell under its centre (nearest cell); probabilities are dropped. Throws std::invalid_argument when the
-/// resolution is not positive or the result would exceed 2^28 cells. O(result cells).
+/// resolution is not positive or the result would exceed kMaxGridCells. O(result cells).
 GRIDMERGE_EXPORT OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map,
                                               double resolution);
 

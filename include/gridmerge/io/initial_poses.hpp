@@ -18,7 +18,7 @@ struct InitialPose {
   std::filesystem::path path;     ///< the same, relative to the file's folder
   double theta_as_written = 0.0;  ///< [rad], not normalized: what is more than a turn may be degrees
   SE2 T_world_map;                ///< takes the map's frame, its YAML's origin applied, to the world's
-  double sd = 1.0;                ///< standard deviation of the map's position [m]
+  double sd_position = 1.0;       ///< standard deviation of the map's position [m]: column `sd`
   double sd_theta = 0.1;          ///< standard deviation of theta [rad]
 };
 

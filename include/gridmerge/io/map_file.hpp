@@ -23,8 +23,8 @@ inline constexpr double kMaxOrigin = 1e9;
 
 /// How map files are read.
 struct LoadOptions {
-  double resolution = 0.0;           ///< [m/cell] of a bare image; 0 = a bare image is an error
-  std::size_t max_cells = 1u << 28;  ///< larger maps are refused before memory is taken for them
+  double resolution = 0.0;                ///< [m/cell] of a bare image; 0 = a bare image is an error
+  std::size_t max_cells = kMaxGridCells;  ///< larger maps are refused before memory is taken for them
   /// Read thresholds to the letter: in trinary mode the gray that map savers write for unknown is then
   /// whatever the thresholds make of it.
   bool literal_thresholds = false;

@@ -24,7 +24,8 @@ class DrawnWalls;
 /// map that it is matched with. May be used by several threads at once.
 class GRIDMERGE_EXPORT PreparedMap {
  public:
-  /// Copies what robots have seen of `grid`: without painted cells (see without_painted()), so nothing of a
+  /// Copies what robots have seen of `grid`: without occupied cells that are farther than 0.15 m (and three
+  /// cells) from every free one along their row or column, which somebody has painted. So nothing of a
   /// drawing in which no cell is free. Throws std::invalid_argument for an invalid grid (see validate()).
   /// O(cells).
   explicit PreparedMap(const OccupancyGrid& grid);
@@ -42,10 +43,6 @@ class GRIDMERGE_EXPORT PreparedMap {
   CellCounts counts_;
   std::unique_ptr<internal::DrawnWalls> drawn_;
 };
-
-/// Orders maps by what they hold, not by where they come from: by their known area, and what differs between
-/// maps of the same area. Of two maps the smaller is searched in the larger one.
-GRIDMERGE_EXPORT bool is_smaller(const PreparedMap& a, const PreparedMap& b);
 
 /// How match() searches the poses of a pair.
 enum class SearchMethod {
@@ -108,15 +105,11 @@ GRIDMERGE_EXPORT MatchResult match(const OccupancyGrid& fixed, const OccupancyGr
                                    const MatchOptions& options = {});
 
 /// The same of maps that are matched with several others: of their known parts. Runs in the calling TBB
-/// arena, for which `options.threads` changes nothing, except that a random walk heeds it; may be called by
-/// several threads at once. A drawing in which no cell is free has no walls then, and with
-/// `options.scales` it throws std::invalid_argument: match its grid.
+/// arena (with_threads()), for which `options.threads` changes nothing; may be called by several threads at
+/// once. Throws std::invalid_argument for invalid options, and for `scales` and the random walk, which need
+/// more of a map than is prepared.
 GRIDMERGE_EXPORT MatchResult match(const PreparedMap& fixed, const PreparedMap& moving,
                                    const MatchOptions& options = {});
-
-/// The side of the cells in which two maps are compared [m]: the coarser map's, or a multiple of it for large
-/// maps.
-GRIDMERGE_EXPORT double working_cell(const PreparedMap& fixed, const PreparedMap& moving);
 
 /// Throws std::invalid_argument for options that make no sense.
 GRIDMERGE_EXPORT void validate(const MatchOptions& options);
@@ -143,10 +136,5 @@ struct RefinedPose : PairPose {
 /// twice the time of match().
 GRIDMERGE_EXPORT RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving,
                                          const SE2& T_start);
-
-/// What the engine says of a pose as it stands: its score, its figures, and the probability that
-/// refine_pose() would give it. Argument, errors, threads and time as there.
-GRIDMERGE_EXPORT Hypothesis judge_pose(const PreparedMap& fixed, const PreparedMap& moving,
-                                       const SE2& T_fixed_moving);
 
 }  // namespace gridmerge

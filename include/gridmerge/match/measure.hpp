@@ -19,7 +19,7 @@ struct PoseMeasure {
   std::int64_t cells = 0;      ///< of the fixed map: those that omega counts among
   ImageSimilarity similarity;  ///< omega, psi, agr, dis
   CommonClasses common;        ///< agr and dis by class
-  Hypothesis engine;           ///< what match() would say of the pose: see judge_pose()
+  Hypothesis engine;           ///< what match() would say of the pose, were it one of its hypotheses
 };
 
 /// The same of several maps laid on one.

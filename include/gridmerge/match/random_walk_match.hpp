@@ -49,4 +49,7 @@ struct RandomWalkMatchOptions {
 GRIDMERGE_EXPORT MatchResult match_by_random_walk(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                                   const RandomWalkMatchOptions& options = {});
 
+/// Throws std::invalid_argument, saying what is wrong, for options that make no sense.
+GRIDMERGE_EXPORT void validate(const RandomWalkMatchOptions& options);
+
 }  // namespace gridmerge

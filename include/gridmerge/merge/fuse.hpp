@@ -36,11 +36,11 @@ struct FusedMap {
 /// probability of 0.03 to 0.97). A positive sum is occupied, a negative one free, and log-odds that cancel
 /// out are unknown. A map says "occupied" with probability 0.85 and "free" with 0.35, or with its own
 /// probabilities, at most 0.88 and at least 0.12; a wall one cell thick stays in one piece at any angle.
-/// Where most of an input is painted black (is_mostly_painted()), what was painted counts as unknown: it
-/// would hide what others have seen. The sums are integers, so the result does not depend on the inputs'
-/// order. Throws std::invalid_argument for no input, an invalid grid, a transform that is not finite, a
-/// resolution that is not positive, and a result of more than 2^28 cells. O(cells of the inputs + cells of
-/// the result).
+/// Where most of what an input knows was painted black (occupied, and farther than 0.15 m from every free
+/// cell), what was painted counts as unknown: it would hide what others have seen. The sums are integers, so
+/// the result does not depend on the inputs' order. Throws std::invalid_argument for no input, an invalid
+/// grid, a transform that is not finite, a resolution that is not positive, and a result of more than
+/// kMaxGridCells. O(cells of the inputs + cells of the result).
 ///
 /// `deformations[i]`, where there is one, bends input i before its transform places it; it may be shorter
 /// than `maps`. Each cell of the result looks up the bent input where it comes from, to a tenth of a cell,
@@ -51,7 +51,7 @@ GRIDMERGE_EXPORT FusedMap fuse(const std::vector<PlacedMap>& maps, double resolu
 
 /// A map as its deformation bends it, in cells of its own size along its own rows: for drawing and for
 /// whoever takes rigid maps only. The map itself if the deformation is the identity; otherwise without
-/// probabilities. Throws std::invalid_argument for an invalid grid, and a result of more than 2^28 cells.
+/// probabilities. Throws std::invalid_argument for an invalid grid, and a result of more than kMaxGridCells.
 /// O(cells).
 GRIDMERGE_EXPORT OccupancyGrid bent_map(const OccupancyGrid& map, const Deformation& deformation);
 

@@ -9,8 +9,8 @@
 #include "gridmerge/export.hpp"
 #include "gridmerge/grid/deformation.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/match.hpp"
-#include "gridmerge/merge/known_pose.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
@@ -37,6 +37,22 @@ struct MergeOptions {
   std::function<void(std::size_t, std::size_t)> progress;
 };
 
+/// Throws std::invalid_argument, saying what is wrong, for options that make no sense.
+GRIDMERGE_EXPORT void validate(const MergeOptions& options);
+
+/// What is known beforehand of where a map lies. All known poses are in one frame, the world's. One that is
+/// not fixed has to be given its deviations.
+struct KnownPose {
+  SE2 T_world_map;           ///< takes the map's frame to the world's
+  double sd_position = 0.0;  ///< standard deviation of the map's middle [m]
+  double sd_theta = 0.0;     ///< standard deviation of theta [rad]
+  bool fixed = false;        ///< it is the truth, whatever the maps say; the deviations play no part
+};
+
+/// Throws std::invalid_argument for a pose that is not finite or farther off than 10^7 m, or a deviation that
+/// is less than 10^-6; those of a fixed pose may be 0.
+GRIDMERGE_EXPORT void validate(const KnownPose& known);
+
 /// Merges `maps` by what all pairs of them say together.
 ///
 /// Every pair is matched, or of many maps the likely ones (see MergeOptions::max_missed), and all hypotheses
@@ -55,7 +71,7 @@ struct MergeOptions {
 /// The result does not depend on the number of threads, nor on the order of the maps, except that the frame
 /// of a component is its first member's and `joins` are in the order (0, 1), (0, 2), ... Throws
 /// std::invalid_argument for an invalid grid, option or known pose, naming the map by its index, and when a
-/// merged map would exceed 2^28 cells. At most k * (k - 1) / 2 matches for k maps.
+/// merged map would exceed kMaxGridCells. At most k * (k - 1) / 2 matches for k maps.
 GRIDMERGE_EXPORT MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
                                    const std::vector<std::optional<KnownPose>>& known_poses = {});
 

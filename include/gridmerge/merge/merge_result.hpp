@@ -171,4 +171,11 @@ struct MergeResult {
   std::optional<PlanPlacement> plan = {};
 };
 
+/// Why one of `result.left_out` joined nothing, for people: the end of a sentence that begins with its name,
+/// "it fits in more than one way".
+GRIDMERGE_EXPORT const char* explain(const MergeResult& result, const LeftOut& one);
+
+/// Why a part that is not on the plan is not, likewise: "the plan has more than one place that fits".
+GRIDMERGE_EXPORT const char* explain(const PlanPart& part);
+
 }  // namespace gridmerge

@@ -19,13 +19,6 @@ struct DueMatch {
   SearchMethod search = SearchMethod::exhaustive;  ///< how it is to be made
 };
 
-class Merger;
-
-/// A merger that holds these maps, the ids in their order, with what merge() takes beside them. Throws as
-/// merge() does.
-GRIDMERGE_EXPORT Merger merger_of(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
-                                  const std::vector<std::optional<KnownPose>>& known_poses = {});
-
 /// merge() for maps that come one after the other, or grow: pairs that have not changed are not matched
 /// again. The result is the same as that of merge() with all the maps that are in it, in the order in which
 /// they were added.
@@ -36,6 +29,10 @@ class GRIDMERGE_EXPORT Merger {
 
   /// Throws std::invalid_argument for invalid options.
   explicit Merger(MergeOptions options = {});
+  /// One that holds these maps, the ids in their order, with what merge() takes beside them. Throws as
+  /// merge() does.
+  explicit Merger(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
+                  const std::vector<std::optional<KnownPose>>& known_poses = {});
   ~Merger();
   /// The maps and their matches move; what is left may only be assigned to or end.
   Merger(Merger&&) noexcept;
@@ -99,7 +96,7 @@ class GRIDMERGE_EXPORT Merger {
 
   /// Matches the pairs that are new or have changed, and merges: seconds to minutes for many maps. When it is
   /// cancelled (with_cancellation()) the matches made by then are kept, and the next call goes on with them.
-  /// Throws std::invalid_argument when a merged map would exceed 2^28 cells.
+  /// Throws std::invalid_argument when a merged map would exceed kMaxGridCells.
   MergeResult solve();
 
   /// As solve(), for who wants an answer soon and better ones later: looks at all new pairs quickly, but
@@ -113,9 +110,6 @@ class GRIDMERGE_EXPORT Merger {
   bool is_complete() const;
 
  private:
-  friend Merger merger_of(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
-                          const std::vector<std::optional<KnownPose>>& known_poses);
-
   class State;
   std::unique_ptr<State> state_;
 };

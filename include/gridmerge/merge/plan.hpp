@@ -40,8 +40,8 @@ GRIDMERGE_EXPORT void validate_plan(const std::vector<OccupancyGrid>& maps, cons
 /// Within a part nothing moves, and the plan is no part of the merged map. `merged` is what merge() returned
 /// for these maps and options. Neither the number of threads nor the order of the maps plays a part. Throws
 /// std::invalid_argument for an invalid grid or option, what validate_plan() refuses, a result with a fixed
-/// pose or of other maps, and when a merged map would exceed 2^28 cells. A match at all scales, which takes
-/// some ten times as long as one at a single scale, for each part and for up to 16 members of it.
+/// pose or of other maps, and when a merged map would exceed kMaxGridCells. A match at all scales, which
+/// takes some ten times as long as one at a single scale, for each part and for up to 16 members of it.
 GRIDMERGE_EXPORT MergeResult place_on_plan(const std::vector<OccupancyGrid>& maps, const OccupancyGrid& plan,
                                            MergeResult merged, const MergeOptions& options = {},
                                            const PlanOptions& plan_options = {});

@@ -31,7 +31,7 @@ struct TreeOptions {
 ///
 /// The result does not depend on the number of threads; the order of the maps decides the order of the
 /// comparisons, which is that of `joins`. Throws std::invalid_argument for an invalid grid or option, naming
-/// the map by its index, and when a merged map would exceed 2^28 cells.
+/// the map by its index, and when a merged map would exceed kMaxGridCells.
 /// At most (k - 1)^2 comparisons for k maps, k * (k - 1) / 2 when nothing joins.
 GRIDMERGE_EXPORT MergeResult merge_up_tree(const std::vector<OccupancyGrid>& maps, const Matcher& matcher,
                                            const TreeOptions& options = {});

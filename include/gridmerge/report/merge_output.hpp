@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,9 +24,6 @@ struct NamedMerge {
   const MergeResult& result;               ///< as merge() returned it
 };
 
-/// Whether a file of this name in the output directory is a merge's own: written, replaced or removed by it.
-GRIDMERGE_EXPORT bool is_merge_output(const std::filesystem::path& name);
-
 /// Makes sure, before long work, that a merge can be written to `directory`: throws FileError when it is not
 /// a directory, and cannot be made one, that can be written to, or when one of `inputs` (all files that the
 /// maps were read from, images too: LoadedMap::files) lies there under a name that write_merge_output() would
@@ -34,10 +32,11 @@ GRIDMERGE_EXPORT void prepare_merge_output(const std::filesystem::path& director
                                            const std::vector<std::filesystem::path>& inputs);
 
 /// Makes sure, before long work, that what comes of the maps can be written: throws FileError, naming the
-/// map, when one alone has more than 2^28 cells of `resolution` [m] (0: that of the finest map that is
+/// map, when one alone has more than kMaxGridCells of `resolution` [m] (0: that of the finest map that is
 /// placed, so that nothing is sure yet), or lies so far from zero that the merged map may begin further off
 /// than a map file can say. Returns a resolution to choose where the merged map may have more cells than
-/// that, as all maps side by side have; else nothing. O(cells).
+/// that, as all maps side by side have; else nothing. Throws std::out_of_range when there are fewer names
+/// than maps. O(cells).
 GRIDMERGE_EXPORT std::optional<double> check_merged_size(const std::vector<std::string>& names,
                                                          const std::vector<OccupancyGrid>& maps,
                                                          double resolution);
@@ -73,7 +72,7 @@ enum class ExportFormat {
 };
 
 /// All of them, in the order in which they are told.
-GRIDMERGE_EXPORT const std::vector<ExportFormat>& export_formats();
+GRIDMERGE_EXPORT std::span<const ExportFormat> export_formats();
 
 /// As users spell it: "g2o", "open-rmf", "geojson".
 GRIDMERGE_EXPORT const char* name_of(ExportFormat format);
@@ -104,16 +103,6 @@ struct Colour {
 
   /// Whether all channels are equal.
   friend bool operator==(const Colour&, const Colour&) = default;
-};
-
-/// The colours of a preview. Free space that one map saw has a light tint of the map's colour.
-struct PreviewColours {
-  static constexpr Colour kUnknown{221, 221, 217};     ///< known to no map
-  static constexpr Colour kSharedFree{255, 255, 255};  ///< free in two maps or more
-  static constexpr Colour kSharedWall{32, 32, 36};     ///< occupied in two maps or more
-  /// Free in as many maps as occupied; nothing else has it. The fewer say otherwise than the rest, the nearer
-  /// to what the rest say.
-  static constexpr Colour kDisagreement{213, 94, 0};
 };
 
 /// The colour of input map i, of its walls. The first six are distinct to colour-blind eyes too; further maps

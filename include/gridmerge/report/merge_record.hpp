@@ -13,6 +13,21 @@
 
 namespace gridmerge {
 
+// Texts for programs to read. Keys come in the order in which the documentation lists them, numbers in the
+// shortest form that reads back to the same bits. Names are given by the caller and may hold any bytes: what
+// is not UTF-8 appears as U+FFFD. A number that is not finite (no result of the library holds one) throws
+// std::invalid_argument, since JSON cannot say it.
+
+/// `transforms.json` of a merge, indented: all that there is to say of it but the maps' cells, the order of
+/// the maps included, and no times, so that the same merge gives the same bytes. `names[i]` is what to call
+/// map i. Throws std::out_of_range when there are fewer names than maps.
+GRIDMERGE_EXPORT std::string transforms_json(const std::vector<std::string>& names,
+                                             const MergeResult& result);
+
+/// The file of a component's map beside transforms.json, by its place in the result: merged.yaml,
+/// merged_2.yaml, ...
+GRIDMERGE_EXPORT std::string component_file(std::size_t component);
+
 /// What `transforms.json` keeps of a merge.
 struct MergeRecord {
   std::vector<std::string> names;  ///< of all maps, in their order

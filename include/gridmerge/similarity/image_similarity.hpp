@@ -88,11 +88,6 @@ GRIDMERGE_EXPORT bool lie_on_each_other(const OccupancyGrid& fixed, const Occupa
 GRIDMERGE_EXPORT std::int64_t count_equal_cells(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                                 const SE2& T_fixed_moving);
 
-/// omega for k maps (eq. 3): cells at which all of them have the same value, unknown included. The maps must
-/// be of one size; resolutions and origins are not looked at. Every cell counts for a single map, none for no
-/// map. Throws std::invalid_argument if sizes differ. O(k * cells).
-GRIDMERGE_EXPORT std::int64_t count_equal_cells(std::span<const OccupancyGrid> maps);
-
 /// d(m1, m2, c) (algorithm 3, divided by the number of cells): the mean over the cells of m1 with value c of
 /// the Manhattan distance to m2's nearest cell with value c.
 struct DirectedDistance {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <atomic>
-#include <gridmerge/grid/cancellation.hpp>
+#include <gridmerge/grid/execution.hpp>
 #include <gridmerge/io/map_file.hpp>
 #include <stdexcept>
 

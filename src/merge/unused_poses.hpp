@@ -5,25 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "gridmerge/export.hpp"
-#include "gridmerge/grid/occupancy_grid.hpp"
-#include "gridmerge/grid/se2.hpp"
-#include "gridmerge/merge/merge_result.hpp"
+#include "gridmerge/merge/merge.hpp"
+#include "internal_export.hpp"
 
-namespace gridmerge {
-
-/// What is known beforehand of where a map lies. All known poses are in one frame, the world's. One that is
-/// not fixed has to be given its deviations.
-struct KnownPose {
-  SE2 T_world_map;           ///< takes the map's frame to the world's
-  double sd_position = 0.0;  ///< standard deviation of the map's middle [m]
-  double sd_theta = 0.0;     ///< standard deviation of theta [rad]
-  bool fixed = false;        ///< it is the truth, whatever the maps say; the deviations play no part
-};
-
-/// Throws std::invalid_argument for a pose that is not finite or farther off than 10^7 m, or a deviation that
-/// is less than 10^-6; those of a fixed pose may be 0.
-GRIDMERGE_EXPORT void validate(const KnownPose& known);
+namespace gridmerge::internal {
 
 /// A known pose that a merge did not follow, and why.
 struct UnusedPose {
@@ -52,7 +37,7 @@ struct UnusedPose {
 /// contradict each other cannot be said, and it is the later one. A pose is believed within three standard
 /// deviations, and the tolerance that bent maps need. Arguments as of merge(), with what it returned.
 /// O(cells), and O(known^2) a component.
-GRIDMERGE_EXPORT std::vector<UnusedPose> find_unused_poses(
+GRIDMERGE_INTERNAL_EXPORT std::vector<UnusedPose> find_unused_poses(
     const std::vector<OccupancyGrid>& maps, const std::vector<std::optional<KnownPose>>& known_poses,
     const MergeResult& result);
 
@@ -66,8 +51,8 @@ struct ContradictedFix {
 /// The fixed poses that merge() followed against what the maps say: of each pair that the maps' own match
 /// accepts elsewhere, beyond the tolerance that bent maps need. In the order of the joins. Arguments as of
 /// merge(), with what it returned. O(cells + joins).
-GRIDMERGE_EXPORT std::vector<ContradictedFix> find_contradicted_fixes(
+GRIDMERGE_INTERNAL_EXPORT std::vector<ContradictedFix> find_contradicted_fixes(
     const std::vector<OccupancyGrid>& maps, const std::vector<std::optional<KnownPose>>& known_poses,
     const MergeResult& result);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

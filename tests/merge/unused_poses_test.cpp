@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/known_pose.hpp"
+#include "merge/unused_poses.hpp"
 
 #include <gtest/gtest.h>
 
-namespace gridmerge {
+#include "gridmerge/merge/merge.hpp"
+
+namespace gridmerge::internal {
 namespace {
 
 using Why = UnusedPose::Why;
@@ -141,4 +143,4 @@ TEST(UnusedPoses, OfAMapThatAloneFitsElsewhereNameTheMapThatItFits) {
 }
 
 }  // namespace
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

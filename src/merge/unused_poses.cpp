@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gridmerge/merge/known_pose.hpp"
+#include "merge/unused_poses.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <stdexcept>
 
 #include "gridmerge/grid/resample.hpp"
+#include "gridmerge/merge/merge.hpp"
 #include "merge/coverage.hpp"
 #include "merge/map_extent.hpp"
 #include "merge/prior.hpp"
 
-namespace gridmerge {
-
-using namespace internal;
+namespace gridmerge::internal {
 
 namespace {
-
-constexpr double kFarthest = 1e7;  // [m]
-constexpr double kMinDeviation = 1e-6;
 
 struct KnownMap {
   KnownPose pose;
@@ -146,15 +141,4 @@ std::vector<ContradictedFix> find_contradicted_fixes(const std::vector<Occupancy
   return contradicted;
 }
 
-void validate(const KnownPose& known) {
-  const SE2& T = known.T_world_map;
-  if (!(std::abs(T.x) <= kFarthest && std::abs(T.y) <= kFarthest && std::isfinite(T.theta)))
-    throw std::invalid_argument("a known pose must be finite, and within 10000 km");
-  if (known.fixed) return;
-  const auto is_deviation = [](double sd) { return std::isfinite(sd) && sd >= kMinDeviation; };
-  if (!is_deviation(known.sd_position) || !is_deviation(known.sd_theta))
-    throw std::invalid_argument(
-        "the standard deviations of a known pose must be at least 0.000001, unless it is fixed");
-}
-
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

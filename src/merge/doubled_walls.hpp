@@ -3,11 +3,10 @@
 
 #include <vector>
 
-#include "gridmerge/export.hpp"
-#include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/merge/merge_result.hpp"
+#include "internal_export.hpp"
 
-namespace gridmerge {
+namespace gridmerge::internal {
 
 /// How well the maps of a component lie on each other.
 struct DoubledWalls {
@@ -26,7 +25,7 @@ struct DoubledWalls {
 inline constexpr double kManyDoubled = 0.15;
 
 /// Of the maps of a component, bent as its members say. `maps` as given to merge(). O(cells + members^2).
-GRIDMERGE_EXPORT DoubledWalls measure_doubled_walls(const std::vector<OccupancyGrid>& maps,
-                                                    const Component& component);
+GRIDMERGE_INTERNAL_EXPORT DoubledWalls measure_doubled_walls(const std::vector<OccupancyGrid>& maps,
+                                                             const Component& component);
 
-}  // namespace gridmerge
+}  // namespace gridmerge::internal

@@ -9,6 +9,11 @@
 
 namespace gridmerge {
 
+/// Runs `work` so that everything in it that is worked out in parallel uses up to `threads` threads: those of
+/// the calling TBB arena, which functions say that they run in. 0 = one a core.
+/// Throws std::invalid_argument for a negative number; an exception of `work` is passed on.
+GRIDMERGE_EXPORT void with_threads(int threads, const std::function<void()>& work);
+
 /// What work ends with that was asked to stop.
 class GRIDMERGE_EXPORT Cancelled : public std::runtime_error {
  public:
