@@ -2,7 +2,6 @@
 #pragma once
 
 #include "gridmerge/grid/occupancy_grid.hpp"
-#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
@@ -13,11 +12,10 @@ struct KnownMoments {
 };
 
 /// O(cells).
-GRIDMERGE_INTERNAL_EXPORT KnownMoments known_moments(const OccupancyGrid& map);
+KnownMoments known_moments(const OccupancyGrid& map);
 
 /// Root mean square, over the known cells of the moving map, of the distance between where two transforms of
 /// it put a cell [m]. Symmetric in the transforms. O(1).
-GRIDMERGE_INTERNAL_EXPORT double rms_displacement(const KnownMoments& moving, const SE2& T_estimate,
-                                                  const SE2& T_truth);
+double rms_displacement(const KnownMoments& moving, const SE2& T_estimate, const SE2& T_truth);
 
 }  // namespace gridmerge::internal

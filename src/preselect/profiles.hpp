@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "gridmerge/grid/se2.hpp"
-#include "internal_export.hpp"
 #include "similarity/likelihood_field.hpp"
 
 namespace gridmerge::internal {
@@ -24,7 +23,7 @@ struct WallProfiles {
 
 inline constexpr double kProfileStep = 0.3;  // [m]
 
-GRIDMERGE_INTERNAL_EXPORT WallProfiles make_profiles(const LikelihoodField& field);
+WallProfiles make_profiles(const LikelihoodField& field);
 
 /// A pose between grid frames that profiles propose, and how well they go together there.
 struct ProfilePose {
@@ -34,8 +33,7 @@ struct ProfilePose {
 
 /// The poses under which most long walls lie on each other, most alike first; at most `most`.
 /// O(length of the profiles^2).
-GRIDMERGE_INTERNAL_EXPORT std::vector<ProfilePose> align_profiles(const WallProfiles& fixed,
-                                                                  const WallProfiles& moving,
-                                                                  std::size_t most);
+std::vector<ProfilePose> align_profiles(const WallProfiles& fixed, const WallProfiles& moving,
+                                        std::size_t most);
 
 }  // namespace gridmerge::internal

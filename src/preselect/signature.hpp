@@ -28,7 +28,7 @@ inline constexpr std::size_t kDescriptorSize = 96;
 using Descriptor = std::array<std::int16_t, kDescriptorSize>;
 
 /// The same about the keypoint turned by `quarters` quarters, counter-clockwise: a permutation.
-GRIDMERGE_INTERNAL_EXPORT Descriptor quarter_turned(const Descriptor& descriptor, int quarters);
+Descriptor quarter_turned(const Descriptor& descriptor, int quarters);
 
 /// A wall of the map, thinned out.
 struct SampledWall {
