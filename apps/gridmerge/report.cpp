@@ -10,8 +10,6 @@
 
 namespace gridmerge::cli {
 
-using namespace internal;
-
 namespace {
 
 struct ReportCommandOptions {

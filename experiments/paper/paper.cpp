@@ -45,7 +45,7 @@ std::string make_tables() {
 std::string make_all(const std::filesystem::path& folder) {
   std::string text = make_tables();
   for (int figure = paper::kFirstFigure; figure <= paper::kLastFigure; ++figure)
-    text += "\n" + paper::make_figure(figure, folder);
+    text += fmt::format("\n{}", paper::make_figure(figure, folder));
   return text;
 }
 

@@ -2,6 +2,7 @@
 /// All that is installed of what most programs use: match two maps, merge many, read and write them.
 #pragma once
 
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/match/measure.hpp"
 #include "gridmerge/version.hpp"

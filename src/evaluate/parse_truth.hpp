@@ -9,7 +9,7 @@
 
 namespace gridmerge::internal {
 
-/// The readers of truth.hpp, given the text of the file at `path`. They throw FileError.
+/// The readers of evaluate.hpp, given the text of the file at `path`. They throw FileError.
 std::vector<TruePair> parse_pairs(const std::filesystem::path& path, std::string_view text);
 std::vector<NegativePair> parse_negatives(const std::filesystem::path& path, std::string_view text);
 std::vector<TrueSet> parse_sets(const std::filesystem::path& path, std::string_view text);

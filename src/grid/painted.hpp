@@ -9,9 +9,9 @@ namespace gridmerge::internal {
 /// Walls are no thicker than this from where they can be seen [m].
 inline constexpr double kWallDepth = 0.15;
 
-/// The grid without occupied cells that are farther than `reach` metres (and three cells) from every free
-/// one, along a row or a column: they become unknown. Such cells were never seen by a robot: somebody painted
-/// them. O(cells).
+/// The grid without occupied cells that have no free cell within `reach` metres (at least three cells) of
+/// them, measured along rows and along columns: they become unknown. Such cells were never seen by a robot:
+/// somebody painted them. O(cells).
 GRIDMERGE_INTERNAL_EXPORT OccupancyGrid without_painted(const OccupancyGrid& grid, double reach = kWallDepth);
 
 /// Whether more than half of the known cells are such: all that no robot has seen was painted black.

@@ -6,7 +6,7 @@
 
 namespace gridmerge::internal {
 
-/// Why a map lies with no other one, as the end of a sentence that begins with its name.
+/// Why a map lies with no other one: what goes behind its name and a colon.
 GRIDMERGE_INTERNAL_EXPORT const char* explain_left_out(Reason reason);
 
 }  // namespace gridmerge::internal

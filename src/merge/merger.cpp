@@ -2,7 +2,6 @@
 #include "gridmerge/merge/merger.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <set>

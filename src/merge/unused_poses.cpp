@@ -2,7 +2,6 @@
 #include "merge/unused_poses.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "gridmerge/grid/resample.hpp"

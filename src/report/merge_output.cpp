@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -103,6 +104,7 @@ void protect(const std::vector<fs::path>& inputs, const fs::path& directory) {
 
 std::optional<double> check_merged_size(const std::vector<std::string>& names,
                                         const std::vector<OccupancyGrid>& maps, double resolution) {
+  if (names.size() < maps.size()) throw std::out_of_range("there are fewer names than maps");
   if (maps.empty()) return std::nullopt;
   double diagonals = 0.0, finest = maps.front().resolution;
   for (const OccupancyGrid& map : maps) {
@@ -122,14 +124,14 @@ std::optional<double> check_merged_size(const std::vector<std::string>& names,
     const OccupancyGrid& map = maps[i];
     if (std::max(std::abs(map.origin.x), std::abs(map.origin.y)) + diagonals > kMaxOrigin)
       throw FileError(
-          names.at(i),
+          names[i],
           fmt::format("lies too far from zero: with the other maps it may reach beyond {} m", kMaxOrigin));
     const double ratio = map.resolution / resolution;
     double own = static_cast<double>(map.cells.size()) * ratio * ratio;
     if (own > kMaxGridCells && count_cells(map).known() > 0)
       own = static_cast<double>(crop_to_known(map).cells.size()) * ratio * ratio;
     if (own > kMaxGridCells && is_asked_for)
-      throw FileError(names.at(i),
+      throw FileError(names[i],
                       fmt::format("alone has {:.3g} cells of {:.4g} m, and a merged map may have 2^28: "
                                   "choose an output resolution of {:.2g} m (--output-resolution)",
                                   own, resolution, fitting(own)));

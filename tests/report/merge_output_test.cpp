@@ -166,6 +166,7 @@ TEST(MergeOutput, SaysWhereItMayNotWrite) {
 TEST(MergeOutput, ForeseesTheSizeOfTheMergedMap) {
   EXPECT_FALSE(check_merged_size(kNames, kMaps, 0.0));
   EXPECT_FALSE(check_merged_size({}, {}, 0.0));
+  EXPECT_THROW(check_merged_size({}, kMaps, 0.0), std::out_of_range);
   // 150 million cells each.
   const std::optional<double> coarser = check_merged_size(kNames, kMaps, 1e-5);
   ASSERT_TRUE(coarser);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gridmerge/export.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/online/team.hpp"
 

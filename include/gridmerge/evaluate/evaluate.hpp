@@ -12,7 +12,9 @@
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/io/map_file.hpp"
+#include "gridmerge/match/match_result.hpp"
 #include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/merge_result.hpp"
 #include "gridmerge/merge/tree.hpp"
 
 namespace gridmerge {
@@ -60,19 +62,19 @@ struct TrueSet {
   std::vector<TrueMember> members;  ///< in file order
 };
 
-/// Readers of ground-truth files: tab-separated text whose first line names the columns, in any order. Every
+/// Reads a ground-truth file: tab-separated text whose first line names the columns, in any order. Every
 /// column is required unless said otherwise, an unknown one is an error, and blank lines are skipped. Numbers
-/// are read the same way under every locale and must be finite; tolerances must be positive. They throw
+/// are read the same way under every locale and must be finite; tolerances must be positive. Throws
 /// FileError with "file:line: cause".
-
+///
 /// Columns: fixed, moving, x, y, theta, tolerance; optional: tier, overlap (in [0, 1]), shared_wall (from 0
 /// on).
 GRIDMERGE_EXPORT std::vector<TruePair> read_pairs(const std::filesystem::path& path);
 
-/// Columns: fixed, moving.
+/// As read_pairs(). Columns: fixed, moving.
 GRIDMERGE_EXPORT std::vector<NegativePair> read_negatives(const std::filesystem::path& path);
 
-/// Columns: set, map, x, y, theta, tolerance. Sets come in the order of their first line.
+/// As read_pairs(). Columns: set, map, x, y, theta, tolerance. Sets come in the order of their first line.
 GRIDMERGE_EXPORT std::vector<TrueSet> read_sets(const std::filesystem::path& path);
 
 /// The text of a ground-truth file, which reads back to the same values (numbers to the bit). Names are those

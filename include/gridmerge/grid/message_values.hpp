@@ -7,6 +7,7 @@
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/grid/se2.hpp"
 
 namespace gridmerge {
 

@@ -50,8 +50,9 @@ struct OccupancyGrid {
   }
 };
 
-/// No grid that the library makes has more cells, nor one that it reads from a message; a file's may have
-/// more if its reader is told so. Of 32 bits, so that it is exact as a floating point number too.
+/// Merged, transformed and bent maps have no more cells than this, nor has a map that a RosNode hears. Files
+/// and bags have this limit too, unless LoadOptions::max_cells says otherwise. Of 32 bits, so that it is
+/// exact as a floating point number too.
 inline constexpr std::uint32_t kMaxGridCells = std::uint32_t{1} << 28;
 
 /// A grid of `width` x `height` cells, all of them `fill`.

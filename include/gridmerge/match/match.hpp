@@ -24,10 +24,10 @@ class DrawnWalls;
 /// map that it is matched with. May be used by several threads at once.
 class GRIDMERGE_EXPORT PreparedMap {
  public:
-  /// Copies what robots have seen of `grid`: without occupied cells that are farther than 0.15 m (and three
-  /// cells) from every free one along their row or column, which somebody has painted. So nothing of a
-  /// drawing in which no cell is free. Throws std::invalid_argument for an invalid grid (see validate()).
-  /// O(cells).
+  /// Copies what robots have seen of `grid`. Painted cells become unknown: occupied ones with no free cell
+  /// within 0.15 m (at least three cells) of them, measured along rows and along columns. So nothing is left
+  /// of a drawing in which no cell is free. Throws std::invalid_argument for an invalid grid (see
+  /// validate()). O(cells).
   explicit PreparedMap(const OccupancyGrid& grid);
   ~PreparedMap();
 
@@ -87,7 +87,7 @@ struct MatchOptions {
   /// If given, the moving map may have any scale of this range, as an architect's plan has: match() looks at
   /// scales 3 % apart, fits the scale of the best poses, and gives it in MatchResult::scale. The fixed map's
   /// metres count. The look at each scale is the quick one unless SearchMethod::thorough is asked for, which
-  /// takes four times as long. Not for SearchMethod::random_walk, and not for merging.
+  /// takes four times as long. Not for SearchMethod::random_walk, prepared maps or merging.
   std::optional<ScaleRange> scales = std::nullopt;
   /// Of SearchMethod::random_walk, which has its own rule of acceptance. Its threads, number of hypotheses
   /// and progress are those below.
@@ -99,8 +99,13 @@ struct MatchOptions {
   std::function<void(double)> progress;
 };
 
+/// Throws std::invalid_argument for options that make no sense; `random_walk` is looked at only if it is the
+/// search.
+GRIDMERGE_EXPORT void validate(const MatchOptions& options);
+
 /// Finds how `moving` lies on `fixed`, searching every pose, and says whether to believe it.
-/// Throws std::invalid_argument for an invalid grid or option (see validate()).
+/// Throws std::invalid_argument for an invalid grid or option (see validate()), and with `scales` for a map
+/// without walls.
 GRIDMERGE_EXPORT MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                    const MatchOptions& options = {});
 
@@ -110,9 +115,6 @@ GRIDMERGE_EXPORT MatchResult match(const OccupancyGrid& fixed, const OccupancyGr
 /// more of a map than is prepared.
 GRIDMERGE_EXPORT MatchResult match(const PreparedMap& fixed, const PreparedMap& moving,
                                    const MatchOptions& options = {});
-
-/// Throws std::invalid_argument for options that make no sense.
-GRIDMERGE_EXPORT void validate(const MatchOptions& options);
 
 /// A pose that somebody proposed, put right.
 struct RefinedPose : PairPose {

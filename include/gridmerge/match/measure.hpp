@@ -7,7 +7,9 @@
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/grid/se2.hpp"
 #include "gridmerge/match/match.hpp"
+#include "gridmerge/match/match_result.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 
 namespace gridmerge {

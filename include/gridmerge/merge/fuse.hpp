@@ -36,8 +36,8 @@ struct FusedMap {
 /// probability of 0.03 to 0.97). A positive sum is occupied, a negative one free, and log-odds that cancel
 /// out are unknown. A map says "occupied" with probability 0.85 and "free" with 0.35, or with its own
 /// probabilities, at most 0.88 and at least 0.12; a wall one cell thick stays in one piece at any angle.
-/// Where most of what an input knows was painted black (occupied, and farther than 0.15 m from every free
-/// cell), what was painted counts as unknown: it would hide what others have seen. The sums are integers, so
+/// Where most of what an input knows was painted black (see PreparedMap), what was painted counts as unknown:
+/// it would hide what others have seen. The sums are integers, so
 /// the result does not depend on the inputs' order. Throws std::invalid_argument for no input, an invalid
 /// grid, a transform that is not finite, a resolution that is not positive, and a result of more than
 /// kMaxGridCells. O(cells of the inputs + cells of the result).

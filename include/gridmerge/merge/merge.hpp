@@ -70,8 +70,9 @@ GRIDMERGE_EXPORT void validate(const KnownPose& known);
 ///
 /// The result does not depend on the number of threads, nor on the order of the maps, except that the frame
 /// of a component is its first member's and `joins` are in the order (0, 1), (0, 2), ... Throws
-/// std::invalid_argument for an invalid grid, option or known pose, naming the map by its index, and when a
-/// merged map would exceed kMaxGridCells. At most k * (k - 1) / 2 matches for k maps.
+/// std::invalid_argument for an invalid grid, option or known pose, naming the map by its index, for more
+/// known poses than maps, and when a merged map would exceed kMaxGridCells cells. At most k * (k - 1) / 2
+/// matches for k maps.
 GRIDMERGE_EXPORT MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
                                    const std::vector<std::optional<KnownPose>>& known_poses = {});
 

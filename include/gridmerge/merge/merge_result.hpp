@@ -9,7 +9,7 @@
 #include "gridmerge/export.hpp"
 #include "gridmerge/grid/deformation.hpp"
 #include "gridmerge/grid/se2.hpp"
-#include "gridmerge/match/match.hpp"
+#include "gridmerge/match/match_result.hpp"
 #include "gridmerge/merge/fuse.hpp"
 
 namespace gridmerge {
@@ -171,8 +171,8 @@ struct MergeResult {
   std::optional<PlanPlacement> plan = {};
 };
 
-/// Why one of `result.left_out` joined nothing, for people: the end of a sentence that begins with its name,
-/// "it fits in more than one way".
+/// Why one of `result.left_out` joined nothing, for people. It goes behind the map's name and a colon: "it
+/// fits in more than one way".
 GRIDMERGE_EXPORT const char* explain(const MergeResult& result, const LeftOut& one);
 
 /// Why a part that is not on the plan is not, likewise: "the plan has more than one place that fits".

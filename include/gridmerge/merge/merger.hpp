@@ -8,7 +8,11 @@
 #include <vector>
 
 #include "gridmerge/export.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/match/match.hpp"
+#include "gridmerge/match/match_result.hpp"
 #include "gridmerge/merge/merge.hpp"
+#include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
 
@@ -29,8 +33,9 @@ class GRIDMERGE_EXPORT Merger {
 
   /// Throws std::invalid_argument for invalid options.
   explicit Merger(MergeOptions options = {});
-  /// One that holds these maps, the ids in their order, with what merge() takes beside them. Throws as
-  /// merge() does.
+  /// Holds these maps, with ids in their order, and what merge() takes beside them. Throws
+  /// std::invalid_argument for an invalid grid, option or known pose, naming the map by its index, and for
+  /// more known poses than maps.
   explicit Merger(const std::vector<OccupancyGrid>& maps, const MergeOptions& options = {},
                   const std::vector<std::optional<KnownPose>>& known_poses = {});
   ~Merger();
@@ -80,7 +85,7 @@ class GRIDMERGE_EXPORT Merger {
 
   /// Makes a match that is due, of the maps as they are, and hands nothing in: for who makes some of them
   /// here. Runs in the calling TBB arena, as match() of prepared maps; may be called by several threads at
-  /// once. Throws std::out_of_range for an unknown id.
+  /// once. Throws std::out_of_range for an unknown id, and std::invalid_argument for the random walk.
   MatchResult make(const DueMatch& due) const;
 
   /// Takes a match that was made elsewhere, as if solve() had made it: of the two maps as they were added

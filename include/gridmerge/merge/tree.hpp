@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <vector>
 
 #include "gridmerge/export.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/match/match_result.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {

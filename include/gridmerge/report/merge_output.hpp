@@ -11,13 +11,14 @@
 #include <vector>
 
 #include "gridmerge/export.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
 
 /// A merge as outputs show it: with its maps, and what they are called. Not owned: all three outlive it. What
-/// takes one throws std::out_of_range when there are fewer names than maps.
+/// takes one throws std::out_of_range when a map that it speaks of has no name.
 struct NamedMerge {
   const std::vector<std::string>& names;   ///< `names[i]` is what to call map i
   const std::vector<OccupancyGrid>& maps;  ///< as given to merge()

@@ -8,19 +8,18 @@
 #include <vector>
 
 #include "gridmerge/export.hpp"
+#include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "gridmerge/merge/merge_result.hpp"
 
 namespace gridmerge {
 
-// Texts for programs to read. Keys come in the order in which the documentation lists them, numbers in the
-// shortest form that reads back to the same bits. Names are given by the caller and may hold any bytes: what
-// is not UTF-8 appears as U+FFFD. A number that is not finite (no result of the library holds one) throws
-// std::invalid_argument, since JSON cannot say it.
-
 /// `transforms.json` of a merge, indented: all that there is to say of it but the maps' cells, the order of
-/// the maps included, and no times, so that the same merge gives the same bytes. `names[i]` is what to call
-/// map i. Throws std::out_of_range when there are fewer names than maps.
+/// the maps included, and no times, so that the same merge gives the same bytes. Keys come in the order in
+/// which the documentation lists them, numbers in the shortest form that reads back to the same bits.
+/// `names[i]` is what to call map i, and may hold any bytes: what is not UTF-8 appears as U+FFFD. Throws
+/// std::out_of_range when there are fewer names than maps, and std::invalid_argument for a number that is not
+/// finite.
 GRIDMERGE_EXPORT std::string transforms_json(const std::vector<std::string>& names,
                                              const MergeResult& result);
 

@@ -8,6 +8,7 @@
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/grid/se2.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 
 namespace gridmerge {

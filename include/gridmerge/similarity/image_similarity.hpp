@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -9,8 +9,12 @@
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/grid/se2.hpp"
 
 namespace gridmerge {
+
+// The measures of A. Birk and S. Carpin, "Merging occupancy grid maps from multiple robots", Proc. IEEE,
+// 2006, which is "the paper" below.
 
 /// In a DistanceMap: the grid has no cell of the value.
 inline constexpr std::uint16_t kNoDistance = 0xffff;
@@ -48,13 +52,14 @@ struct DistanceMapPasses {
 /// times as fast. The upper row is the last one: y points up. Throws as make_distance_map(). O(cells).
 GRIDMERGE_EXPORT DistanceMapPasses trace_distance_map(const OccupancyGrid& grid, Cell value);
 
-// Birk & Carpin (2006) compare cells of maps that lie on one lattice. These functions lay maps at poses on
+// They compare cells of maps that lie on one lattice. These functions lay maps at poses on
 // the lattice of any grid: its size, resolution and origin count, its cells do not. Each cell takes the value
 // of the map's cell in which its centre falls (nearest cell), and is unknown where there is none. A centre
 // that falls on the edge between two cells, to about a millionth of a cell, may go to either.
 //
-// All throw std::invalid_argument for invalid grids, resolutions that differ by more than 100 times, sides of
-// more than a million cells, and a transform that is not finite or puts the map that far away.
+// The first two throw std::invalid_argument for invalid grids, resolutions that differ by more than 100
+// times, sides of more than a million cells, and a transform that is not finite or puts the map that far
+// away.
 
 /// T(m), the map that a transform makes of a map (definition 4 of the paper), on `lattice`: a grid of its
 /// size, resolution and origin. `map.T_output_map` takes the map's frame to the lattice's [m, rad].
@@ -69,17 +74,12 @@ GRIDMERGE_EXPORT std::int64_t count_equal_cells(const OccupancyGrid& lattice,
 
 /// Whether the rectangles that hold the maps' known cells share a cell of the fixed map's lattice: the maps
 /// can have something in common only then. False for a transform that is not finite or puts the maps more
-/// than a million cells apart. Throws for the grids as above. O(cells of both).
+/// than a million cells apart. Throws std::invalid_argument for invalid grids, and resolutions that differ by
+/// more than 100 times. O(cells of both).
 GRIDMERGE_EXPORT bool lie_on_each_other(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                         const SE2& T_fixed_moving);
 
-// The measures of A. Birk and S. Carpin, "Merging occupancy grid maps from multiple robots", Proc. IEEE,
-// 2006.
-//
-// They compare cells of one lattice. Here that is the fixed map's, continued without end: each of its cells
-// takes the value of the moving cell in which its centre falls (nearest cell), and is unknown where there is
-// none. A centre that falls on the edge between two cells, to about a millionth of a cell, may go to
-// either.
+// Of two maps the lattice is the fixed map's, continued without end. Cells take their values as above.
 
 /// omega (eq. 2): cells of the fixed map that have the same value, unknown included, as the moving map's
 /// there. Symmetric for maps of one size and origin under the identity. Throws std::invalid_argument for

@@ -12,6 +12,7 @@
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/grid/se2.hpp"
 
 namespace gridmerge {
 
