@@ -30,7 +30,7 @@ int run_view(const ViewCommandOptions& options) {
   const SavedMerge merge = load_saved_merge(options.merge, console);
   std::string page;
   with_threads(options.common.threads, [&] { page = live_report_page(merge.named()); });
-  const auto shared = std::make_shared<const std::string>(std::move(page));
+  auto shared = std::make_shared<const std::string>(std::move(page));
   PageAnswers answers;
   answers.page = [shared] { return shared; };
   answers.refine = [&](const std::string& body) {

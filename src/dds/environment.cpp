@@ -86,7 +86,7 @@ std::filesystem::path find_enclave(const Environment& environment, const std::st
   constexpr const char* kKeystore = "ROS_SECURITY_KEYSTORE";
   const std::string keystore = value_of(environment, kKeystore);
   if (keystore.empty()) refuse("ROS_SECURITY_ENABLE", "true", fmt::format("{} is not set", kKeystore));
-  const std::filesystem::path folder =
+  std::filesystem::path folder =
       std::filesystem::absolute(keystore) / "enclaves" / std::filesystem::path(enclave).relative_path();
   for (const EnclaveFile& file : kEnclaveFiles) {
     std::error_code error;

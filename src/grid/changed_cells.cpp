@@ -2,6 +2,9 @@
 #include "grid/changed_cells.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
 #include <cstring>
 #include <iterator>
 
@@ -14,7 +17,8 @@ template <typename Value>
 void add_differences(const Value* before, const Value* after, int width, int row, CellBox& box) {
   const auto count = static_cast<std::size_t>(width);
   if (std::memcmp(before, after, count * sizeof(Value)) == 0) return;
-  const auto same = [](const Value& a, const Value& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+  using Bits = std::array<std::byte, sizeof(Value)>;
+  const auto same = [](Value a, Value b) { return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b); };
   const auto first = std::mismatch(before, before + count, after, same).first - before;
   const auto from_end =
       std::mismatch(std::make_reverse_iterator(before + count), std::make_reverse_iterator(before),

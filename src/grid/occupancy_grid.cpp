@@ -38,7 +38,7 @@ void add_few(const Cell* cells, std::size_t count, CellCounts& counts) {
 }  // namespace
 
 CellCounts count_cells(const OccupancyGrid& grid) {
-  constexpr std::size_t kFew = 7 * 32;  // whole registers
+  constexpr std::size_t kFew = 7 * std::size_t{32};  // whole registers
   CellCounts counts;
   for (std::size_t i = 0; i < grid.cells.size(); i += kFew)
     add_few(grid.cells.data() + i, std::min(kFew, grid.cells.size() - i), counts);

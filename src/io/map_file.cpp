@@ -75,7 +75,7 @@ bool is_there(const std::filesystem::path& path) {
 // The image's path, or, where nothing is there (it is another machine's), the file of its name beside the
 // YAML. Windows parts names by backslashes.
 std::filesystem::path image_of(const MapYaml& yaml, const std::filesystem::path& yaml_path) {
-  const std::filesystem::path there = yaml_path.parent_path() / yaml.image;
+  std::filesystem::path there = yaml_path.parent_path() / yaml.image;
   if (is_there(there)) return there;
   const std::string name = yaml.image.substr(yaml.image.find_last_of("/\\") + 1);
   const std::filesystem::path beside = yaml_path.parent_path() / name;

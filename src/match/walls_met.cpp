@@ -234,8 +234,8 @@ std::size_t WallPatches::index(const Point2& point) const {
 }
 
 Point2 WallPatches::centre(std::size_t patch) const {
-  return {(static_cast<double>(patch % columns_) + 0.5) * side_,
-          (static_cast<double>(patch / columns_) + 0.5) * side_};
+  const std::size_t column = patch % columns_, row = patch / columns_;
+  return {(static_cast<double>(column) + 0.5) * side_, (static_cast<double>(row) + 0.5) * side_};
 }
 
 WallsMet measure_walls_met(const LikelihoodField& fixed, const WallPatches& moving,

@@ -41,6 +41,7 @@ double usual_deviation(const std::vector<RelativePose>& measured) {
   constexpr double kUnmeasured = 0.3;
   if (measured.empty()) return kUnmeasured;
   std::vector<double> deviations;
+  deviations.reserve(measured.size());
   for (const RelativePose& relative : measured) deviations.push_back(relative.sd_position);
   std::sort(deviations.begin(), deviations.end());
   return deviations[deviations.size() / 2];

@@ -29,6 +29,7 @@ struct SeenMap {
 
 std::vector<SeenMap> see_all(const std::vector<ElasticMember>& members) {
   std::vector<SeenMap> seen;
+  seen.reserve(members.size());
   for (const ElasticMember& member : members)
     seen.push_back({member.sheet.deformation(), inverse(member.sheet.T_group_map())});
   return seen;

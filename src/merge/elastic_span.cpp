@@ -23,8 +23,9 @@ std::optional<Eigen::MatrixXd> span_of(const ElasticSheet& sheet, MapTransform t
   Eigen::MatrixXd span(2 * static_cast<Eigen::Index>(sheet.size()), static_cast<Eigen::Index>(shifts.size()));
   for (Eigen::Index column = 0; column < span.cols(); ++column) {
     for (Eigen::Index point = 0; point < span.rows() / 2; ++point) {
-      const Point2 p{static_cast<double>(point % sheet.columns()) - 0.5 * (sheet.columns() - 1),
-                     static_cast<double>(point / sheet.columns()) - 0.5 * (sheet.rows() - 1)};
+      const Eigen::Index x = point % sheet.columns(), y = point / sheet.columns();
+      const Point2 p{static_cast<double>(x) - 0.5 * (sheet.columns() - 1),
+                     static_cast<double>(y) - 0.5 * (sheet.rows() - 1)};
       const Point2 shift = shifts[static_cast<std::size_t>(column)] * p;
       span(2 * point, column) = shift.x;
       span(2 * point + 1, column) = shift.y;

@@ -54,7 +54,7 @@ Point2 gathered(const SplineWeights& weights, int columns, const Eigen::VectorXd
   Point2 sum;
   for (int b = 0; b < 4; ++b) {
     const Eigen::Index begin = 2 * (static_cast<Eigen::Index>(weights.row + b) * columns + weights.column);
-    for (int a = 0; a < 4; ++a) {
+    for (Eigen::Index a = 0; a < 4; ++a) {
       const double weight = weights.y[b] * weights.x[a];
       sum.x += weight * shifts[begin + 2 * a];
       sum.y += weight * shifts[begin + 2 * a + 1];
@@ -66,7 +66,7 @@ Point2 gathered(const SplineWeights& weights, int columns, const Eigen::VectorXd
 void scatter(const SplineWeights& weights, int columns, const Point2& value, Eigen::VectorXd& to) {
   for (int b = 0; b < 4; ++b) {
     const Eigen::Index begin = 2 * (static_cast<Eigen::Index>(weights.row + b) * columns + weights.column);
-    for (int a = 0; a < 4; ++a) {
+    for (Eigen::Index a = 0; a < 4; ++a) {
       const double weight = weights.y[b] * weights.x[a];
       to[begin + 2 * a] += weight * value.x;
       to[begin + 2 * a + 1] += weight * value.y;

@@ -78,7 +78,7 @@ std::unique_ptr<const OccupancyGrid> as_seen(const OccupancyGrid& map) {
 
 }  // namespace
 
-FusedInputs::FusedInputs(const std::vector<PlacedMap>& maps) : maps_(maps) {
+FusedInputs::FusedInputs(std::vector<PlacedMap> maps) : maps_(std::move(maps)) {
   for (PlacedMap& input : maps_) {
     if (input.map == nullptr) continue;  // cover() refuses it
     validate(*input.map);

@@ -17,7 +17,7 @@ namespace gridmerge::internal {
 class FusedInputs {
  public:
   /// Throws std::invalid_argument for an invalid map. `maps` must outlive it. O(cells).
-  explicit FusedInputs(const std::vector<PlacedMap>& maps);
+  explicit FusedInputs(std::vector<PlacedMap> maps);
 
   const std::vector<PlacedMap>& maps() const { return maps_; }
   bool is_any_painted() const;

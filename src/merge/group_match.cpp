@@ -76,7 +76,7 @@ void say(const MatchResult& match, const NodeGroup& group, std::size_t map,
 
 }  // namespace
 
-GroupMatches::GroupMatches(const MatchOptions& options) : options_(options) {
+GroupMatches::GroupMatches(MatchOptions options) : options_(std::move(options)) {
   options_.progress = nullptr;
   options_.max_hypotheses = kKeptHypotheses;
 }

@@ -17,7 +17,7 @@ namespace gridmerge::internal {
 /// them, and much with all.
 class GroupMatches {
  public:
-  explicit GroupMatches(const MatchOptions& options);
+  explicit GroupMatches(MatchOptions options);
 
   /// Tells which meetings are worth a match, each of a group (index into the first argument) and a map (of
   /// the problem). Groups that meet nobody are null.

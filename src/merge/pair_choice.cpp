@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <tuple>
 
@@ -61,9 +62,8 @@ double PairChoice::order_by_weight(std::vector<Weighed>& pairs) {
   std::sort(pairs.begin(), pairs.end(), [](const Weighed& x, const Weighed& y) {
     return std::tuple(-x.weight, x.a, x.b) < std::tuple(-y.weight, y.a, y.b);
   });
-  double sum = 0.0;
-  for (auto one = pairs.rbegin(); one != pairs.rend(); ++one) sum += one->weight;
-  return sum;
+  return std::accumulate(pairs.rbegin(), pairs.rend(), 0.0,
+                         [](double sum, const Weighed& one) { return sum + one.weight; });
 }
 
 PairChoice::PairChoice(double max_missed) : max_shown_(std::max(0.0, max_missed - kHiddenShare)) {}

@@ -63,6 +63,7 @@ std::string open_rmf_text(const NamedMerge& merge) {
     for (const Member& member : result.components[i].members) {
       const std::vector<Point2> robot = known_corners(maps.at(member.map));
       std::vector<Point2> rmf;
+      rmf.reserve(robot.size());
       for (const Point2& point : robot) rmf.push_back(member.T_component_map * point);
       fmt::format_to(out,
                      "  - source: {}\n    merged_map: {}\n    reference_coordinates:\n      {}:\n"

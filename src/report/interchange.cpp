@@ -38,6 +38,7 @@ const Format& of(ExportFormat format) {
 std::span<const ExportFormat> export_formats() {
   static const std::vector<ExportFormat> formats = [] {
     std::vector<ExportFormat> all;
+    all.reserve(kFormats.size());
     for (const Format& one : kFormats) all.push_back(one.format);
     return all;
   }();

@@ -165,7 +165,7 @@ void pool_scores(const ScoreImage& scores, ScoreImage& pooled) {
     const std::int16_t* const row = scores.values.data() + static_cast<std::size_t>(2 * y) * scores.width;
     const std::int16_t* const next = 2 * y + 1 < scores.height ? row + scores.width : row;
     std::int16_t* const most = pooled.values.data() + static_cast<std::size_t>(y) * pooled.width;
-    for (int x = 0; x < half_width; ++x)
+    for (std::ptrdiff_t x = 0; x < half_width; ++x)
       most[x] = std::max(std::max(row[2 * x], row[2 * x + 1]), std::max(next[2 * x], next[2 * x + 1]));
   }
 }

@@ -54,6 +54,7 @@ std::vector<PoseCandidate> search_rotations(const SearchFrame& frame, std::size_
     kept = keep_distinct(together(peaks), frame.rotations, max_candidates);
   }
   std::vector<PoseCandidate> candidates;
+  candidates.reserve(kept.size());
   for (const Peak& peak : kept) candidates.push_back({frame.pose(peak), peak.score});
   return candidates;
 }

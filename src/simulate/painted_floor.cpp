@@ -77,11 +77,11 @@ void PaintedFloor::open(const Room& room, Side side, double at, double width) {
 }
 
 int PaintedFloor::space_at(Point2 p) const {
-  for (auto part = parts_.rbegin(); part != parts_.rend(); ++part) {
-    const Room& room = part->room;
-    if (p.x > room.left && p.x < room.right && p.y > room.bottom && p.y < room.top) return part->space;
-  }
-  return 0;
+  const auto last = std::find_if(parts_.rbegin(), parts_.rend(), [&](const Part& part) {
+    const Room& room = part.room;
+    return p.x > room.left && p.x < room.right && p.y > room.bottom && p.y < room.top;
+  });
+  return last == parts_.rend() ? 0 : last->space;
 }
 
 void PaintedFloor::draw_run(Draughtsman& pen, bool upright, double line, double from, double to) const {
