@@ -31,8 +31,8 @@ Shifts useful_shifts(std::vector<int>& points, std::size_t least, int box, int l
   std::nth_element(points.begin(), high, points.end());
   const int highest = *high;
   // The box begins `box` before the fixed map, and points are shifted by the result. One more on either side:
-  // the rim.
-  return {box - highest - 1, length + highest - lowest + 2};
+  // the rim. There is none where even `least` neighbours lie farther apart than that.
+  return {box - highest - 1, std::max(0, length + highest - lowest + 2)};
 }
 
 }  // namespace

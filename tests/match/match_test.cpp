@@ -235,6 +235,26 @@ TEST(Match, ReportsProgressAndListsNoMoreThanAsked) {
   EXPECT_GT(result.seconds, 0.0);
 }
 
+// Two robots that have just started: a corner of a room, and a bare hall crossed once.
+TEST(Match, SparseMapsHaveAnAnswer) {
+  OccupancyGrid corner = make_grid(100, 100, 0.05, {}, Cell::free);
+  for (int i = 0; i < 100; ++i) corner.at(i, 0) = corner.at(0, i) = Cell::occupied;
+  OccupancyGrid hall = make_grid(240, 30, 0.05, {}, Cell::free);
+  for (const auto& [x, y] : {std::pair{0, 14},
+                             {239, 15},
+                             {60, 0},
+                             {61, 0},
+                             {120, 29},
+                             {121, 29},
+                             {180, 0},
+                             {181, 0},
+                             {30, 29},
+                             {210, 29}})
+    hall.at(x, y) = Cell::occupied;
+  EXPECT_EQ(match(corner, hall).verdict, Verdict::refused);
+  EXPECT_EQ(match(hall, corner).verdict, Verdict::refused);
+}
+
 TEST(Match, RefusesInvalidInput) {
   const OccupancyGrid map = test::draw_building(1);
   OccupancyGrid broken = map;

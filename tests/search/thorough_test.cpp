@@ -248,6 +248,25 @@ TEST(SearchThoroughly, AMapWithoutWallsHasNoCandidates) {
   EXPECT_TRUE(search_thoroughly(empty, map).empty());
 }
 
+// Walls so few and so far apart that no shift has even half of them on the fixed map.
+TEST(SearchThoroughly, FewWallsFarApartAreNoError) {
+  std::mt19937 random(1);
+  for (int run = 0; run < 40; ++run) {
+    OccupancyGrid small = make_grid(60, 60, 0.05, {}, Cell::free);
+    for (int i = 0; i < 60; ++i) small.at(i, 0) = small.at(0, i) = Cell::occupied;
+    const int length = 200 + static_cast<int>(random() % 200), walls = 1 + run;
+    OccupancyGrid hall = make_grid(length, 20, 0.05, {}, Cell::free);
+    for (int i = 0; i < walls; ++i)
+      hall.at(static_cast<int>(random() % static_cast<unsigned>(length)), static_cast<int>(random() % 20)) =
+          Cell::occupied;
+    const LikelihoodField a = make_likelihood_field(small, 0.05), b = make_likelihood_field(hall, 0.05);
+    for (const PoseCandidate& candidate : search_thoroughly(a, b))
+      EXPECT_TRUE(std::isfinite(candidate.score));
+    for (const PoseCandidate& candidate : search_thoroughly(b, a))
+      EXPECT_TRUE(std::isfinite(candidate.score));
+  }
+}
+
 TEST(SearchThoroughly, RefusesOptionsThatMakeNoSense) {
   const LikelihoodField map = make_likelihood_field(test::random_grid(1, 30, 30), 0.1);
   const auto refused = [&](auto change) {
