@@ -289,6 +289,10 @@ std::vector<std::pair<NodeGroup, NodeGroup>> JoinWeights::halves(const NodeGroup
       (is_first[i] ? halves.first : halves.second).push_back(group[i]);
     all.push_back(std::move(halves));
   }
+  for (std::size_t i = 0; group.size() > 2 && i < group.size(); ++i) {
+    // At an end of the tree it is cut off already.
+    if (around[i].size() > 1 && !is_fixed(group[i].map)) all.push_back(taken_out(group, i));
+  }
   return all;
 }
 

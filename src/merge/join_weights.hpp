@@ -59,7 +59,8 @@ class JoinWeights {
   /// no way can be worth more than `least` against being apart [nats].
   std::optional<WeighedJoin> best_join(const NodeGroup& a, const NodeGroup& b, double least = kAny) const;
 
-  /// The same without its probability, in a fraction of the time.
+  /// The same without its probability, in a fraction of the time, and with two single maps weighed as groups
+  /// are: what a map gains there can be compared with what worth_of() says that it loses here.
   std::optional<WeighedJoin> best_way(const NodeGroup& a, const NodeGroup& b, double least = kAny) const;
 
   /// What it is worth that the groups lie so.
@@ -74,8 +75,9 @@ class JoinWeights {
   /// The parts of a group that candidates which agree with its poses, or being fixed, hold together.
   NodeGroups connected(const NodeGroup& group) const;
 
-  /// The ways to cut a group in two along the strongest candidates that hold it together: one for each edge
-  /// of their maximum spanning tree. O(edges + maps^2).
+  /// The ways to cut a group in two that are worth a look: along the strongest candidates that hold it
+  /// together, one for each edge of their maximum spanning tree, and each map that is not fixed from the
+  /// rest, as its probability is told. O(edges + maps^2).
   std::vector<std::pair<NodeGroup, NodeGroup>> halves(const NodeGroup& group) const;
 
   /// The group with the poses that fit its candidates best; fixed ones are as they were.

@@ -168,15 +168,19 @@ std::optional<WeighedJoin> JoinWeights::best_join(const NodeGroup& a, const Node
 }
 
 std::optional<WeighedJoin> JoinWeights::best_way(const NodeGroup& a, const NodeGroup& b, double least) const {
-  return first_of(a.size() == 1 && b.size() == 1 ? ways_of_pair(a.front(), b.front())
-                                                 : weigh_proposals(a, b, 0.0, least));
+  return first_of(weigh_proposals(a, b, 0.0, least));
 }
 
 double JoinWeights::probability_of_lying_so(const NodeGroup& a, const NodeGroup& b) const {
   const std::vector<WeighedJoin> all = ways_to_join(a, b);
-  if (a.size() == 1 && b.size() == 1) return all.empty() ? 0.0 : all.front().probability;
   const MapExtent of_a = extent_of(a, problem_.maps), of_b = extent_of(b, problem_.maps);
   const double distinct = kDistinct * agreement_tolerance(of_a, of_b);
+  if (a.size() == 1 && b.size() == 1) {
+    const auto so = std::find_if(all.begin(), all.end(), [&](const WeighedJoin& way) {
+      return difference(of_a, of_b, way.T_a_b, {}) < distinct;
+    });
+    return so == all.end() ? 0.0 : so->probability;
+  }
   std::vector<WeighedJoin> ways{{{}, worth_of(a, b, {})}};
   for (const WeighedJoin& way : all) {
     if (difference(of_a, of_b, way.T_a_b, {}) >= distinct) ways.push_back(way);
