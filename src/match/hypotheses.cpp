@@ -156,7 +156,7 @@ PoseFigures PoseJudge::figures(const SE2& T_cells) const {
   figures.acceptance_index = common.acceptance_index();
   figures.common_area =
       static_cast<double>(common.both_known()) * maps_.moving.resolution * maps_.moving.resolution;
-  figures.overlap = std::min(1.0, figures.common_area / maps_.smaller_area);
+  figures.overlap = maps_.smaller_area > 0.0 ? std::min(1.0, figures.common_area / maps_.smaller_area) : 0.0;
   figures.sigma = walls.model.sigma * cell;
   figures.outliers = walls.model.outliers;
   return figures;

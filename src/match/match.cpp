@@ -25,7 +25,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 MatchResult match_in_arena(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options) {
   // So the answer does not depend on which map the caller called fixed.
-  const bool swapped = is_smaller(fixed, moving);
+  const bool swapped = are_swapped(fixed, moving);
   const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);
 
   MatchResult result;

@@ -18,7 +18,7 @@ void count_common(const OccupancyGrid& fixed, const OccupancyGrid& moving, PairP
 }
 
 void count_common(const PreparedMap& fixed, const PreparedMap& moving, PairPose& pose) {
-  if (!is_smaller(fixed, moving)) {
+  if (!are_swapped(fixed, moving)) {
     count_common(fixed.known(), moving.known(), pose);
     return;
   }

@@ -103,6 +103,12 @@ bool is_smaller(const PreparedMap& a, const PreparedMap& b) {
   return key_a != key_b ? key_a < key_b : a.known().cells < b.known().cells;
 }
 
+bool are_swapped(const PreparedMap& fixed, const PreparedMap& moving) {
+  if (is_smaller(fixed, moving) || is_smaller(moving, fixed)) return is_smaller(fixed, moving);
+  const auto key = [](const SE2& origin) { return std::tuple(origin.x, origin.y, origin.theta); };
+  return key(fixed.known().origin) < key(moving.known().origin);
+}
+
 double working_cell(const PreparedMap& fixed, const PreparedMap& moving) {
   const double resolution = std::max(fixed.known().resolution, moving.known().resolution);
   const double side = std::max(longer_side(fixed.known()), longer_side(moving.known())) / resolution;

@@ -10,6 +10,10 @@ namespace gridmerge::internal {
 /// maps of the same area. Of two maps the smaller is searched in the larger one.
 GRIDMERGE_INTERNAL_EXPORT bool is_smaller(const PreparedMap& a, const PreparedMap& b);
 
+/// Whether match() takes `fixed` for the moving map: if it is the smaller one, and of maps that hold the same
+/// by their origins, so that it does not matter which is called fixed.
+bool are_swapped(const PreparedMap& fixed, const PreparedMap& moving);
+
 /// The side of the cells in which two maps are compared [m]: the coarser map's, or a multiple of it for large
 /// maps.
 GRIDMERGE_INTERNAL_EXPORT double working_cell(const PreparedMap& fixed, const PreparedMap& moving);

@@ -94,7 +94,7 @@ double displacement(const PreparedMap& fixed, const PreparedMap& moving, const S
 
 RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, const SE2& T_start) {
   check_finite(T_start);
-  const bool swapped = is_smaller(fixed, moving);
+  const bool swapped = are_swapped(fixed, moving);
   const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);
   const SE2 T_start_maps = swapped ? inverse(T_start) : T_start;
   const SE2 T_start_cells = to_cells(T_start_maps, maps.fixed_walls, maps.moving_walls);
@@ -119,7 +119,7 @@ RefinedPose refine_pose(const PreparedMap& fixed, const PreparedMap& moving, con
 Hypothesis internal::judge_pose(const PreparedMap& fixed, const PreparedMap& moving,
                                 const SE2& T_fixed_moving) {
   check_finite(T_fixed_moving);
-  const bool swapped = is_smaller(fixed, moving);
+  const bool swapped = are_swapped(fixed, moving);
   const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);
   const SE2 T_maps = swapped ? inverse(T_fixed_moving) : T_fixed_moving;
   Hypothesis pose = PoseJudge(maps).judge(to_cells(T_maps, maps.fixed_walls, maps.moving_walls));

@@ -28,7 +28,7 @@ ScaledPair::ScaledPair(const PreparedMap& fixed, const PreparedMap& moving, doub
     : scale_(scale),
       moving_(DrawnWalls::scaled(moving, scale)),
       fixed_(fixed),
-      swapped_(is_smaller(fixed, moving_)),
+      swapped_(are_swapped(fixed, moving_)),
       maps_(swapped_ ? moving_ : fixed, swapped_ ? fixed : moving_,
             std::max(cell, working_cell(fixed, moving_))),
       metric_(make_pose_metric(maps_.moving_walls)),

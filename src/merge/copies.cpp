@@ -2,10 +2,12 @@
 #include "merge/copies.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
 #include "grid/equal_grids.hpp"
+#include "grid/longer_side.hpp"
 #include "grid/seen_from.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "merge/joins.hpp"
@@ -13,6 +15,9 @@
 namespace gridmerge::internal {
 
 namespace {
+
+/// Of a cell: copies whose poses are worked out in two ways are no farther apart.
+constexpr double kSamePlace = 1e-3;
 
 /// A join of the originals as one of two maps that lie on them.
 Join carried_over(Join join, const SE2& T_copy_fixed, const SE2& T_moving_copy) {
@@ -58,6 +63,24 @@ Member* find_member(MergeResult& result, std::size_t map, Component*& of) {
   return nullptr;
 }
 
+/// Gives a component the frame of its first map, which is a copy of one that held it.
+void hold_by_first(Component& component, const std::vector<Copy>& copies,
+                   const std::vector<const OccupancyGrid*>& grids, double resolution) {
+  const SE2 T_first_component = inverse(component.members.front().T_component_map);
+  if (T_first_component == SE2{}) return;
+  std::vector<PlacedMap> placed;
+  std::vector<Deformation> deformations;
+  for (Member& member : component.members) {
+    member.T_component_map = T_first_component * member.T_component_map;
+    if (std::any_of(copies.begin(), copies.end(), [&](const Copy& copy) { return copy.map == member.map; }))
+      continue;
+    placed.push_back({grids[member.map], member.T_component_map});
+    deformations.push_back(member.deformation);
+  }
+  component.members.front().T_component_map = {};  // to the bit
+  component.fused = fuse(placed, merged_resolution(resolution, placed), deformations);
+}
+
 }  // namespace
 
 bool is_copy(const PreparedMap& a, const PreparedMap& b) {
@@ -69,11 +92,41 @@ SE2 between_copies(const PreparedMap& a, const PreparedMap& b) {
   return a.known().origin == b.known().origin ? SE2{} : a.known().origin * inverse(b.known().origin);
 }
 
-bool is_placed(const PlacedMap& one, const std::vector<PlacedMap>& placed) {
-  return std::any_of(placed.begin(), placed.end(), [&](const PlacedMap& other) {
-    return one.T_output_map == other.T_output_map && one.map->origin == other.map->origin &&
-           has_equal_cells(*one.map, *other.map);
-  });
+std::vector<std::size_t> without_copies(const std::vector<PlacedInput>& maps) {
+  const auto lie_on_each_other = [](const PlacedInput& a, const PlacedInput& b) {
+    const OccupancyGrid& grid = a.map->known();
+    const SE2 apart = inverse(a.T_output_map * grid.origin) * (b.T_output_map * b.map->known().origin);
+    const double farthest = std::hypot(apart.x, apart.y) + std::abs(apart.theta) * longer_side(grid);
+    return farthest < kSamePlace * grid.resolution && is_copy(*a.map, *b.map);
+  };
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    if (std::none_of(kept.begin(), kept.end(),
+                     [&](std::size_t k) { return lie_on_each_other(maps[k], maps[i]); }))
+      kept.push_back(i);
+  }
+  return kept;
+}
+
+void tell_ways_anew(const Component& component, std::vector<OpenWay>& ways) {
+  std::map<std::size_t, SE2> places;
+  for (const Member& member : component.members) places[member.map] = member.T_component_map;
+  const std::size_t first = component.members.front().map;
+  const SE2 T_first_plan = inverse(component.members.front().T_component_map);
+  std::erase_if(
+      ways, [&](const OpenWay& way) { return places.contains(way.fixed) && places.contains(way.moving); });
+  for (OpenWay& way : ways) {
+    if (places.contains(way.fixed)) {
+      way.T_fixed_moving = T_first_plan * places.at(way.fixed) * way.T_fixed_moving;
+      way.fixed = first;
+    } else if (places.contains(way.moving)) {
+      way.T_fixed_moving = way.T_fixed_moving * inverse(places.at(way.moving)) * inverse(T_first_plan);
+      way.moving = first;
+    }
+    if (way.fixed < way.moving) continue;
+    std::swap(way.fixed, way.moving);
+    way.T_fixed_moving = inverse(way.T_fixed_moving);
+  }
 }
 
 void add_copies(const std::vector<Copy>& copies, const std::vector<const OccupancyGrid*>& grids,
@@ -134,8 +187,12 @@ void add_copies(const std::vector<Copy>& copies, const std::vector<const Occupan
     component->members.push_back(member);
   }
   for (Component& component : result.components) {
+    const std::size_t held_by = component.members.front().map;
     std::sort(component.members.begin(), component.members.end(),
               [](const Member& a, const Member& b) { return a.map < b.map; });
+    if (component.members.front().map == held_by) continue;
+    tell_ways_anew(component, result.open_ways);
+    if (!component.in_world_frame) hold_by_first(component, copies, grids, resolution);
   }
 }
 

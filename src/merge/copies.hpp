@@ -26,11 +26,22 @@ bool is_copy(const PreparedMap& a, const PreparedMap& b);
 /// From b's frame to a's, where the two hold the same cells.
 SE2 between_copies(const PreparedMap& a, const PreparedMap& b);
 
-/// Whether an equal map lies there: merge() counts equal maps once.
-GRIDMERGE_INTERNAL_EXPORT bool is_placed(const PlacedMap& one, const std::vector<PlacedMap>& placed);
+/// A map where it lies in the output.
+struct PlacedInput {
+  const PreparedMap* map = nullptr;
+  SE2 T_output_map;
+};
+
+/// The places of the maps that count where merge() fuses: of copies that lie on each other, to a thousandth
+/// of a cell, the first. O(maps^2) where they differ.
+GRIDMERGE_INTERNAL_EXPORT std::vector<std::size_t> without_copies(const std::vector<PlacedInput>& maps);
+
+/// Makes the ways that lead out of the component begin at its first map, and leaves out those within it.
+void tell_ways_anew(const Component& component, std::vector<OpenWay>& ways);
 
 /// Gives every copy its place beside its original: in the original's component, or in one of the two, and in
-/// a join with every other map that the original has one with. `grids` and `known_poses` are those of all
+/// a join with every other map that the original has one with. The first map of a component holds its frame
+/// then as before. `grids` and `known_poses` are those of all
 /// inputs; `resolution` is that of fused maps, 0 for the finest.
 void add_copies(const std::vector<Copy>& copies, const std::vector<const OccupancyGrid*>& grids,
                 const std::vector<std::optional<KnownPose>>& known_poses, double resolution,

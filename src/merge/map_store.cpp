@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "match/prepared_map.hpp"
@@ -68,12 +69,17 @@ std::vector<std::optional<KnownPose>> MapStore::known_poses() const {
 }
 
 std::vector<MapStore::MapId> MapStore::in_canonical_order() const {
+  // Of equal maps those with a known pose come first, the surest one before all: the others are copies of it.
+  const auto key = [&](MapId id) {
+    const std::optional<KnownPose> known = known_pose(id);
+    const KnownPose pose = known.value_or(KnownPose{});
+    const SE2& T = pose.T_world_map;
+    return std::tuple(!known, !pose.fixed, pose.sd_position, pose.sd_theta, T.x, T.y, T.theta);
+  };
   std::vector<MapId> maps = ids();
   std::stable_sort(maps.begin(), maps.end(), [&](MapId a, MapId b) {
     if (is_smaller(at(a).prepared, at(b).prepared)) return true;
-    // Of equal maps one with a known pose comes first: the others are copies of it.
-    return known_poses_.contains(a) && !known_poses_.contains(b) &&
-           !is_smaller(at(b).prepared, at(a).prepared);
+    return !known_poses_.empty() && !is_smaller(at(b).prepared, at(a).prepared) && key(a) < key(b);
   });
   return maps;
 }
@@ -84,9 +90,9 @@ std::vector<Copy> MapStore::find_copies(const std::vector<MapId>& maps) const {
   std::size_t original = 0;
   for (std::size_t i = 1; i < maps.size(); ++i) {
     const PreparedMap &first = at(maps[original]).prepared, &next = at(maps[i]).prepared;
-    if (known_poses_.contains(maps[i]) || !is_copy(first, next)) {
+    if (!is_copy(first, next)) {
       original = i;
-    } else {
+    } else if (!known_poses_.contains(maps[i])) {
       copies.push_back({index[i], index[original], between_copies(first, next)});
     }
   }

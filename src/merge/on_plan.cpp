@@ -37,38 +37,18 @@ Component component_of(const std::vector<OnPlan>& hung, const PlanInputs& inputs
   }
   std::sort(component.members.begin(), component.members.end(),
             [](const Member& a, const Member& b) { return a.map < b.map; });
+  std::vector<PlacedInput> all;
+  for (const Member& member : component.members)
+    all.push_back({&inputs[member.map]->prepared, member.T_component_map});
   std::vector<PlacedMap> placed;
   std::vector<Deformation> deformations;
-  for (const Member& member : component.members) {
-    const PlacedMap one{inputs[member.map]->grid.get(), member.T_component_map};
-    if (is_placed(one, placed)) continue;
-    placed.push_back(one);
+  for (const std::size_t i : without_copies(all)) {
+    const Member& member = component.members[i];
+    placed.push_back({inputs[member.map]->grid.get(), member.T_component_map});
     deformations.push_back(member.deformation);
   }
   component.fused = fuse(placed, merged_resolution(resolution, placed), deformations);
   return component;
-}
-
-/// Ways that lead out of the component begin at its first map now.
-void tell_ways_anew(const Component& component, std::vector<OpenWay>& ways) {
-  std::map<std::size_t, SE2> places;
-  for (const Member& member : component.members) places[member.map] = member.T_component_map;
-  const std::size_t first = component.members.front().map;
-  const SE2 T_first_plan = inverse(component.members.front().T_component_map);
-  std::erase_if(
-      ways, [&](const OpenWay& way) { return places.contains(way.fixed) && places.contains(way.moving); });
-  for (OpenWay& way : ways) {
-    if (places.contains(way.fixed)) {
-      way.T_fixed_moving = T_first_plan * places.at(way.fixed) * way.T_fixed_moving;
-      way.fixed = first;
-    } else if (places.contains(way.moving)) {
-      way.T_fixed_moving = way.T_fixed_moving * inverse(places.at(way.moving)) * inverse(T_first_plan);
-      way.moving = first;
-    }
-    if (way.fixed < way.moving) continue;
-    std::swap(way.fixed, way.moving);
-    way.T_fixed_moving = inverse(way.T_fixed_moving);
-  }
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ std::optional<UnusedPose> unused_of(std::size_t map, const KnownMaps& known) {
 std::optional<double> distance_from_match(const Join& join, const KnownMap& fixed, const KnownMap& moving) {
   if (join.match.verdict != Verdict::accepted) return std::nullopt;
   const SE2 T_given = inverse(fixed.pose.T_world_map) * moving.pose.T_world_map;
-  const double distance = displacement(moving.extent, T_given, join.match.T_fixed_moving);
+  const double distance = difference(fixed.extent, moving.extent, T_given, join.match.T_fixed_moving);
   double believed = agreement_tolerance(fixed.extent, moving.extent);
   if (!fixed.pose.fixed || !moving.pose.fixed)
     believed += kDeviationsOfKnown * sd_between(fixed.pose, moving.pose, fixed.extent, moving.extent);

@@ -45,7 +45,7 @@ GRIDMERGE_INTERNAL_EXPORT std::vector<UnusedPose> find_unused_poses(
 struct ContradictedFix {
   std::size_t fixed = 0;   ///< index of an input map
   std::size_t moving = 0;  ///< index of a later one
-  double distance = 0.0;   ///< of the fixed pose of `moving` from where it fits `fixed` [m, as UnusedPose]
+  double distance = 0.0;   ///< of their fixed poses from how the two fit each other [m, see difference()]
 };
 
 /// The fixed poses that merge() followed against what the maps say: of each pair that the maps' own match

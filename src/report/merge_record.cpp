@@ -5,7 +5,9 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -326,6 +328,27 @@ MergeRecord read_merge_record(const std::filesystem::path& directory) {
   return parse_transforms(file, reader.read_all(kMaxBytes));
 }
 
+namespace {
+
+/// The places of the members that were fused.
+std::vector<std::size_t> fused_members(const Component& component, const std::vector<OccupancyGrid>& maps,
+                                       bool without_their_copies) {
+  if (!without_their_copies) {
+    std::vector<std::size_t> all(component.members.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return all;
+  }
+  std::vector<std::unique_ptr<const PreparedMap>> prepared;
+  std::vector<PlacedInput> placed;
+  for (const Member& member : component.members) {
+    prepared.push_back(std::make_unique<const PreparedMap>(maps[member.map]));
+    placed.push_back({prepared.back().get(), member.T_component_map});
+  }
+  return without_copies(placed);
+}
+
+}  // namespace
+
 std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<OccupancyGrid>& maps,
                                     const std::filesystem::path& directory) {
   if (maps.size() != record.names.size()) throw std::invalid_argument("there are not as many maps as names");
@@ -337,10 +360,9 @@ std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<Occup
     const OccupancyGrid merged = load_map(file, {.regular_files_only = true}).grid;
     std::vector<PlacedMap> placed;
     std::vector<Deformation> deformations;
-    for (const Member& member : component.members) {
-      const PlacedMap one{&maps[member.map], member.T_component_map};
-      if (drops_copies && is_placed(one, placed)) continue;
-      placed.push_back(one);
+    for (const std::size_t place : fused_members(component, maps, drops_copies)) {
+      const Member& member = component.members[place];
+      placed.push_back({&maps[member.map], member.T_component_map});
       deformations.push_back(member.deformation);
     }
     try {

@@ -102,5 +102,12 @@ TEST(MeasureMaps, RefusesMapsThatLieApart) {
   EXPECT_THROW(measure_maps(pair.fixed, chain), std::invalid_argument);
 }
 
+TEST(MeasurePose, OfAMapThatNobodyHasSeenNothingOverlaps) {
+  const OccupancyGrid building = test::draw_building(1);
+  const PoseMeasure found = measure_pose(building, make_grid(60, 40, 0.05, {}, Cell::occupied), {});
+  EXPECT_EQ(found.engine.figures.common_area, 0.0);
+  EXPECT_EQ(found.engine.figures.overlap, 0.0);
+}
+
 }  // namespace
 }  // namespace gridmerge

@@ -206,6 +206,32 @@ TEST(Steady, AQuarterTurnOfAnInputChangesNothingElse) {
   }
 }
 
+/// A room of 6 x 5 m with things in it, seen with noise.
+OccupancyGrid small_noisy_map(unsigned seed) {
+  std::mt19937 random(seed);
+  OccupancyGrid map = make_grid(120, 100, 0.05, {-2.0, -1.0, 0.3}, Cell::free);
+  for (int x = 0; x < map.width; ++x) map.at(x, 0) = map.at(x, map.height - 1) = Cell::occupied;
+  for (int y = 0; y < map.height; ++y) map.at(0, y) = map.at(map.width - 1, y) = Cell::occupied;
+  for (int i = 0; i < 60; ++i) {
+    const int x = 2 + static_cast<int>(random() % 110), y = 2 + static_cast<int>(random() % 90);
+    for (int k = 0; k < 6; ++k) (i % 2 == 0 ? map.at(x + k, y) : map.at(x, y + k)) = Cell::occupied;
+  }
+  return map;
+}
+
+// Of maps that hold the same neither is the smaller one.
+TEST(Steady, OfTheSameMapInTwoFramesItDoesNotMatterWhichIsCalledFixed) {
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    const OccupancyGrid map = small_noisy_map(seed);
+    OccupancyGrid other = map;
+    other.origin = SE2{1.7 * seed, -3.1, 0.21 * seed} * map.origin;
+    const MatchResult forth = match(map, other), back = inverse(match(other, map));
+    ASSERT_EQ(forth.hypotheses.size(), back.hypotheses.size()) << seed;
+    EXPECT_EQ(forth.verdict, back.verdict) << seed;
+    EXPECT_NEAR(forth.probability, back.probability, 1e-9) << seed;
+  }
+}
+
 TEST(Steady, CuttingTheRimOffMovesNothing) {
   const OccupancyGrid building = test::draw_building(2);
   const OccupancyGrid left = test::map_part(building, {0, 0, 12, 13}, {3.0, 1.0, 0.4});

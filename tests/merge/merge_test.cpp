@@ -294,6 +294,49 @@ TEST(Merge, OfEqualMapsThatWithAKnownPoseIsTheOriginal) {
   }
 }
 
+TEST(Merge, ACopyBeforeTheMapWhosePoseIsKnownHoldsTheFrame) {
+  const Team team;
+  const std::vector<OccupancyGrid> maps{saved_again(team.maps[0]), team.maps[0], team.maps[1]};
+  std::vector<std::optional<KnownPose>> known(3);
+  known[1] = KnownPose{{5.0, 1.0, 0.3}, 0.5, 0.05};
+  const MergeResult result = merge(maps, {}, known), plain = merge(maps);
+  ASSERT_EQ(result.components.size(), 1u);
+  ASSERT_EQ(result.components[0].members.size(), 3u);
+  EXPECT_EQ(result.components[0].members[0].T_component_map, SE2{});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SE2 &found = result.components[0].members[i].T_component_map,
+              &expected = plain.components[0].members[i].T_component_map;
+    EXPECT_NEAR(found.x, expected.x, 0.02) << i;
+    EXPECT_NEAR(found.y, expected.y, 0.02) << i;
+    EXPECT_NEAR(found.theta, expected.theta, 0.002) << i;
+  }
+  // The merged map is where its members are.
+  const CellCounts one = count_cells(result.components[0].fused.grid),
+                   other = count_cells(plain.components[0].fused.grid);
+  EXPECT_NEAR(static_cast<double>(one.occupied), static_cast<double>(other.occupied),
+              0.02 * static_cast<double>(other.occupied));
+  const SE2 &a = result.components[0].fused.grid.origin, &b = plain.components[0].fused.grid.origin;
+  EXPECT_NEAR(a.x, b.x, 0.2);
+  EXPECT_NEAR(a.y, b.y, 0.2);
+}
+
+TEST(Merge, WhereACopyOfTwoKnownMapsLiesDoesNotDependOnTheirOrder) {
+  OccupancyGrid map = make_grid(40, 30, 0.1, {}, Cell::free);
+  for (int i = 0; i < 40; ++i) map.at(i, 0) = map.at(i, 29) = Cell::occupied;
+  const std::vector<OccupancyGrid> maps(3, map);
+  const KnownPose here{{}, 0.1, 0.1, true}, there{{100.0, 0.0, 0.0}, 0.1, 0.1, true};
+  const auto place_of_the_third = [&](const KnownPose& first, const KnownPose& second) {
+    const MergeResult result = merge(maps, {}, {first, second});
+    for (const Component& component : result.components) {
+      for (const Member& member : component.members) {
+        if (member.map == 2) return member.T_component_map;
+      }
+    }
+    return SE2{-1.0, -1.0, -1.0};
+  };
+  EXPECT_EQ(place_of_the_third(here, there), place_of_the_third(there, here));
+}
+
 TEST(Merge, AMapGivenTwiceCountsOnce) {
   Team team;
   const MergeResult once = merge(team.maps);

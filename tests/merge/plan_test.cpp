@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "grid/quarter_turned.hpp"
 #include "match/scaled_pose.hpp"
 #include "merge/maps_left_out.hpp"
 #include "merge/team.hpp"
@@ -245,6 +246,19 @@ TEST(PlaceOnPlan, CountsACopyOnce) {
   ASSERT_EQ(result.components.size(), 1u);
   ASSERT_EQ(result.components[0].members.size(), 3u);
   const MergeResult once = place_on_plan(ends.maps, ends.plan, apart(2), {}, at_scales(1.2, 1.3));
+  EXPECT_EQ(result.components[0].fused.grid.cells, once.components[0].fused.grid.cells);
+}
+
+TEST(PlaceOnPlan, CountsACopyInAnotherFrameOnce) {
+  const Ends ends;
+  std::vector<OccupancyGrid> maps = ends.maps;
+  maps.push_back(internal::quarter_turned(ends.maps[0], 1));
+  maps.back().origin = SE2{4.0, -7.0, 0.4} * maps.back().origin;
+  const MergeResult result = place_on_plan(maps, ends.plan, merge(maps), {}, at_scales(1.2, 1.3));
+  ASSERT_EQ(result.components.size(), 1u);
+  ASSERT_EQ(result.components[0].members.size(), 3u);
+  const MergeResult once = place_on_plan(ends.maps, ends.plan, apart(2), {}, at_scales(1.2, 1.3));
+  EXPECT_EQ(result.components[0].fused.agreeing, once.components[0].fused.agreeing);
   EXPECT_EQ(result.components[0].fused.grid.cells, once.components[0].fused.grid.cells);
 }
 

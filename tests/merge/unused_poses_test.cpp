@@ -77,6 +77,29 @@ TEST(ContradictedFixes, AreTheFixedPairsThatMatchElsewhere) {
   EXPECT_TRUE(contradicted().empty());
 }
 
+TEST(ContradictedFixes, DoNotDependOnWhichMapComesFirst) {
+  // Turned about the middle of the second map, which so moves less than the first one does.
+  for (const double turn : {0.02, 0.05, 0.1, 0.2, 0.4}) {
+    std::vector<std::size_t> found;
+    for (const bool swapped : {false, true}) {
+      Rooms rooms;
+      const SE2 about_middle = SE2{5.0, 5.0, 0.0} * SE2{0.0, 0.0, turn} * SE2{-5.0, -5.0, 0.0};
+      const SE2 T_fixed_moving{40.0, 0.0, 0.0};
+      Join join;
+      join.fixed = 0;
+      join.moving = 1;
+      join.match.verdict = Verdict::accepted;
+      join.match.T_fixed_moving = swapped ? inverse(T_fixed_moving) : T_fixed_moving;
+      rooms.result.joins = {join};
+      rooms.known[0]->fixed = rooms.known[1]->fixed = true;
+      rooms.known[swapped ? 1 : 0]->T_world_map = rooms.T_world;
+      rooms.known[swapped ? 0 : 1]->T_world_map = rooms.T_world * T_fixed_moving * about_middle;
+      found.push_back(find_contradicted_fixes(rooms.maps, rooms.known, rooms.result).size());
+    }
+    EXPECT_EQ(found[0], found[1]) << turn;
+  }
+}
+
 TEST(UnusedPoses, ATurnCountsAsADistanceToo) {
   Rooms rooms;
   rooms.known[3].reset();
