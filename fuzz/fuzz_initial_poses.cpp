@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const InitialPose& pose : poses) {
     const SE2& T = pose.T_world_map;
     fuzz::require(std::isfinite(T.x) && std::isfinite(T.y) && std::isfinite(T.theta));
-    fuzz::require(pose.sd > 0.0 && pose.sd_theta > 0.0 && !pose.name.empty());
+    fuzz::require(pose.sd_position > 0.0 && pose.sd_theta > 0.0 && !pose.name.empty());
   }
   return 0;
 }
