@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 #include "console.hpp"
 #include "gridmerge/report/merge_output.hpp"
@@ -40,13 +41,17 @@ std::string what_is_wrong(const std::string& text) {
   return {};
 }
 
-std::filesystem::path normal(const std::filesystem::path& path) {
-  return std::filesystem::absolute(path).lexically_normal();
+/// The file, whichever links its folder is named by.
+std::filesystem::path normal(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path path = std::filesystem::absolute(file).lexically_normal();
+  const std::filesystem::path folder = std::filesystem::weakly_canonical(path.parent_path(), error);
+  return error ? path : folder / path.filename();
 }
 
 /// A folder, "" for the current one.
 std::filesystem::path normal_folder(const std::filesystem::path& folder) {
-  return normal(folder.empty() ? "./" : folder / "");
+  return normal((folder.empty() ? "." : folder) / "-").parent_path();
 }
 
 }  // namespace
@@ -74,6 +79,10 @@ std::vector<Export> exports_of(const ExportOptions& options, const std::string& 
   return exports;
 }
 
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  return normal(a) == normal(b);
+}
+
 void try_result_file(const std::filesystem::path& file, const std::string& directory,
                      const std::vector<std::filesystem::path>& inputs) {
   const bool beside = normal_folder(file.parent_path()) == normal_folder(directory);
@@ -86,7 +95,7 @@ void try_exports(const std::vector<Export>& exports, const std::string& director
                  const std::vector<std::filesystem::path>& inputs) {
   for (std::size_t i = 0; i < exports.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (normal(exports[i].file) == normal(exports[j].file))
+      if (is_same_file(exports[i].file, exports[j].file))
         throw FileError(exports[i].file, "would be written by two exports: choose another name for one");
     }
     try_result_file(exports[i].file, directory, inputs);

@@ -27,6 +27,9 @@ void add_export_option(CLI::App& command, ExportOptions& options);
 /// The files, those without a name in `directory`.
 std::vector<Export> exports_of(const ExportOptions& options, const std::string& directory);
 
+/// Whether two names are of one file to be written, by whichever folder's links.
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
 /// Makes sure, before long work, that a file can be written in or beside `directory`, which need not be there
 /// yet. Throws FileError, also for a name that a merge itself gives to a file there, or one of `inputs` has.
 void try_result_file(const std::filesystem::path& file, const std::string& directory,

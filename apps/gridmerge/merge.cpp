@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -201,6 +202,10 @@ int run_merge(const MergeCommandOptions& options) {
   if (!options.search.trace.empty()) try_result_file(options.search.trace, options.output, inputs.files);
   const std::vector<Export> exports = exports_of(options.exports, options.output);
   try_exports(exports, options.output, inputs.files);
+  for (const Export& one : exports) {
+    if (!options.search.trace.empty() && is_same_file(one.file, options.search.trace))
+      throw FileError(one.file, "would be written by --export and --trace: choose another name for one");
+  }
   MergeResult result =
       merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
   if (inputs.plan)
@@ -210,6 +215,13 @@ int run_merge(const MergeCommandOptions& options) {
     write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   });
   matcher.write_trace();
+  std::string exported;
+  std::exception_ptr not_exported;  // told behind what the merge has found
+  try {
+    exported = write_exports(exports, inputs.files, {options.maps, inputs.maps, result});
+  } catch (const FileError&) {
+    not_exported = std::current_exception();
+  }
   const AskedMerge asked{options.maps, options.search, map_transform(options.transform).value(),
                          options.max_false_joins};
   const std::string hints = scale_hints(options, inputs.maps, result, console) +
@@ -220,7 +232,8 @@ int run_merge(const MergeCommandOptions& options) {
         describe_plan(options.maps, result) + hints);
   const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
   print("look at it: " + escape_controls(page.string()) + "\n");
-  print(write_exports(exports, inputs.files, {options.maps, inputs.maps, result}));
+  if (not_exported) std::rethrow_exception(not_exported);
+  print(exported);
   const bool all_on_plan = !result.plan || std::all_of(result.plan->parts.begin(), result.plan->parts.end(),
                                                        [](const PlanPart& part) { return part.on_plan(); });
   return result.components.size() == 1 && result.left_out.empty() && all_on_plan ? kDone : kRefused;

@@ -227,7 +227,8 @@ class MergeResult:
         """
         name = _arguments.choice("format", format, tuple(_core.export_formats()))
         path = _arguments.path("file", file)
-        self._core.export(name, path, [_arguments.to_bytes(one) for one in self.names])
+        names = [_arguments.to_bytes(one) for one in self.names]
+        self._core.export(name, path, names, list(self._more_inputs))
 
     def plot(self, ax: Axes | None = None, *, component: int = 0) -> Axes:
         """Draws a component: each input map in its own colour, where it lies in the component's frame [m].

@@ -65,7 +65,7 @@ def read_message(message: object, name: str = "") -> Content:
     most = 2**31 - 1
     width = _arguments.whole(f"{prefix}info.width", fields.get("info.width"), 1, most)
     height = _arguments.whole(f"{prefix}info.height", fields.get("info.height"), 1, most)
-    resolution = _arguments.number(f"{prefix}info.resolution", fields.get("info.resolution"))
+    resolution = _decimal(_arguments.number(f"{prefix}info.resolution", fields.get("info.resolution")))
     origin = Transform(
         fields.number("info.origin.position.x"), fields.number("info.origin.position.y"), _yaw(fields)
     )
@@ -152,6 +152,13 @@ def _has(value: Any, field: str) -> bool:
 
 def _field(value: Any, field: str) -> Any:
     return value[field] if isinstance(value, Mapping) else getattr(value, field)
+
+
+def _decimal(resolution: float) -> float:
+    """The decimal that a message's 32-bit float was made from: 0.05, not 0.0500000007. Others stay."""
+    with np.errstate(over="ignore"):
+        single = np.float32(resolution)
+    return float(str(single)) if float(single) == resolution else resolution
 
 
 def _yaw(fields: _Fields) -> float:

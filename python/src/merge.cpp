@@ -72,11 +72,17 @@ std::vector<std::string> to_strings(const std::vector<nb::bytes>& names) {
   return texts;
 }
 
-void save(const Merged& merged, const nb::bytes& directory, const std::vector<nb::bytes>& names,
-          const std::vector<nb::bytes>& more_inputs) {
+std::vector<std::filesystem::path> inputs_of(const Merged& merged,
+                                             const std::vector<nb::bytes>& more_inputs) {
   std::vector<std::filesystem::path> inputs;
   for (const Map& map : merged.maps) inputs.insert(inputs.end(), map.files.begin(), map.files.end());
   for (const nb::bytes& input : more_inputs) inputs.emplace_back(to_string(input));
+  return inputs;
+}
+
+void save(const Merged& merged, const nb::bytes& directory, const std::vector<nb::bytes>& names,
+          const std::vector<nb::bytes>& more_inputs) {
+  const std::vector<std::filesystem::path> inputs = inputs_of(merged, more_inputs);
   const std::vector<std::string> texts = to_strings(names);
   const std::filesystem::path path = to_string(directory);
   const OthersRun meanwhile;
@@ -84,9 +90,8 @@ void save(const Merged& merged, const nb::bytes& directory, const std::vector<nb
 }
 
 void write_exported(const Merged& merged, const std::string& format, const nb::bytes& file,
-                    const std::vector<nb::bytes>& names) {
-  std::vector<std::filesystem::path> inputs;
-  for (const Map& map : merged.maps) inputs.insert(inputs.end(), map.files.begin(), map.files.end());
+                    const std::vector<nb::bytes>& names, const std::vector<nb::bytes>& more_inputs) {
+  const std::vector<std::filesystem::path> inputs = inputs_of(merged, more_inputs);
   const std::vector<std::string> texts = to_strings(names);
   const std::filesystem::path path = to_string(file);
   const OthersRun meanwhile;
@@ -176,7 +181,8 @@ void bind_results(nb::module_& module) {
           },
           nb::arg("maps"), nb::arg("state"))
       .def("preview", &preview, nb::arg("names"))
-      .def("export", &write_exported, nb::arg("format"), nb::arg("file"), nb::arg("names"))
+      .def("export", &write_exported, nb::arg("format"), nb::arg("file"), nb::arg("names"),
+           nb::arg("more_inputs"))
       .def("save", &save, nb::arg("directory"), nb::arg("names"), nb::arg("more_inputs"));
 }
 

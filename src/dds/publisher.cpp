@@ -35,14 +35,19 @@ Publisher::Publisher(const Participant& participant, const RosNodeOptions& optio
       world_(options.world_frame),
       output_(options.output),
       transform_topic_(options.transforms) {
-  const bool is_static = transform_topic_ == TransformTopic::tf_static;
-  if (transform_topic_ != TransformTopic::none)
-    transforms_ = make_writer(participant_, kTransformType, dds_topic(is_static ? "/tf_static" : "/tf"),
-                              {true, is_static, is_static ? 1 : 100});
+  make_transform_writer();
   diagnoses_ = make_writer(participant_, kDiagnosticType, dds_topic("/diagnostics"), {true, false, 1});
   node_ = make_writer(participant_, kGraphType, "ros_discovery_info", {true, true, 1});
   maps_.resize(1);
   make_map_writer(0);
+}
+
+void Publisher::make_transform_writer() {
+  if (transform_topic_ == TransformTopic::none) return;
+  const bool is_static = transform_topic_ == TransformTopic::tf_static;
+  transforms_ = {};  // first the old one goes, with what it keeps for whoever comes late
+  transforms_ = make_writer(participant_, kTransformType, dds_topic(is_static ? "/tf_static" : "/tf"),
+                            {true, is_static, is_static ? 1 : 100});
 }
 
 void Publisher::make_map_writer(std::size_t component) {
@@ -74,7 +79,12 @@ bool Publisher::publish_maps(const TeamAnswer& answer, const Stamp& stamp) {
 
 void Publisher::publish_transforms(const std::vector<NamedTransform>& transforms) {
   const bool is_static = transform_topic_ == TransformTopic::tf_static;
-  if (!transforms_ || transforms.empty() || (is_static && transforms == sent_transforms_)) return;
+  if (!transforms_ || (is_static && transforms == sent_transforms_)) return;
+  if (transforms.empty()) {
+    if (is_static) make_transform_writer();
+    sent_transforms_.clear();
+    return;
+  }
   const Stamp stamp = now();
   std::vector<geometry_msgs_msg_dds__TransformStamped_> elements;
   for (const NamedTransform& transform : transforms) {

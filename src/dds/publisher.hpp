@@ -45,6 +45,7 @@ class Publisher {
     std::shared_ptr<const OccupancyGrid> sent;  // null if nothing was
   };
 
+  void make_transform_writer();
   void make_map_writer(std::size_t component);
 
   dds_entity_t participant_;

@@ -23,7 +23,8 @@ constexpr const char* kImagesRead = "PGM, PPM, PNG, BMP or JPEG";
 }  // namespace
 
 std::size_t most_image_bytes(std::string_view head, std::size_t max_pixels) {
-  constexpr std::size_t kBytesPerPixel = 8, kRest = std::size_t{8} << 20;
+  // A plain PPM writes a pixel as three numbers of up to five digits, each with a space.
+  constexpr std::size_t kOfPlainPnm = 24, kOfOthers = 8, kRest = std::size_t{8} << 20;
   const std::optional<ImageSize> size = looks_like_png(head)    ? png_size(head)
                                         : looks_like_pnm(head)  ? pnm_size(head)
                                         : looks_like_bmp(head)  ? bmp_size(head)
@@ -31,7 +32,7 @@ std::size_t most_image_bytes(std::string_view head, std::size_t max_pixels) {
                                                                 : std::nullopt;
   if (!size) return head.size();
   check_image_size(size->width, size->height, max_pixels);
-  return size->width * size->height * kBytesPerPixel + kRest;
+  return size->width * size->height * (is_plain_pnm(head) ? kOfPlainPnm : kOfOthers) + kRest;
 }
 
 bool looks_like_image(std::string_view bytes) {

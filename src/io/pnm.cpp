@@ -113,6 +113,10 @@ void read_raw(std::string_view raster, Pixels& pixels, bool is_wide) {
 
 }  // namespace
 
+bool is_plain_pnm(std::string_view bytes) {
+  return looks_like_pnm(bytes) && (bytes[1] == '2' || bytes[1] == '3');
+}
+
 bool looks_like_pnm(std::string_view bytes) {
   if (bytes.size() < 3 || bytes[0] != 'P') return false;
   const char kind = bytes[1];
@@ -137,7 +141,7 @@ MapImage decode_pnm(std::string_view bytes, std::size_t max_pixels) {
     throw ParseError(fmt::format("its maximum value {} is not in 1..65535", maximum));
   }
 
-  const bool is_plain = bytes[1] == '2' || bytes[1] == '3';
+  const bool is_plain = is_plain_pnm(bytes);
   const std::size_t channels = bytes[1] == '3' || bytes[1] == '6' ? 3 : 1;
   const std::size_t size = static_cast<std::size_t>(width) * height;
   const bool is_wide = maximum > 255;

@@ -14,6 +14,9 @@ namespace gridmerge::internal {
 /// Whether the bytes begin as a PGM (P2 plain, P5 raw) or PPM (P3, P6) does.
 bool looks_like_pnm(std::string_view bytes);
 
+/// Whether its values are written as text: P2 or P3.
+bool is_plain_pnm(std::string_view bytes);
+
 /// What the header tells. Throws ParseError when it is malformed.
 ImageSize pnm_size(std::string_view head);
 

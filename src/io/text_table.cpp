@@ -2,12 +2,12 @@
 #include "io/text_table.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <optional>
 #include <system_error>
 #include <utility>
 
 #include "gridmerge/io/file_error.hpp"
+#include "io/number.hpp"
 
 namespace gridmerge::internal {
 
@@ -27,12 +27,21 @@ bool contains(const std::vector<std::string_view>& names, std::string_view name)
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// Without the spaces that spreadsheets put around numbers.
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
 }  // namespace
 
 TextTable::TextTable(std::filesystem::path path, std::string_view text,
                      const std::vector<std::string_view>& required,
                      const std::vector<std::string_view>& optional)
     : path_(std::move(path)) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::size_t number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -89,12 +98,9 @@ const std::string& TextTable::text(std::size_t row, std::string_view column) con
 
 double TextTable::number(std::size_t row, std::string_view column) const {
   const std::string& field = text(row, column);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc{} || end != field.data() + field.size() || !std::isfinite(value)) {
-    fail(row, std::string(column) + " is '" + field + "', not a finite number");
-  }
-  return value;
+  const std::optional<double> value = parse_number(trimmed(field));
+  if (!value) fail(row, std::string(column) + " is '" + field + "', not a finite number");
+  return *value;
 }
 
 std::string TextTable::place(std::size_t row) const {

@@ -118,10 +118,7 @@ void TeamSolver::tell_events(TeamAnswer& answer) const {
   for (const auto& [name, robot] : robots_) extents[name] = robot.weighed.extent;
   for (const std::string& name : restarted_)
     answer.events.push_back({TeamEvent::Kind::restarted, name, say_restarted(name)});
-  std::vector<RobotGroup> before = told_;
-  for (RobotGroup& group : before)
-    std::erase_if(group.robots, [&](const auto& one) { return restarted_.contains(one.first); });
-  for (TeamEvent& event : changes_between(before, placements_.groups(), extents))
+  for (TeamEvent& event : changes_between(told_, placements_.groups(), extents, restarted_))
     answer.events.push_back(std::move(event));
 }
 

@@ -70,15 +70,20 @@ std::string say_restarted(const std::string& robot) {
 
 std::vector<TeamEvent> changes_between(const std::vector<RobotGroup>& before,
                                        const std::vector<RobotGroup>& now,
-                                       const std::map<std::string, MapExtent>& extents) {
+                                       const std::map<std::string, MapExtent>& extents,
+                                       const std::set<std::string>& restarted) {
+  std::vector<RobotGroup> steady = before;  // a new frame says nothing of where others lay
+  for (RobotGroup& group : steady)
+    std::erase_if(group.robots, [&](const auto& one) { return restarted.contains(one.first); });
   std::vector<TeamEvent> events;
   for (const auto& [robot, extent] : extents) {
-    const RobotGroup *lay = group_of(before, robot), *lies = group_of(now, robot);
+    const RobotGroup *lay = group_of(steady, robot), *lies = group_of(now, robot);
     if (lies && !lay) {
       events.push_back({TeamEvent::Kind::joined, robot, robot + " joined " + others_of(robot, *lies)});
     } else if (lay && !lies) {
       events.push_back(
-          {TeamEvent::Kind::left, robot, robot + " is no longer sure to lie with " + others_of(robot, *lay)});
+          {TeamEvent::Kind::left, robot,
+           robot + " is no longer sure to lie with " + others_of(robot, *group_of(before, robot))});
     } else if (lay && lies) {
       const double jump = jump_of(robot, *lay, *lies, extents);
       if (jump > 0.0)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,11 @@ std::string say_restarted(const std::string& robot);
 
 /// What became of robots from one answer's groups to the next one's: who joined, left and jumped, by name.
 /// Of two robots that lie otherwise than before the one jumped that lies otherwise to most of those that it
-/// lay together with. `extents` are those of all robots that there are now. O(robots^2).
+/// lay together with. `extents` are those of all robots that there are now, and `restarted` those of them
+/// whose frame is another one than before. O(robots^2).
 std::vector<TeamEvent> changes_between(const std::vector<RobotGroup>& before,
                                        const std::vector<RobotGroup>& now,
-                                       const std::map<std::string, MapExtent>& extents);
+                                       const std::map<std::string, MapExtent>& extents,
+                                       const std::set<std::string>& restarted);
 
 }  // namespace gridmerge::internal

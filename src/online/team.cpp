@@ -110,8 +110,8 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
     auto shared = std::make_shared<OccupancyGrid>(std::move(map));
     const std::lock_guard lock(mutex_);
     require_room_for(robot);
-    newest_[robot] = shared;
-    put_map(robot, std::move(shared));
+    const bool is_first = newest_.insert_or_assign(robot, shared).second;
+    put_map(robot, std::move(shared), is_first);
   }
 
   bool hear_part(const std::string& robot, int column, int row, const OccupancyGrid& part) {
@@ -128,7 +128,7 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
     auto map = is_ours ? newest->second : std::make_shared<OccupancyGrid>(whole);
     draw(part, column, row, *map);
     newest->second = map;
-    put_map(robot, std::move(map));
+    put_map(robot, std::move(map), false);
     return true;
   }
 
@@ -204,11 +204,12 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
     known_.insert(robot);
   }
 
-  void put_map(const std::string& robot, std::shared_ptr<const OccupancyGrid> map) {
+  void put_map(const std::string& robot, std::shared_ptr<const OccupancyGrid> map, bool is_first) {
     RobotNews news;
     news.map = std::move(map);
     news.maps_heard = 1;
-    news.since = std::chrono::system_clock::now();
+    // Once: a clock that is set back later makes nobody older.
+    if (is_first) news.since = std::chrono::system_clock::now();
     put(robot, std::move(news));
   }
 

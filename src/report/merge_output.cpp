@@ -36,15 +36,16 @@ constexpr const char* kPreview = "preview.png";
 constexpr const char* kReport = "report.html";
 constexpr const char* kTransforms = "transforms.json";
 
-// merged.yaml, merged_<number>.yaml, and the same as .pgm.
+// merged.yaml, merged_2.yaml, and so on, and the same as .pgm.
 bool is_merged_map(const fs::path& file) {
   if (file.extension() != ".yaml" && file.extension() != ".pgm") return false;
   constexpr std::string_view kFirst = "merged", kFurther = "merged_";
+  constexpr std::size_t kMostDigits = 6;  // what is longer is a date
   const std::string stem = file.stem().string();
   if (stem == kFirst) return true;
   const std::string_view number = std::string_view(stem).substr(std::min(stem.size(), kFurther.size()));
-  return stem.starts_with(kFurther) && !number.empty() &&
-         number.find_first_not_of("0123456789") == std::string_view::npos;
+  return stem.starts_with(kFurther) && !number.empty() && number.size() <= kMostDigits && number != "1" &&
+         number.front() != '0' && number.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
 }  // namespace
@@ -55,12 +56,18 @@ bool internal::is_merge_output(const fs::path& name) {
 
 namespace {
 
-// The files in the directory whose names are those of a merge's outputs.
+bool is_export(const fs::path& name) {
+  const auto formats = export_formats();
+  return std::any_of(formats.begin(), formats.end(),
+                     [&](ExportFormat format) { return name == export_file(format); });
+}
+
+// The files in the directory whose names are those of a merge's outputs, exports among them.
 std::vector<fs::path> outputs_in(const fs::path& directory) {
   std::vector<fs::path> outputs;
   std::error_code error;
   for (const std::string& name : names_in(directory, error)) {
-    if (is_merge_output(name)) outputs.push_back(directory / name);
+    if (is_merge_output(name) || is_export(name)) outputs.push_back(directory / name);
   }
   if (error) throw FileError(directory, "cannot be read: " + error.message());
   return outputs;

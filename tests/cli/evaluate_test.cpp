@@ -77,6 +77,12 @@ TEST_F(EvaluateCommand, WritesWhatVerdictsRestOn) {
   expect_error(run({"evaluate", pairs, "--features", pairs}), pairs, "is an input");
 }
 
+TEST_F(EvaluateCommand, OneFileIsNotWrittenTwice) {
+  const std::string file = directory.file("result");
+  expect_error(run({"evaluate", pairs, "--features", file, "--json", file}), file, "--json and --features");
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
 TEST_F(EvaluateCommand, TheNumberOfThreadsChangesNothingButTheTimes) {
   const auto result = [&](const std::string& threads) {
     Json json_result = Json::parse(run({"evaluate", pairs, "--negatives", negatives, "--sets", sets, "--json",

@@ -93,6 +93,7 @@ TEST_F(NodeTest, TakesAnotherPublisherForARobotThatStartedAnew) {
   late.take_map("/merged_map");
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_FALSE(late.take_map("/merged_map").has_value());
+  EXPECT_TRUE(late.transforms().empty());  // nor where they lay
 }
 
 TEST_F(NodeTest, TakesAnotherFrameForARobotThatStartedAnew) {

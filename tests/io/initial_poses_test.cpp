@@ -23,6 +23,15 @@ TEST(InitialPoses, AreReadWithTheirDeviations) {
   EXPECT_EQ(poses[0].sd_theta, 0.125);
 }
 
+TEST(InitialPoses, ASpreadsheetsTableIsRead) {
+  const auto poses =
+      parse_initial_poses("poses.tsv", "\xEF\xBB\xBFmap\tx\ty\ttheta\na.yaml\t+0.5\t 1.0\t-2 \n");
+  ASSERT_EQ(poses.size(), 1u);
+  EXPECT_EQ(poses[0].T_world_map.x, 0.5);
+  EXPECT_EQ(poses[0].T_world_map.y, 1.0);
+  EXPECT_EQ(poses[0].T_world_map.theta, -2.0);
+}
+
 TEST(InitialPoses, HaveUsualDeviations) {
   const auto poses = parse_initial_poses("poses.tsv", "theta\ty\tx\tmap\n0\t2\t1\ta.yaml\n");
   ASSERT_EQ(poses.size(), 1u);
@@ -49,6 +58,8 @@ TEST(InitialPoses, ErrorsNameFileLineAndCause) {
   expect(head + "a\t0\t0\n", "poses.tsv:2", "3 fields");
   expect(head + "a\t0\t1e8\t0\n", "poses.tsv:2", "y is farther off");
   expect(head + "a\t0\tinf\t0\n", "poses.tsv:2", "finite");
+  expect(head + "a\t0\t \t0\n", "poses.tsv:2", "finite");
+  expect(head + "a\t0\t1 2\t0\n", "poses.tsv:2", "finite");
   expect(head + "a\t0\t0\t0\n\na\t0\t0\t0\n", "poses.tsv:4", "a second time");
   expect(head + std::string("a\0b\t0\t0\t0\n", 10), "poses.tsv:2", "NUL");
   expect("map\tx\ty\ttheta\tsd\na\t0\t0\t0\t0\n", "poses.tsv:2", "sd must be positive");

@@ -8,6 +8,7 @@
 #include <ostream>
 #include <string>
 
+#include "io/image.hpp"
 #include "io/parse_error.hpp"
 #include "io/png_builder.hpp"
 #include "io/support.hpp"
@@ -181,6 +182,14 @@ RC_GTEST_PROP(Pgm, ReadsWhatItWrites, ()) {
   RC_ASSERT(image.height == height);
   RC_ASSERT(image.white == 255);
   RC_ASSERT(image.lightness == Values(values.begin(), values.end()));
+}
+
+// What a file may have is read: three numbers a pixel, with spaces.
+TEST(Pnm, OfAPlainPictureEnoughIsRead) {
+  constexpr std::size_t kPixels = std::size_t{3000} * 3000, kLongest = sizeof("65535 65535 65535 ") - 1;
+  EXPECT_GE(most_image_bytes("P3\n3000 3000\n65535\n", kPixels), kPixels * kLongest);
+  EXPECT_GE(most_image_bytes("P2\n3000 3000\n65535\n", kPixels), kPixels * (sizeof("65535 ") - 1));
+  EXPECT_LT(most_image_bytes("P6\n3000 3000\n65535\n", kPixels), kPixels * kLongest);
 }
 
 }  // namespace

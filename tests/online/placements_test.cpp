@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include "online/status.hpp"
+
 namespace gridmerge::internal {
 namespace {
 
@@ -173,6 +175,22 @@ TEST(Placements, AnyProposalsLeaveGroupsApart) {
       }
     }
   });
+}
+
+TEST(Changes, NameARobotThatStartedAnewToWhoLeavesIt) {
+  const std::vector<TeamEvent> events = changes_between({pair_at(10.0)}, {}, kExtents, {"a"});
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].robot, "b");
+  EXPECT_EQ(events[0].text, "b is no longer sure to lie with a");
+}
+
+TEST(Changes, ANewFrameIsNoJump) {
+  RobotGroup before = pair_at(10.0), now = pair_at(50.0);
+  EXPECT_EQ(changes_between({before}, {now}, kExtents, {}).size(), 2u);  // either may have jumped
+  const std::vector<TeamEvent> events = changes_between({before}, {now}, kExtents, {"a"});
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, TeamEvent::Kind::joined);
+  EXPECT_EQ(events[0].robot, "a");
 }
 
 }  // namespace

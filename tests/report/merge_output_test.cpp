@@ -78,7 +78,8 @@ TEST(MergeOutput, MakesTheDirectory) {
 TEST(MergeOutput, RemovesTheMapsOfAnEarlierRunAndNothingElse) {
   const TemporaryDirectory directory;
   const Names others{"merged_x.yaml", "merged.yaml.old", "merged_.pgm",
-                     "merged.txt",    "my_merged.yaml",  "notes"};
+                     "merged.txt",    "my_merged.yaml",  "notes",
+                     "merged_1.pgm",  "merged_02.pgm",   "merged_20240512.pgm"};
   for (const std::string& name : others) directory.write(name, "mine");
   directory.write("merged_17.yaml", "of an earlier run");
   directory.write("merged_18.yaml/notes", "mine");
@@ -97,7 +98,8 @@ TEST(MergeOutput, RemovesTheMapsOfAnEarlierRunAndNothingElse) {
 
 TEST(MergeOutput, NeverReplacesAnInput) {
   const TemporaryDirectory directory;
-  for (const std::string name : {"merged.yaml", "merged_3.yaml", "merged.pgm", "preview.png"}) {
+  for (const std::string name :
+       {"merged.yaml", "merged_3.yaml", "merged.pgm", "preview.png", "open_rmf.yaml"}) {
     const std::string input = directory.write(name, "mine");
     const auto write = [&] {
       write_merge_output(directory.path(), {"a", "b", input}, {kNames, kMaps, one_component()});

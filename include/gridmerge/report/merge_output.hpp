@@ -46,8 +46,8 @@ GRIDMERGE_EXPORT std::optional<double> check_merged_size(const std::vector<std::
 /// `merged.pgm` for the first component, `merged_2.yaml` and so on for further ones, `preview.png`,
 /// `report.html` and `transforms.json`. `inputs` as in prepare_merge_output(), which is called first.
 ///
-/// Every other `merged.yaml`, `merged_<number>.yaml` and `.pgm` in the directory is removed, and so are the
-/// exports of an earlier run (export_file()), so that nothing of it looks like this run's; without a
+/// Every other `merged.yaml`, `merged_2.yaml` and so on and `.pgm` in the directory is removed, and so are
+/// the exports of an earlier run (export_file()), so that nothing of it looks like this run's; without a
 /// component there is no `merged.yaml`. At every point of time who opens files by name finds all of an
 /// earlier run's or all of this one's, whether the program is killed, the disk is full or another merge
 /// writes there too; what a killed one has left is put in order first. Other files of the directory stay.
