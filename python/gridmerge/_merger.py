@@ -121,7 +121,8 @@ class Merger:
         """As update(), for a map that is little different: what its pairs said stays until search_again().
 
         Where the maps lie is adjusted to the new map all the same, so a map follows a robot that explores at the cost
-        of a joint solution instead of a match with each other map. KeyError for an unknown id.
+        of a joint solution instead of a match with each other map. A map that was left out stays left out until
+        search_again() or update(). KeyError for an unknown id.
         """
         grid = to_map("map", map)
         with self._alone():

@@ -158,6 +158,8 @@ def test_known_poses_as_a_table_and_as_a_mapping(cli: Cli, robots: list[str], tm
     assert to_bits(as_json(of_table)) == to_bits(as_json(of_mapping))
     assert of_table.components[0].in_world_frame
     assert of_table.components[0].members[0].transform == first
+    with pytest.raises(gridmerge.FileError, match="is an input and would be replaced"):
+        of_table.export("g2o", table)
     assert_equals_the_command_lines(of_table, cli, tmp_path, *robots, "--init", table, "--fix", robots[0])
     with pytest.raises(ValueError, match="none of the maps"):
         gridmerge.merge(robots[:2], init=table)

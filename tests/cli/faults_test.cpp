@@ -173,8 +173,9 @@ TEST_F(Faults, AFailedAllocationIsAnErrorThatLeavesTheOldSet) {
         {"ut of memory", "needs more memory than there is", "insufficient memory", "Cannot allocate memory"});
     untidy += is_tidy ? 0 : 1;
   }
-  // Where a library may not throw, the program ends as if it were killed.
-  EXPECT_LT(untidy, std::max(2, runs / 20));
+  // Where a library may not throw, the program ends as if it were killed: at one allocation of a hundred. Of
+  // a small sample a few may be such.
+  EXPECT_LE(untidy, 3 + runs / 40);
   expect_order(Over::old_set);
 }
 

@@ -54,7 +54,8 @@ class GRIDMERGE_EXPORT Merger {
 
   /// As update(), for a map that is little different: what its pairs said stays until search_again(). Where
   /// the maps lie is adjusted to the new map all the same, so this is how a map follows a robot that
-  /// explores, at the cost of a joint solution instead of k - 1 matches. Throws as update().
+  /// explores, at the cost of a joint solution instead of k - 1 matches. A map that was left out stays left
+  /// out until search_again() or update(). Throws as update().
   void grow(MapId id, OccupancyGrid map);
 
   /// The map's pairs are matched again by the next solve(). Throws std::out_of_range for an unknown id.
