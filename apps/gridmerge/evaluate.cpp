@@ -47,8 +47,8 @@ Evaluation evaluate_files(const EvaluateCommandOptions& options) {
   const Truth truth = read_truth(options);
   std::vector<std::filesystem::path> inputs = input_files(truth);
   inputs.insert(inputs.end(), {options.pairs, options.negatives, options.sets});
-  if (options.writes_json_file() && !options.features.empty() && is_same_file(options.json, options.features))
-    throw FileError(options.json, "would be written by --json and --features: choose another name for one");
+  if (options.writes_json_file() && !options.features.empty())
+    require_two_files(options.json, options.features, "--json and --features");
   if (options.writes_json_file()) try_output_file(options.json, inputs);
   if (!options.features.empty()) try_output_file(options.features, inputs);
   EvaluateOptions engine;

@@ -79,8 +79,10 @@ std::vector<Export> exports_of(const ExportOptions& options, const std::string& 
   return exports;
 }
 
-bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  return normal(a) == normal(b);
+void require_two_files(const std::filesystem::path& a, const std::filesystem::path& b,
+                       std::string_view writers) {
+  if (normal(a) == normal(b))
+    throw FileError(a, fmt::format("would be written by {}: choose another name for one", writers));
 }
 
 void try_result_file(const std::filesystem::path& file, const std::string& directory,
@@ -94,10 +96,7 @@ void try_result_file(const std::filesystem::path& file, const std::string& direc
 void try_exports(const std::vector<Export>& exports, const std::string& directory,
                  const std::vector<std::filesystem::path>& inputs) {
   for (std::size_t i = 0; i < exports.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (is_same_file(exports[i].file, exports[j].file))
-        throw FileError(exports[i].file, "would be written by two exports: choose another name for one");
-    }
+    for (std::size_t j = 0; j < i; ++j) require_two_files(exports[i].file, exports[j].file, "two exports");
     try_result_file(exports[i].file, directory, inputs);
   }
 }

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gridmerge/report/merge_output.hpp"
@@ -27,8 +28,10 @@ void add_export_option(CLI::App& command, ExportOptions& options);
 /// The files, those without a name in `directory`.
 std::vector<Export> exports_of(const ExportOptions& options, const std::string& directory);
 
-/// Whether two names are of one file to be written, by whichever folder's links.
-bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+/// Throws FileError if two results would go to one file, by whichever folder's links. `writers` says whose
+/// they are: "two exports".
+void require_two_files(const std::filesystem::path& a, const std::filesystem::path& b,
+                       std::string_view writers);
 
 /// Makes sure, before long work, that a file can be written in or beside `directory`, which need not be there
 /// yet. Throws FileError, also for a name that a merge itself gives to a file there, or one of `inputs` has.

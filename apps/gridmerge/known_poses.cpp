@@ -16,6 +16,8 @@
 
 namespace gridmerge::cli {
 
+using namespace internal;
+
 namespace {
 
 /// The map that lies there, by whatever way, or that the command line names so.
@@ -114,7 +116,7 @@ KnownPoses::KnownPoses(const KnownPoseOptions& options, const std::vector<std::s
 std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps,
                                         const MergeResult& result) const {
   std::string text;
-  for (const internal::ContradictedFix& fix : internal::find_contradicted_fixes(maps, poses_, result)) {
+  for (const ContradictedFix& fix : find_contradicted_fixes(maps, poses_, result)) {
     text += fmt::format(
         "{}: --fix keeps it {:.3g} m from where it fits {}: the maps contradict the given poses\n",
         escape_controls(names_[fix.moving]), fix.distance, escape_controls(names_[fix.fixed]));
@@ -124,11 +126,11 @@ std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps,
       text +=
           fmt::format("{}: --fix has no effect, as the map is left out\n", escape_controls(names_[one.map]));
   }
-  const std::vector<internal::UnusedPose> all = internal::find_unused_poses(maps, poses_, result);
+  const std::vector<UnusedPose> all = find_unused_poses(maps, poses_, result);
   std::set<std::pair<std::size_t, std::size_t>> told;  // pairs whose poses are not used
-  for (const internal::UnusedPose& unused : all) {
-    const bool is_pair = unused.why == internal::UnusedPose::Why::not_sure_enough ||
-                         unused.why == internal::UnusedPose::Why::against_match;
+  for (const UnusedPose& unused : all) {
+    const bool is_pair =
+        unused.why == UnusedPose::Why::not_sure_enough || unused.why == UnusedPose::Why::against_match;
     if (!is_pair || told.insert(std::minmax(unused.map, unused.other)).second)
       text += describe(unused) + "\n";
   }
@@ -140,16 +142,16 @@ std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps,
   return text;
 }
 
-std::string KnownPoses::describe(const internal::UnusedPose& unused) const {
+std::string KnownPoses::describe(const UnusedPose& unused) const {
   const std::string name = escape_controls(names_[unused.map]);
   const std::string other = escape_controls(names_[unused.other]);
   const KnownPose& pose = *poses_[unused.map];
   const auto remedy = [&] { return fmt::format("--fix {} --fix {} takes them for the truth", other, name); };
   switch (unused.why) {
-    case internal::UnusedPose::Why::overruled:
+    case UnusedPose::Why::overruled:
       return fmt::format("{}: the given pose is not believed: {:.3g} m from where the maps fit", name,
                          unused.distance);
-    case internal::UnusedPose::Why::not_sure_enough:
+    case UnusedPose::Why::not_sure_enough:
       return fmt::format(
           "{}: the given pose is not sure enough to be used alone: beside that of {}\n"
           "     it may be off by {:.2g} m (sd {} m, sd_theta {} rad), and {:.2g} m are allowed\n"
@@ -157,13 +159,13 @@ std::string KnownPoses::describe(const internal::UnusedPose& unused) const {
           "     or {}",
           name, other, unused.sd, pose.sd_position, pose.sd_theta, unused.sd_allowed, escape_controls(table_),
           unused.sd_allowed / unused.sd, remedy());
-    case internal::UnusedPose::Why::against_match:
+    case UnusedPose::Why::against_match:
       return fmt::format(
           "{0}: the given pose is {1:.3g} m from where the map surely fits {2} without it: one of the two is "
           "wrong\n"
           "try: gridmerge match {2} {0}   (where it fits), or {3}",
           name, unused.distance, other, remedy());
-    case internal::UnusedPose::Why::contradicted:
+    case UnusedPose::Why::contradicted:
       break;
   }
   return fmt::format(
@@ -179,7 +181,7 @@ bool KnownPoses::would_do_in_degrees(const std::vector<OccupancyGrid>& maps, con
   std::vector<std::optional<KnownPose>> in_degrees = poses_;
   for (const auto& [map, theta] : written_)
     in_degrees[map]->T_world_map.theta = normalize_angle(theta * std::numbers::pi / 180.0);
-  return internal::find_unused_poses(maps, in_degrees, result).size() < unused;
+  return find_unused_poses(maps, in_degrees, result).size() < unused;
 }
 
 }  // namespace gridmerge::cli

@@ -203,8 +203,8 @@ int run_merge(const MergeCommandOptions& options) {
   const std::vector<Export> exports = exports_of(options.exports, options.output);
   try_exports(exports, options.output, inputs.files);
   for (const Export& one : exports) {
-    if (!options.search.trace.empty() && is_same_file(one.file, options.search.trace))
-      throw FileError(one.file, "would be written by --export and --trace: choose another name for one");
+    if (!options.search.trace.empty())
+      require_two_files(one.file, options.search.trace, "--export and --trace");
   }
   MergeResult result =
       merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);

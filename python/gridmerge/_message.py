@@ -12,7 +12,7 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arguments
+from . import _arguments, _core
 from ._transform import Transform
 
 # A tilt of a twentieth of a degree: what is left when a flat pose went through 32-bit floats.
@@ -65,7 +65,10 @@ def read_message(message: object, name: str = "") -> Content:
     most = 2**31 - 1
     width = _arguments.whole(f"{prefix}info.width", fields.get("info.width"), 1, most)
     height = _arguments.whole(f"{prefix}info.height", fields.get("info.height"), 1, most)
-    resolution = _decimal(_arguments.number(f"{prefix}info.resolution", fields.get("info.resolution")))
+    # A message has a 32-bit float, a map file the decimal that it was made from.
+    resolution = _core.decimal_of(
+        _arguments.number(f"{prefix}info.resolution", fields.get("info.resolution"))
+    )
     origin = Transform(
         fields.number("info.origin.position.x"), fields.number("info.origin.position.y"), _yaw(fields)
     )
@@ -152,13 +155,6 @@ def _has(value: Any, field: str) -> bool:
 
 def _field(value: Any, field: str) -> Any:
     return value[field] if isinstance(value, Mapping) else getattr(value, field)
-
-
-def _decimal(resolution: float) -> float:
-    """The decimal that a message's 32-bit float was made from: 0.05, not 0.0500000007. Others stay."""
-    with np.errstate(over="ignore"):
-        single = np.float32(resolution)
-    return float(str(single)) if float(single) == resolution else resolution
 
 
 def _yaw(fields: _Fields) -> float:

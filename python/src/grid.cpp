@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 #include "bindings.hpp"
@@ -182,6 +183,14 @@ View<Value> view(const Map& map, const void* values) {
 }  // namespace
 
 void bind_grid(nb::module_& module) {
+  module.def(
+      "decimal_of",
+      [](double value) {
+        const bool is_single = std::abs(value) <= std::numeric_limits<float>::max() &&
+                               static_cast<double>(static_cast<float>(value)) == value;
+        return is_single ? decimal_of(static_cast<float>(value)) : value;
+      },
+      nb::arg("value"));
   nb::class_<Map>(module, "Grid")
       .def_static("from_percentages", &from_percentages, nb::arg("data").noconvert(), nb::arg("resolution"),
                   nb::arg("origin"))

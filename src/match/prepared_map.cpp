@@ -104,7 +104,8 @@ bool is_smaller(const PreparedMap& a, const PreparedMap& b) {
 }
 
 bool are_swapped(const PreparedMap& fixed, const PreparedMap& moving) {
-  if (is_smaller(fixed, moving) || is_smaller(moving, fixed)) return is_smaller(fixed, moving);
+  if (is_smaller(fixed, moving)) return true;
+  if (is_smaller(moving, fixed)) return false;
   const auto key = [](const SE2& origin) { return std::tuple(origin.x, origin.y, origin.theta); };
   return key(fixed.known().origin) < key(moving.known().origin);
 }

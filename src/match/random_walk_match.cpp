@@ -15,6 +15,7 @@
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 #include "match/pair_pose.hpp"
+#include "similarity/lattice_frames.hpp"
 
 namespace gridmerge {
 
@@ -151,9 +152,7 @@ void validate(const RandomWalkMatchOptions& options) {
   if (options.restarts < 1) throw std::invalid_argument("restarts must be at least 1");
   if (options.threads < 0) throw std::invalid_argument("threads must not be negative");
   if (options.start_pose) {
-    const SE2& T = *options.start_pose;
-    if (!std::isfinite(T.x) || !std::isfinite(T.y) || !std::isfinite(T.theta))
-      throw std::invalid_argument("the start pose must be finite");
+    if (!is_finite(*options.start_pose)) throw std::invalid_argument("the start pose must be finite");
   } else {
     validate(options.start);
   }

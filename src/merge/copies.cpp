@@ -68,17 +68,15 @@ void hold_by_first(Component& component, const std::vector<Copy>& copies,
                    const std::vector<const OccupancyGrid*>& grids, double resolution) {
   const SE2 T_first_component = inverse(component.members.front().T_component_map);
   if (T_first_component == SE2{}) return;
-  std::vector<PlacedMap> placed;
-  std::vector<Deformation> deformations;
-  for (Member& member : component.members) {
+  std::vector<std::size_t> counting;
+  for (std::size_t i = 0; i < component.members.size(); ++i) {
+    Member& member = component.members[i];
     member.T_component_map = T_first_component * member.T_component_map;
-    if (std::any_of(copies.begin(), copies.end(), [&](const Copy& copy) { return copy.map == member.map; }))
-      continue;
-    placed.push_back({grids[member.map], member.T_component_map});
-    deformations.push_back(member.deformation);
+    if (std::none_of(copies.begin(), copies.end(), [&](const Copy& copy) { return copy.map == member.map; }))
+      counting.push_back(i);
   }
   component.members.front().T_component_map = {};  // to the bit
-  component.fused = fuse(placed, merged_resolution(resolution, placed), deformations);
+  component.fused = fuse_members(component.members, counting, grids, resolution);
 }
 
 }  // namespace
@@ -93,16 +91,19 @@ SE2 between_copies(const PreparedMap& a, const PreparedMap& b) {
 }
 
 std::vector<std::size_t> without_copies(const std::vector<PlacedInput>& maps) {
-  const auto lie_on_each_other = [](const PlacedInput& a, const PlacedInput& b) {
-    const OccupancyGrid& grid = a.map->known();
-    const SE2 apart = inverse(a.T_output_map * grid.origin) * (b.T_output_map * b.map->known().origin);
-    const double farthest = std::hypot(apart.x, apart.y) + std::abs(apart.theta) * longer_side(grid);
-    return farthest < kSamePlace * grid.resolution && is_copy(*a.map, *b.map);
+  std::vector<SE2> T_output_grid;
+  T_output_grid.reserve(maps.size());
+  for (const PlacedInput& one : maps) T_output_grid.push_back(one.T_output_map * one.map->known().origin);
+  const auto lie_on_each_other = [&](std::size_t a, std::size_t b) {
+    const OccupancyGrid& grid = maps[a].map->known();
+    const SE2 &T_a = T_output_grid[a], &T_b = T_output_grid[b];
+    const double apart = std::hypot(T_a.x - T_b.x, T_a.y - T_b.y) +
+                         std::abs(normalize_angle(T_a.theta - T_b.theta)) * longer_side(grid);
+    return apart < kSamePlace * grid.resolution && is_copy(*maps[a].map, *maps[b].map);
   };
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    if (std::none_of(kept.begin(), kept.end(),
-                     [&](std::size_t k) { return lie_on_each_other(maps[k], maps[i]); }))
+    if (std::none_of(kept.begin(), kept.end(), [&](std::size_t k) { return lie_on_each_other(k, i); }))
       kept.push_back(i);
   }
   return kept;

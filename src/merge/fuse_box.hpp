@@ -16,7 +16,7 @@ namespace gridmerge::internal {
 /// others have seen.
 class FusedInputs {
  public:
-  /// Throws std::invalid_argument for an invalid map. `maps` must outlive it. O(cells).
+  /// Throws std::invalid_argument for an invalid map. The grids must outlive it. O(cells).
   explicit FusedInputs(std::vector<PlacedMap> maps);
 
   const std::vector<PlacedMap>& maps() const { return maps_; }

@@ -34,6 +34,18 @@ double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps) {
   return asked_for > 0.0 ? asked_for : finest_resolution(maps);
 }
 
+FusedMap fuse_members(const std::vector<Member>& members, const std::vector<std::size_t>& places,
+                      const std::vector<const OccupancyGrid*>& grids, double resolution) {
+  std::vector<PlacedMap> placed;
+  std::vector<Deformation> deformations;
+  for (const std::size_t place : places) {
+    const Member& member = members[place];
+    placed.push_back({grids[member.map], member.T_component_map});
+    deformations.push_back(member.deformation);
+  }
+  return fuse(placed, merged_resolution(resolution, placed), deformations);
+}
+
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match) {
   Join join;
   join.fixed = fixed;

@@ -21,6 +21,12 @@ double finest_resolution(const std::vector<PlacedMap>& maps);
 /// The resolution of a merged map of these: the one that is asked for, or the finest of theirs if that is 0.
 GRIDMERGE_INTERNAL_EXPORT double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps);
 
+/// The members at these places, fused where they lie and bent as they say. `grids[i]` is input map i.
+GRIDMERGE_INTERNAL_EXPORT FusedMap fuse_members(const std::vector<Member>& members,
+                                                const std::vector<std::size_t>& places,
+                                                const std::vector<const OccupancyGrid*>& grids,
+                                                double resolution);
+
 /// A join that means what its own verdict says.
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match);
 

@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "gridmerge/merge/fuse.hpp"
 #include "merge/copies.hpp"
 #include "merge/joins.hpp"
 #include "merge/solution.hpp"
@@ -37,17 +36,14 @@ Component component_of(const std::vector<OnPlan>& hung, const PlanInputs& inputs
   }
   std::sort(component.members.begin(), component.members.end(),
             [](const Member& a, const Member& b) { return a.map < b.map; });
-  std::vector<PlacedInput> all;
+  std::vector<PlacedInput> placed;
+  placed.reserve(component.members.size());
   for (const Member& member : component.members)
-    all.push_back({&inputs[member.map]->prepared, member.T_component_map});
-  std::vector<PlacedMap> placed;
-  std::vector<Deformation> deformations;
-  for (const std::size_t i : without_copies(all)) {
-    const Member& member = component.members[i];
-    placed.push_back({inputs[member.map]->grid.get(), member.T_component_map});
-    deformations.push_back(member.deformation);
-  }
-  component.fused = fuse(placed, merged_resolution(resolution, placed), deformations);
+    placed.push_back({&inputs[member.map]->prepared, member.T_component_map});
+  std::vector<const OccupancyGrid*> grids;
+  grids.reserve(inputs.size());
+  for (const auto& input : inputs) grids.push_back(input->grid.get());
+  component.fused = fuse_members(component.members, without_copies(placed), grids, resolution);
   return component;
 }
 

@@ -17,6 +17,7 @@
 #include "gridmerge/io/map_file.hpp"
 #include "io/file_reader.hpp"
 #include "merge/copies.hpp"
+#include "merge/joins.hpp"
 #include "report/deformation_json.hpp"
 #include "report/json_reader.hpp"
 #include "report/json_values.hpp"
@@ -353,20 +354,17 @@ std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<Occup
                                     const std::filesystem::path& directory) {
   if (maps.size() != record.names.size()) throw std::invalid_argument("there are not as many maps as names");
   const bool drops_copies = record.result.expected_false_joins.has_value();  // merge() does, a tree does not
+  std::vector<const OccupancyGrid*> grids;
+  grids.reserve(maps.size());
+  for (const OccupancyGrid& map : maps) grids.push_back(&map);
   std::vector<std::size_t> changed;
   for (std::size_t i = 0; i < record.result.components.size(); ++i) {
     Component& component = record.result.components[i];
     const std::filesystem::path file = directory / component_file(i);
     const OccupancyGrid merged = load_map(file, {.regular_files_only = true}).grid;
-    std::vector<PlacedMap> placed;
-    std::vector<Deformation> deformations;
-    for (const std::size_t place : fused_members(component, maps, drops_copies)) {
-      const Member& member = component.members[place];
-      placed.push_back({&maps[member.map], member.T_component_map});
-      deformations.push_back(member.deformation);
-    }
+    const std::vector<std::size_t> places = fused_members(component, maps, drops_copies);
     try {
-      component.fused = fuse(placed, merged.resolution, deformations);
+      component.fused = fuse_members(component.members, places, grids, merged.resolution);
     } catch (const std::invalid_argument& error) {
       throw FileError(file, std::string("cannot be made again: ") + error.what());
     }

@@ -31,6 +31,16 @@ struct Rooms {
   MergeResult result;
 };
 
+/// Two maps whose own match surely puts them so.
+Join accepted_join(std::size_t fixed, std::size_t moving, const SE2& T_fixed_moving) {
+  Join join;
+  join.fixed = fixed;
+  join.moving = moving;
+  join.match.verdict = Verdict::accepted;
+  join.match.T_fixed_moving = T_fixed_moving;
+  return join;
+}
+
 TEST(UnusedPoses, AreNoneWhereAllAreFollowed) {
   Rooms rooms;
   rooms.known[3].reset();
@@ -54,12 +64,7 @@ TEST(UnusedPoses, NameTheOneThatLiesElsewhereAndHowFar) {
 
 TEST(ContradictedFixes, AreTheFixedPairsThatMatchElsewhere) {
   Rooms rooms;
-  Join join;
-  join.fixed = 0;
-  join.moving = 1;
-  join.match.verdict = Verdict::accepted;
-  join.match.T_fixed_moving = Rooms::at(1);
-  rooms.result.joins = {join};
+  rooms.result.joins = {accepted_join(0, 1, Rooms::at(1))};
   const auto contradicted = [&] { return find_contradicted_fixes(rooms.maps, rooms.known, rooms.result); };
 
   rooms.known[0]->fixed = rooms.known[1]->fixed = true;
@@ -85,12 +90,7 @@ TEST(ContradictedFixes, DoNotDependOnWhichMapComesFirst) {
       Rooms rooms;
       const SE2 about_middle = SE2{5.0, 5.0, 0.0} * SE2{0.0, 0.0, turn} * SE2{-5.0, -5.0, 0.0};
       const SE2 T_fixed_moving{40.0, 0.0, 0.0};
-      Join join;
-      join.fixed = 0;
-      join.moving = 1;
-      join.match.verdict = Verdict::accepted;
-      join.match.T_fixed_moving = swapped ? inverse(T_fixed_moving) : T_fixed_moving;
-      rooms.result.joins = {join};
+      rooms.result.joins = {accepted_join(0, 1, swapped ? inverse(T_fixed_moving) : T_fixed_moving)};
       rooms.known[0]->fixed = rooms.known[1]->fixed = true;
       rooms.known[swapped ? 1 : 0]->T_world_map = rooms.T_world;
       rooms.known[swapped ? 0 : 1]->T_world_map = rooms.T_world * T_fixed_moving * about_middle;
@@ -145,12 +145,7 @@ TEST(UnusedPoses, OfAMapThatWasLeftOutSayWhatIsMissing) {
 
 TEST(UnusedPoses, OfAMapThatAloneFitsElsewhereNameTheMapThatItFits) {
   Rooms rooms;
-  Join join;
-  join.fixed = 1;
-  join.moving = 3;
-  join.match.verdict = Verdict::accepted;
-  join.match.T_fixed_moving = inverse(Rooms::at(1)) * Rooms::at(3) * SE2{0.0, 24.0, 0.0};
-  rooms.result.joins = {join};
+  rooms.result.joins = {accepted_join(1, 3, inverse(Rooms::at(1)) * Rooms::at(3) * SE2{0.0, 24.0, 0.0})};
   ASSERT_EQ(rooms.unused().size(), 1u);
   const UnusedPose unused = rooms.unused()[0];
   EXPECT_EQ(unused.map, 3u);
