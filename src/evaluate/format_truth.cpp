@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -20,12 +21,15 @@ const std::string& cell(const std::string& text) {
 }  // namespace
 
 std::string format_pairs(const std::vector<TruePair>& pairs) {
-  std::string text = "fixed\tmoving\tx\ty\ttheta\ttolerance\ttier\toverlap\tshared_wall\n";
+  const bool has_tiers =
+      std::any_of(pairs.begin(), pairs.end(), [](const TruePair& pair) { return !pair.tier.empty(); });
+  std::string text = fmt::format("fixed\tmoving\tx\ty\ttheta\ttolerance\t{}overlap\tshared_wall\n",
+                                 has_tiers ? "tier\t" : "");
   for (const TruePair& pair : pairs) {
     const SE2& T = pair.T_fixed_moving;
-    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", cell(pair.fixed.name),
-                   cell(pair.moving.name), T.x, T.y, T.theta, pair.tolerance, cell(pair.tier), pair.overlap,
-                   pair.shared_wall);
+    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\t{}{}\t{}\n", cell(pair.fixed.name),
+                   cell(pair.moving.name), T.x, T.y, T.theta, pair.tolerance,
+                   has_tiers ? cell(pair.tier) + '\t' : "", pair.overlap, pair.shared_wall);
   }
   return text;
 }

@@ -48,9 +48,7 @@ Deformation::Deformation(const SE2& T_map_lattice, double spacing, int columns, 
   require(shifts_.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
           "a lattice must have columns x rows shifts");
   require(std::isfinite(spacing) && spacing > 0.0, "a lattice's spacing must be a positive number of metres");
-  require(
-      std::isfinite(T_map_lattice.x) && std::isfinite(T_map_lattice.y) && std::isfinite(T_map_lattice.theta),
-      "a lattice's frame must be finite");
+  require(is_finite(T_map_lattice), "a lattice's frame must be finite");
   for (const Point2& shift : shifts_) {
     require(std::isfinite(shift.x) && std::isfinite(shift.y), "a lattice's shifts must be finite");
   }

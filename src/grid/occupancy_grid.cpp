@@ -11,6 +11,7 @@
 namespace gridmerge {
 
 OccupancyGrid make_grid(int width, int height, double resolution, const SE2& origin, Cell fill) {
+  if (width < 0 || height < 0) throw std::invalid_argument("a map's width and height must not be negative");
   OccupancyGrid grid;
   grid.width = width;
   grid.height = height;
@@ -58,9 +59,7 @@ void validate(const OccupancyGrid& grid) {
   if (!std::isfinite(grid.resolution) || grid.resolution <= 0.0) {
     throw std::invalid_argument("the map's resolution must be a positive number of metres");
   }
-  if (!std::isfinite(grid.origin.x) || !std::isfinite(grid.origin.y) || !std::isfinite(grid.origin.theta)) {
-    throw std::invalid_argument("the map's origin must be finite");
-  }
+  if (!is_finite(grid.origin)) throw std::invalid_argument("the map's origin must be finite");
 }
 
 }  // namespace gridmerge

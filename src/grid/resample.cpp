@@ -14,6 +14,7 @@
 namespace gridmerge {
 
 OccupancyGrid crop_to_known(const OccupancyGrid& grid) {
+  validate(grid);
   const auto is_known = [](std::uint8_t cell) { return cell != 0; };
   static_assert(static_cast<int>(Cell::unknown) == 0);
   std::vector<std::uint8_t> columns(grid.width, 0);  // 0 where every cell is unknown
@@ -55,6 +56,7 @@ OccupancyGrid crop_to_known(const OccupancyGrid& grid) {
 }
 
 OccupancyGrid downsample(const OccupancyGrid& grid, int factor) {
+  validate(grid);
   if (factor < 1) throw std::invalid_argument("the downsampling factor must be at least 1");
   OccupancyGrid coarse = make_grid((grid.width - 1) / factor + 1, (grid.height - 1) / factor + 1,
                                    grid.resolution * factor, grid.origin);
@@ -68,6 +70,8 @@ OccupancyGrid downsample(const OccupancyGrid& grid, int factor) {
 }
 
 OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map, double resolution) {
+  validate(grid);
+  if (!is_finite(T_target_map)) throw std::invalid_argument("the transform must be finite");
   if (!std::isfinite(resolution) || resolution <= 0.0)
     throw std::invalid_argument("the resolution must be a positive number of metres");
   const SE2 T_target_grid = T_target_map * grid.origin;

@@ -24,6 +24,10 @@ Point2 operator*(const SE2& T_a_b, const Point2& p_b) {
   return ManyPointsTransform(T_a_b) * p_b;
 }
 
+bool is_finite(const SE2& T_a_b) {
+  return std::isfinite(T_a_b.x) && std::isfinite(T_a_b.y) && std::isfinite(T_a_b.theta);
+}
+
 ManyPointsTransform::ManyPointsTransform(const SE2& T_a_b)
     : cos_(std::cos(T_a_b.theta)), sin_(std::sin(T_a_b.theta)), x_(T_a_b.x), y_(T_a_b.y) {}
 

@@ -11,8 +11,7 @@ namespace gridmerge::internal {
 
 /// Throws std::invalid_argument for what no match can have found.
 inline void check_pose(const SE2& T, double probability) {
-  const bool is_sound = std::isfinite(T.x) && std::isfinite(T.y) && std::isfinite(T.theta) &&
-                        probability >= 0.0 && probability <= 1.0;
+  const bool is_sound = is_finite(T) && probability >= 0.0 && probability <= 1.0;
   if (!is_sound) throw std::invalid_argument("holds a pose that no match has");
 }
 

@@ -27,7 +27,8 @@ struct Meeting {
 std::unique_ptr<PreparedMap> prepare(const NodeGroup& group, const std::vector<MergeInput>& inputs) {
   std::vector<PlacedMap> placed;
   for (const PlacedNode& node : group) placed.push_back({inputs[node.map].grid, node.T_group_map});
-  return std::make_unique<PreparedMap>(fuse(placed, finest_resolution(placed)).grid);
+  return std::make_unique<PreparedMap>(
+      fuse(placed, fitting_resolution(finest_resolution(placed), placed)).grid);
 }
 
 /// The member that has most in common with a map.

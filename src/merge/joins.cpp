@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "merge/log_odds.hpp"
+
 namespace gridmerge::internal {
 
 void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution) {
@@ -28,6 +30,16 @@ double finest_resolution(const std::vector<PlacedMap>& maps) {
              maps.begin(), maps.end(),
              [](const PlacedMap& a, const PlacedMap& b) { return a.map->resolution < b.map->resolution; })
       ->map->resolution;
+}
+
+double fitting_resolution(double resolution, const std::vector<PlacedMap>& maps,
+                          const std::vector<Deformation>& deformations) {
+  const Box box = covered_box(maps, deformations);
+  if (box.empty()) return resolution;
+  // A cell more on either side than the box is long, whatever the lattice continues.
+  const auto cells = [&](double low, double high) { return (high - low) / resolution + 2.0; };
+  while (cells(box.min_x, box.max_x) * cells(box.min_y, box.max_y) > kMaxGridCells) resolution *= 2.0;
+  return resolution;
 }
 
 double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps) {

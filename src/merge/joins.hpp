@@ -18,6 +18,11 @@ void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution);
 /// The resolution of the finest of these maps, of which there must be one.
 double finest_resolution(const std::vector<PlacedMap>& maps);
 
+/// The resolution in which these maps are fused to be compared with another one: `resolution`, or so much
+/// coarser that the result has no more than kMaxGridCells. `deformations` as of fuse(). O(cells).
+double fitting_resolution(double resolution, const std::vector<PlacedMap>& maps,
+                          const std::vector<Deformation>& deformations = {});
+
 /// The resolution of a merged map of these: the one that is asked for, or the finest of theirs if that is 0.
 GRIDMERGE_INTERNAL_EXPORT double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps);
 

@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "grid/box.hpp"
 #include "grid/parallel.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
@@ -77,10 +76,8 @@ Box known_box(const PlacedMap& input, const Deformation& deformation) {
 void validate_input(const PlacedMap& input) {
   if (input.map == nullptr) throw std::invalid_argument("a placed map must have a map");
   validate(*input.map);
-  const SE2& T = input.T_output_map;
-  if (!std::isfinite(T.x) || !std::isfinite(T.y) || !std::isfinite(T.theta)) {
+  if (!is_finite(input.T_output_map))
     throw std::invalid_argument("the transform of a placed map must be finite");
-  }
 }
 
 // Lower-left corner of the input whose map frame is the output frame (the lowest one, should there be
@@ -246,7 +243,9 @@ class StraightenedGrid {
  public:
   StraightenedGrid(const PlacedMap& input, const Deformation& deformation, const Lattice& lattice,
                    const LogOddsPatch& patch)
-      : step_(std::max(1, static_cast<int>(kNodesApart * deformation.spacing() / lattice.resolution))),
+      // As a number of cells it may be more than an int holds; beyond the patch there is nothing to look up.
+      : step_(static_cast<int>(std::clamp(kNodesApart * deformation.spacing() / lattice.resolution, 1.0,
+                                          static_cast<double>(std::max(patch.width, patch.height))))),
         columns_(patch.width / step_ + 2) {
     const SE2 T_map_output = inverse(input.T_output_map), T_grid_map = inverse(input.map->origin);
     const int rows = patch.height / step_ + 2;
@@ -298,23 +297,17 @@ void sample_bent_map(const PlacedMap& input, const Deformation& deformation, con
   });
 }
 
-// Drops every known cell of the map into the patch's cell that its centre lies in.
-void splat_map(const PlacedMap& input, const Lattice& lattice, LogOddsPatch& patch) {
-  const OccupancyGrid& map = *input.map;
-  const SE2 T_output_grid = input.T_output_map * map.origin;
-  const double scale = map.resolution / lattice.resolution;
-  const double c = std::cos(T_output_grid.theta) * scale;
-  const double s = std::sin(T_output_grid.theta) * scale;
-  const double shift_x = (T_output_grid.x - lattice.corner.x) / lattice.resolution + kSlack;
-  const double shift_y = (T_output_grid.y - lattice.corner.y) / lattice.resolution + kSlack;
+// Drops every known cell of the map into the patch's cell that its centre lies in. `to_lattice` takes a
+// point of the map, in its own cells from its lower-left corner, to the lattice's cells.
+template <typename ToLattice>
+void splat_map(const OccupancyGrid& map, const ToLattice& to_lattice, LogOddsPatch& patch) {
   const int right = patch.column + patch.width, top = patch.row + patch.height;
   for (int row = 0; row < map.height; ++row) {
     throw_if_cancelled();
     for (int column = 0; column < map.width; ++column) {
       const std::int16_t value = cell_log_odds(map, map.index(column, row));
       if (value == 0) continue;
-      const double x = c * (column + 0.5) - s * (row + 0.5) + shift_x;
-      const double y = s * (column + 0.5) + c * (row + 0.5) + shift_y;
+      const auto [x, y] = to_lattice(column + 0.5, row + 0.5);
       if (!(x >= patch.column && x < right && y >= patch.row && y < top)) continue;
       keep_strongest(
           patch.log_odds[patch.index(static_cast<int>(x) - patch.column, static_cast<int>(y) - patch.row)],
@@ -325,16 +318,21 @@ void splat_map(const PlacedMap& input, const Lattice& lattice, LogOddsPatch& pat
 
 }  // namespace
 
-Lattice cover(const std::vector<PlacedMap>& inputs, double resolution,
-              const std::vector<Deformation>& deformations) {
-  if (!std::isfinite(resolution) || resolution <= 0.0) {
-    throw std::invalid_argument("the output's resolution must be a positive number of metres");
-  }
+Box covered_box(const std::vector<PlacedMap>& inputs, const std::vector<Deformation>& deformations) {
   Box box;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     validate_input(inputs[i]);
     box.add(i < deformations.size() ? known_box(inputs[i], deformations[i]) : known_box(inputs[i]));
   }
+  return box;
+}
+
+Lattice cover(const std::vector<PlacedMap>& inputs, double resolution,
+              const std::vector<Deformation>& deformations) {
+  if (!std::isfinite(resolution) || resolution <= 0.0) {
+    throw std::invalid_argument("the output's resolution must be a positive number of metres");
+  }
+  const Box box = covered_box(inputs, deformations);
   if (box.empty()) return {1, 1, resolution, {}};
 
   const Point2 anchor = frame_anchor(inputs).value_or(Point2{box.min_x, box.min_y});
@@ -358,19 +356,44 @@ LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice, const
   validate_input(input);
   LogOddsPatch patch = patch_over(known_box(input, deformation), lattice, within);
   if (patch.log_odds.empty()) return patch;
+  const OccupancyGrid& map = *input.map;
+  const double ratio = lattice.resolution / map.resolution;
+  const auto to_lattice = [&](const Point2& output) {
+    return Point2{(output.x - lattice.corner.x) / lattice.resolution + kSlack,
+                  (output.y - lattice.corner.y) / lattice.resolution + kSlack};
+  };
   // A square of side a holds a point of any square grid of spacing a / sqrt(2), however that is rotated. So
   // from that ratio on, every lattice cell meets the centre of a map cell; below it, two samples a side meet
   // every map cell.
-  const double ratio = lattice.resolution / input.map->resolution;
+  constexpr double kEveryCell = std::numbers::sqrt2;
   if (!deformation.is_identity()) {
+    constexpr double kMostStretched = 1.0 + Deformation::kMostStrain;
     // Squeezed at most so much, the cells of the map are so much denser.
     constexpr double kMostSqueezed = 1.0 / (1.0 - Deformation::kMostStrain);
-    const int samples = ratio <= 1.0 + kSlack ? 1 : static_cast<int>(std::ceil(kMostSqueezed * ratio));
-    sample_bent_map(input, deformation, lattice, samples, patch);
-    return patch;
-  }
-  if (ratio >= std::numbers::sqrt2) {
-    splat_map(input, lattice, patch);
+    if (ratio >= kMostStretched * kEveryCell) {
+      const ManyPointsTransform T_map_grid(map.origin), T_output_map(input.T_output_map);
+      splat_map(
+          map,
+          [&](double x, double y) {
+            const Point2 straight = T_map_grid * Point2{x * map.resolution, y * map.resolution};
+            return to_lattice(T_output_map * deformation.bend(straight));
+          },
+          patch);
+    } else {
+      const int samples = ratio <= 1.0 + kSlack ? 1 : static_cast<int>(std::ceil(kMostSqueezed * ratio));
+      sample_bent_map(input, deformation, lattice, samples, patch);
+    }
+  } else if (ratio >= kEveryCell) {
+    const SE2 T_output_grid = input.T_output_map * map.origin;
+    const Point2 shift = to_lattice({T_output_grid.x, T_output_grid.y});
+    const double scale = map.resolution / lattice.resolution;
+    const double c = std::cos(T_output_grid.theta) * scale, s = std::sin(T_output_grid.theta) * scale;
+    splat_map(
+        map,
+        [&](double x, double y) {
+          return Point2{c * x - s * y + shift.x, s * x + c * y + shift.y};
+        },
+        patch);
   } else {
     sample_map(input, lattice, ratio <= 1.0 + kSlack ? 1 : 2, patch);
   }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "grid/box.hpp"
 #include "grid/cell_box.hpp"
 #include "gridmerge/grid/deformation.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
@@ -22,6 +23,10 @@ struct Lattice {
   CellBox whole() const { return {0, 0, width, height}; }
   friend bool operator==(const Lattice&, const Lattice&) = default;
 };
+
+/// What the known cells of all inputs cover in the output frame [m]. Throws std::invalid_argument for an
+/// invalid grid or a transform that is not finite. `deformations` as of fuse(). O(cells of the inputs).
+Box covered_box(const std::vector<PlacedMap>& inputs, const std::vector<Deformation>& deformations);
 
 /// The lattice of `resolution` [m] that just covers the known cells of all inputs; one cell when there is
 /// none. It continues the cell boundaries of the input that lies at the identity, so that the map that gives

@@ -10,6 +10,7 @@
 #include "match/match_at_scales.hpp"
 #include "match/prepared_map.hpp"
 #include "merge/copies.hpp"
+#include "merge/joins.hpp"
 
 namespace gridmerge::internal {
 
@@ -40,6 +41,26 @@ std::vector<Member> speakers(const std::vector<Member>& members, const PlanInput
   return chosen;
 }
 
+/// All maps of a component as one, seen from `first`: from the member that says most it is the same map
+/// whichever comes first. Copies count once.
+OccupancyGrid all_as_one(const Component& component, const Member& first, const PlanInputs& inputs) {
+  const SE2 T_first_component = inverse(first.T_component_map);
+  std::vector<PlacedInput> all;
+  for (const Member& member : component.members) {
+    const SE2 T_first_map = member.map == first.map ? SE2{} : T_first_component * member.T_component_map;
+    all.push_back({&inputs[member.map]->prepared, T_first_map});
+  }
+  std::vector<PlacedMap> placed;
+  std::vector<Deformation> deformations;
+  for (const std::size_t place : without_copies(all)) {
+    const Member& member = component.members[place];
+    placed.push_back({inputs[member.map]->grid.get(), all[place].T_output_map});
+    deformations.push_back(member.deformation);
+  }
+  const double resolution = fitting_resolution(component.fused.grid.resolution, placed, deformations);
+  return fuse(placed, resolution, deformations).grid;
+}
+
 }  // namespace
 
 std::vector<MergePart> parts_of(const MergeResult& merged, const PlanInputs& inputs) {
@@ -52,16 +73,25 @@ std::vector<MergePart> parts_of(const MergeResult& merged, const PlanInputs& inp
     return a.members.front().map < b.members.front().map;
   });
   for (MergePart& part : parts) {
+    // Walls of one may be outvoted by what others say, or bent away: what has none left says nothing.
+    const auto add = [&](PlanVoice voice) {
+      if (voice.input->prepared.counts().occupied > 0) part.voices.push_back(std::move(voice));
+    };
     const std::vector<Member> members = speakers(part.members, inputs);
-    if (members.size() > 1)
-      part.voices.push_back({{}, {}, input_of(merged.components[*part.component].fused.grid), {}});
+    if (members.size() > 1) {
+      const Member& first = members.front();
+      add({{},
+           first.T_component_map,
+           input_of(all_as_one(merged.components[*part.component], first, inputs)),
+           {}});
+    }
     for (const Member& member : members) {
       const auto& straight = inputs[member.map];
       const bool is_bent = !member.deformation.is_identity();
-      part.voices.push_back({member.map,
-                             member.T_component_map,
-                             is_bent ? input_of(bent_map(*straight->grid, member.deformation)) : straight,
-                             {}});
+      add({member.map,
+           member.T_component_map,
+           is_bent ? input_of(bent_map(*straight->grid, member.deformation)) : straight,
+           {}});
     }
   }
   return parts;

@@ -115,7 +115,7 @@ class PairwiseTree {
     if (group.members.size() == 1) return maps_[group.first()];
     if (!group.fused) {
       const std::vector<PlacedMap> inputs = placed(group);
-      group.fused = fuse(inputs, finest_resolution(inputs)).grid;
+      group.fused = fuse(inputs, fitting_resolution(finest_resolution(inputs), inputs)).grid;
     }
     return *group.fused;
   }

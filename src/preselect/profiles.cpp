@@ -78,10 +78,9 @@ WallProfiles make_profiles(const LikelihoodField& field) {
   if (count == 0 || std::hypot(c, s) < kMinCoherence * static_cast<double>(count)) return profiles;
   profiles.theta = std::atan2(s, c) / 4.0;
   // Whole steps, so that profiles of two maps begin whole steps apart.
-  const int reach =
-      static_cast<int>(std::ceil(std::hypot(field.width, field.height) * field.cell / kProfileStep));
-  const int length = 2 * reach + 1;
-  if (length > 2 * kMaxLength) return profiles;
+  const double steps = std::ceil(std::hypot(field.width, field.height) * field.cell / kProfileStep);
+  if (steps >= kMaxLength) return profiles;  // before the cast: it may be more than an int holds
+  const int reach = static_cast<int>(steps), length = 2 * reach + 1;
   std::array<std::vector<double>, 4> sums;
   for (std::vector<double>& side : sums) side.assign(static_cast<std::size_t>(length), 0.0);
   int lowest = length, highest = -1;

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "similarity/lattice_frames.hpp"
 
-#include <cmath>
 #include <stdexcept>
 
 namespace gridmerge::internal {
-
-bool is_finite(const SE2& T) {
-  return std::isfinite(T.x) && std::isfinite(T.y) && std::isfinite(T.theta);
-}
 
 void check_finite(const SE2& T) {
   if (!is_finite(T)) throw std::invalid_argument("the transform must be finite");

@@ -5,8 +5,6 @@
 
 namespace gridmerge::internal {
 
-bool is_finite(const SE2& T);
-
 /// Throws std::invalid_argument unless is_finite().
 void check_finite(const SE2& T);
 

@@ -8,6 +8,7 @@
 #include "gridmerge/simulate/simulate.hpp"
 #include "simulate/building_parts.hpp"
 #include "simulate/floor_plan.hpp"
+#include "simulate/surroundings.hpp"
 
 namespace gridmerge {
 
@@ -67,16 +68,31 @@ Building make_building(BuildingKind kind, double width, double height, std::uint
   return {kind, width, height, std::move(pen.edges)};
 }
 
+void validate(const Building& building) {
+  for (const double side : {building.width, building.height}) {
+    if (!(side > 0.0 && side <= kMaxBuildingSide))
+      throw std::invalid_argument("a building's sides must be positive, and at most 500 metres");
+  }
+  for (const Edge& edge : building.edges) {
+    if (!is_near(building, edge.a) || !is_near(building, edge.b))
+      throw std::invalid_argument("a building's edges must not end more than 500 metres beyond its sides");
+    if (!(edge.echo >= 0.0 && edge.echo <= 1.0))
+      throw std::invalid_argument("the echo of a building's edges must lie in [0, 1]");
+  }
+}
+
 OccupancyGrid draw_building(const Building& building, double resolution) {
+  validate(building);
   if (!(resolution >= 0.01 && resolution <= 1.0))
     throw std::invalid_argument("the resolution must be between 0.01 and 1 metres a cell");
   const FloorPlan plan(building.edges, 0.5 * FloorPlan::kCell);
   constexpr double kMargin = 1.0;  // [m]
-  const auto cells = [&](double side) {
-    return static_cast<int>(std::ceil((side + 2.0 * kMargin) / resolution));
-  };
+  const auto cells = [&](double side) { return std::ceil((side + 2.0 * kMargin) / resolution); };
+  const double columns = cells(building.width), rows = cells(building.height);
+  if (columns * rows > kMaxGridCells)
+    throw std::invalid_argument("the building's map would exceed 2^28 cells: a coarser resolution helps");
   OccupancyGrid grid =
-      make_grid(cells(building.width), cells(building.height), resolution, {-kMargin, -kMargin, 0.0});
+      make_grid(static_cast<int>(columns), static_cast<int>(rows), resolution, {-kMargin, -kMargin, 0.0});
   const ManyPointsTransform T_building_grid(grid.origin);
   for (int row = 0; row < grid.height; ++row) {
     for (int column = 0; column < grid.width; ++column) {

@@ -124,7 +124,7 @@ int FloorPlan::free_cell_near(Point2 p, double reach) const {
   for (const int cell : free_cells_) {
     const Point2 at = centre(cell);
     const double distance = std::hypot(at.x - p.x, at.y - p.y);
-    if (distance > least) continue;
+    if (!(distance <= least)) continue;  // nor of no place at all
     least = distance;
     nearest = cell;
   }

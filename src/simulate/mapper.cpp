@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <stdexcept>
 
 #include "grid/logistic.hpp"
 #include "gridmerge/grid/message_values.hpp"
@@ -20,17 +21,23 @@ constexpr float kMax = 4.0F;  // either way
 
 }  // namespace
 
-Mapper::Mapper(double resolution, double reach)
-    : resolution_(resolution),
-      half_(static_cast<int>(std::ceil(reach / resolution)) + 1),
-      side_(2 * half_),
-      log_odds_(static_cast<std::size_t>(side_) * side_, std::numeric_limits<float>::quiet_NaN()) {}
+Mapper::Mapper(double resolution, const Box& reach) : resolution_(resolution) {
+  const double left = std::floor(reach.min_x / resolution),
+               right = std::floor(reach.max_x / resolution) + 1.0;
+  const double bottom = std::floor(reach.min_y / resolution),
+               top = std::floor(reach.max_y / resolution) + 1.0;
+  if (!((right - left) * (top - bottom) <= kMaxGridCells))
+    throw std::invalid_argument("a robot's map would exceed 2^28 cells: a coarser resolution helps");
+  raster_ = {static_cast<int>(left), static_cast<int>(bottom), static_cast<int>(right),
+             static_cast<int>(top)};
+  log_odds_.assign(static_cast<std::size_t>(raster_.width()) * static_cast<std::size_t>(raster_.height()),
+                   std::numeric_limits<float>::quiet_NaN());
+}
 
 void Mapper::update(int column, int row, float evidence) {
-  column += half_;
-  row += half_;
-  if (column < 0 || row < 0 || column >= side_ || row >= side_) return;
-  float& cell = log_odds_[static_cast<std::size_t>(row) * side_ + column];
+  if (column < raster_.left || row < raster_.bottom || column >= raster_.right || row >= raster_.top) return;
+  float& cell = log_odds_[static_cast<std::size_t>(row - raster_.bottom) * raster_.width() +
+                          static_cast<std::size_t>(column - raster_.left)];
   cell = std::clamp((std::isnan(cell) ? 0.0F : cell) + evidence, -kMax, kMax);
 }
 
@@ -62,8 +69,8 @@ void Mapper::add_beam(Point2 from, Point2 to, bool hits) {
 }
 
 OccupancyGrid Mapper::grid() const {
-  OccupancyGrid grid =
-      make_grid(side_, side_, resolution_, {-half_ * resolution_, -half_ * resolution_, 0.0});
+  OccupancyGrid grid = make_grid(raster_.width(), raster_.height(), resolution_,
+                                 {raster_.left * resolution_, raster_.bottom * resolution_, 0.0});
   grid.probability.assign(grid.cells.size(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < log_odds_.size(); ++i) {
     if (std::isnan(log_odds_[i])) continue;
@@ -72,7 +79,11 @@ OccupancyGrid Mapper::grid() const {
     if (probability > kOccupiedThreshold) grid.cells[i] = Cell::occupied;
     if (probability < kFreeThreshold) grid.cells[i] = Cell::free;
   }
-  return crop_to_known(grid);
+  OccupancyGrid cropped = crop_to_known(grid);
+  // To the bit the same whatever the raster: so many whole cells from the frame's origin.
+  for (double* const side : {&cropped.origin.x, &cropped.origin.y})
+    *side = std::round(*side / resolution_) * resolution_;
+  return cropped;
 }
 
 }  // namespace gridmerge::internal

@@ -3,16 +3,19 @@
 
 #include <vector>
 
+#include "grid/box.hpp"
+#include "grid/cell_box.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge::internal {
 
 /// A map that is drawn beam by beam: log-odds of each cell, clamped (Moravec & Elfes 1985). The frame's
-/// origin lies in its middle.
+/// origin lies on a corner of cells.
 class Mapper {
  public:
-  /// For beams that stay within `reach` metres of the origin in x and y. O(cells).
-  Mapper(double resolution, double reach);
+  /// For beams that stay in a box [m, map frame]. Throws std::invalid_argument for a box of more than
+  /// kMaxGridCells. O(cells).
+  Mapper(double resolution, const Box& reach);
 
   /// A beam from one point to another, in metres of the map's frame: free up to the end, where there is a
   /// wall if it `hits`. Parts outside the map are left out. O(cells crossed).
@@ -25,8 +28,7 @@ class Mapper {
   void update(int column, int row, float evidence);
 
   double resolution_;
-  int half_;  // cells from the middle to the rim
-  int side_;
+  CellBox raster_;               // cells from the frame's origin
   std::vector<float> log_odds_;  // NaN: no beam came there
 };
 

@@ -11,6 +11,7 @@
 
 #include "grid/parallel.hpp"
 #include "gridmerge/grid/execution.hpp"
+#include "simulate/surroundings.hpp"
 #include "simulate/survey.hpp"
 #include "simulate/team.hpp"
 
@@ -232,28 +233,30 @@ Simulation simulate(const SimulateOptions& options) {
 SimulatedMap simulate_way(const Building& building, std::span<const Point2> way,
                           const SimulateOptions& options) {
   validate_mapping(options);
+  validate(building);
   require(!way.empty(), "a way must have a point");
+  for (const Point2& point : way)
+    require(is_near(building, point), "a way must stay within 500 metres of the building");
+  const FloorPlan plan(building.edges, options.robot_radius);
+  const int start = plan.free_cell_near(way.front(), options.robot_radius);
+  require(start >= 0, "no robot can stand where the way starts");
   const RayCaster walls(building.edges);
-  std::vector<SE2> path{{way.front().x, way.front().y, 0.0}};
+  std::vector<SE2> path;
+  double heading = 0.0;
   for (std::size_t i = 1; i < way.size(); ++i) {
     const Point2 d{way[i].x - way[i - 1].x, way[i].y - way[i - 1].y};
     const double length = std::hypot(d.x, d.y);
-    require(std::isfinite(length), "a way must be finite");
     if (length == 0.0) continue;
     const Point2 along{d.x / length, d.y / length};
     require(std::isinf(walls.cast(way[i - 1], along, length).range), "the way goes through a wall");
-    const double heading = std::atan2(d.y, d.x);
-    if (i == 1) path.clear();
+    heading = std::atan2(d.y, d.x);
     const int scans = std::max(1, static_cast<int>(std::round(length / options.scan_every)));
     for (int scan = 0; scan < scans; ++scan) {
       const double at = scan * length / scans;
       path.push_back({way[i - 1].x + at * along.x, way[i - 1].y + at * along.y, heading});
     }
-    if (i + 1 == way.size()) path.push_back({way[i].x, way[i].y, heading});
   }
-  const FloorPlan plan(building.edges, options.robot_radius);
-  const int start = plan.free_cell_near(way.front(), options.robot_radius);
-  require(start >= 0, "no robot can stand where the way starts");
+  path.push_back({way.back().x, way.back().y, heading});
   Random random(options.seed);
   const Visit visit = make_visit(building.edges, plan, options.robot_radius, start, options.clutter, random);
   return survey(options, building, visit, std::move(path), random.fork()).map;

@@ -55,11 +55,16 @@ class Scanner {
   Random& random_;
 };
 
-/// The farthest that the robot comes from where it starts [m].
-double farthest(const std::vector<SE2>& poses) {
-  double reach = 0.0;
-  for (const SE2& pose : poses)
-    reach = std::max(reach, std::hypot(pose.x - poses.front().x, pose.y - poses.front().y));
+/// What beams from these places may reach [m]: a range is measured too long by so many standard deviations
+/// next to never.
+Box reach_from(const std::vector<SE2>& places, const RangeFinder& sensor) {
+  constexpr double kMostSigmas = 6.0;
+  const double farthest = sensor.range + kMostSigmas * sensor.noise;
+  Box reach;
+  for (const SE2& place : places) {
+    reach.add(Point2{place.x - farthest, place.y - farthest});
+    reach.add(Point2{place.x + farthest, place.y + farthest});
+  }
   return reach;
 }
 
@@ -119,7 +124,9 @@ Survey survey(const SimulateOptions& options, const Building& building, const Vi
   Walkers walkers(visit.plan, options.clutter, random.fork());
   Random noise = random.fork();
   Scanner scanner(options.sensor, visit.caster, walkers, noise);
-  Mapper mapper(options.resolution, farthest(path) + options.sensor.range + 5.0);
+  std::vector<SE2> T_map_robot;  // as the robot believes
+  for (const SE2& pose : path) T_map_robot.push_back(T_map_building * belief.follow(pose));
+  Mapper mapper(options.resolution, reach_from(T_map_robot, options.sensor));
   const int beams = static_cast<int>(options.sensor.field_of_view / options.sensor.angular_step) + 1;
   std::vector<Point2> directions;  // of the beams, in the robot's frame
   for (int i = 0; i < beams; ++i) {
@@ -130,12 +137,12 @@ Survey survey(const SimulateOptions& options, const Building& building, const Vi
   for (std::size_t scan = 0; scan < path.size(); ++scan) {
     throw_if_cancelled();
     const SE2& pose = path[scan];
-    const SE2 T_map_robot = T_map_building * belief.follow(pose);
-    const ManyPointsTransform to_building(pose), to_map(T_map_robot);
+    const SE2& believed = T_map_robot[scan];
+    const ManyPointsTransform to_building(pose), to_map(believed);
     const double c = std::cos(pose.theta), s = std::sin(pose.theta);
     for (const Point2& u : directions) {
       const Beam beam = scanner.beam({pose.x, pose.y}, {c * u.x - s * u.y, s * u.x + c * u.y});
-      mapper.add_beam({T_map_robot.x, T_map_robot.y}, to_map * Point2{beam.range * u.x, beam.range * u.y},
+      mapper.add_beam({believed.x, believed.y}, to_map * Point2{beam.range * u.x, beam.range * u.y},
                       beam.hits);
       for (double at = beam.range; at > 0.0; at -= kPlaceEvery) {
         const Point2 place{at * u.x, at * u.y};

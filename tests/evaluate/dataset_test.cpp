@@ -42,6 +42,11 @@ TEST(TruthText, ReadsBackToTheSameValues) {
   EXPECT_EQ(read[0].overlap, 0.123);
   EXPECT_EQ(read[0].shared_wall, 7.65);
 
+  std::vector<TruePair> untiered = pairs;
+  untiered[0].tier.clear();
+  EXPECT_EQ(read_pairs(directory.write("untiered.tsv", format_pairs(untiered))).at(0).tier, "");
+  EXPECT_THROW(format_pairs({pairs[0], untiered[0]}), std::invalid_argument);
+
   const auto negatives =
       read_negatives(directory.write("negatives.tsv", format_negatives({{{"a.yaml", {}}, {"x.yaml", {}}}})));
   ASSERT_EQ(negatives.size(), 1U);

@@ -26,6 +26,12 @@ TEST(OccupancyGrid, IsMadeFilled) {
   EXPECT_TRUE(grid.probability.empty());
 }
 
+TEST(OccupancyGrid, IsNoneOfNegativeSize) {
+  EXPECT_THROW(make_grid(-1, 5, 0.1), std::invalid_argument);
+  EXPECT_THROW(make_grid(5, -1, 0.1), std::invalid_argument);
+  EXPECT_THROW(make_grid(-2, -2, 0.1), std::invalid_argument);
+}
+
 TEST(OccupancyGrid, IsRowMajor) {
   OccupancyGrid grid = make_grid(3, 2, 1.0);
   grid.at(2, 1) = Cell::occupied;

@@ -172,6 +172,16 @@ TEST(TransformGrid, RefusesWhatNoGridCanBe) {
   EXPECT_THROW(transform_grid(grid, {}, std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
   EXPECT_THROW(transform_grid(grid, {}, std::numeric_limits<double>::infinity()), std::invalid_argument);
   EXPECT_THROW(transform_grid(grid, {}, 1e-3), std::invalid_argument);  // 10^10 cells
+  EXPECT_THROW(transform_grid(grid, {0.0, 0.0, std::nan("")}, 1.0), std::invalid_argument);
+  EXPECT_THROW(transform_grid(grid, {HUGE_VAL, 0.0, 0.0}, 1.0), std::invalid_argument);
+}
+
+TEST(Resample, RefusesGridsThatAreNone) {
+  OccupancyGrid broken = make_grid(3, 2, 0.5);
+  broken.cells.pop_back();
+  EXPECT_THROW(transform_grid(broken, {}, 1.0), std::invalid_argument);
+  EXPECT_THROW(crop_to_known(broken), std::invalid_argument);
+  EXPECT_THROW(downsample(broken, 2), std::invalid_argument);
 }
 
 TEST(TransformGrid, FindsNothingUnderAFarCentre) {

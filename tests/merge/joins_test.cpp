@@ -5,6 +5,9 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <vector>
+
+#include "merge/log_odds.hpp"
 
 namespace gridmerge {
 
@@ -124,6 +127,23 @@ TEST(FinestResolution, IsTheLeast) {
   const OccupancyGrid coarse = make_grid(2, 2, 0.2), fine = make_grid(2, 2, 0.05),
                       middle = make_grid(2, 2, 0.1);
   EXPECT_EQ(finest_resolution({{&coarse, {}}, {&fine, {}}, {&middle, {}}}), 0.05);
+}
+
+TEST(FittingResolution, IsCoarserWhereTheMapsWouldNotFit) {
+  const OccupancyGrid map = make_grid(100, 50, 0.1, {}, Cell::free);
+  const auto fits = [&](double far) {
+    return fitting_resolution(0.05, {{&map, {}}, {&map, {far, far, 0.4}}});
+  };
+  EXPECT_EQ(fits(500.0), 0.05);
+  EXPECT_EQ(fits(1500.0), 0.1);
+  for (const double far : {700.0, 815.0, 818.0, 822.0, 4000.0, 1e9}) {
+    const std::vector<PlacedMap> maps{{&map, {}}, {&map, {far, far, 0.4}}};
+    const double resolution = fits(far);
+    EXPECT_NO_THROW(cover(maps, resolution)) << far;  // fits, and none that is much finer does
+    EXPECT_TRUE(resolution == 0.05 || far / (0.5 * resolution) > 16000.0) << far;
+  }
+  const OccupancyGrid unknown = make_grid(2, 2, 0.2);
+  EXPECT_EQ(fitting_resolution(0.3, {{&unknown, {}}}), 0.3);
 }
 
 TEST(MergedResolution, IsTheOneAskedForOrTheFinest) {

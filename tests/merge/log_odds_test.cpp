@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <vector>
 
 #include "merge/drawing.hpp"
 
@@ -165,6 +166,44 @@ TEST(DrawLogOdds, FineCellsSayTheStrongestOccupiedElseTheWeakestFree) {
   EXPECT_EQ(patch.at(1, patch.height - 1), log_odds(0.3f));
   EXPECT_EQ(patch.at(0, patch.height - 2), log_odds(0.45f));
   EXPECT_EQ(patch.row + patch.height, 3);
+}
+
+TEST(DrawLogOdds, ABentMapInFarCoarserCellsKeepsItsWalls) {
+  OccupancyGrid map = make_grid(400, 300, 0.01, {}, Cell::free);
+  draw_line(map, 50, 50, 350, 250);
+  const Deformation bends({-1.0, -1.0, 0.0}, 2.0, 6, 6, [] {
+    std::vector<Point2> shifts(36);
+    for (std::size_t i = 0; i < shifts.size(); ++i)
+      shifts[i] = {i % 3 == 0 ? 0.05 : 0.0, i % 4 == 1 ? 0.04 : 0.0};
+    return shifts;
+  }());
+  for (const double resolution : {0.025, 0.05, 0.1, 1.0, 100.0, 1e12}) {
+    const std::vector<PlacedMap> maps{{&map, {3.0, 1.0, 0.7}}};
+    const Lattice lattice = cover(maps, resolution, {bends});
+    const LogOddsPatch patch = draw_log_odds(maps[0], lattice, bends);
+    // Each wall cell is in a cell of the lattice that says so.
+    for (int row = 0; row < map.height; ++row) {
+      for (int column = 0; column < map.width; ++column) {
+        if (map.at(column, row) != Cell::occupied) continue;
+        const Point2 p = maps[0].T_output_map * bends.bend(map.cell_centre(column, row));
+        const int x = static_cast<int>(std::floor((p.x - lattice.corner.x) / resolution + 1e-6));
+        const int y = static_cast<int>(std::floor((p.y - lattice.corner.y) / resolution + 1e-6));
+        ASSERT_GT(patch.at(x - patch.column, y - patch.row), 0) << resolution;
+      }
+    }
+    // And within the map nothing is unknown.
+    const SE2 T_map_output = inverse(maps[0].T_output_map);
+    for (int y = 0; y < patch.height; ++y) {
+      for (int x = 0; x < patch.width; ++x) {
+        const Point2 centre{lattice.corner.x + (patch.column + x + 0.5) * resolution,
+                            lattice.corner.y + (patch.row + y + 0.5) * resolution};
+        const Point2 p = bends.straighten(T_map_output * centre);
+        if (p.x < resolution || p.y < resolution || p.x > 4.0 - resolution || p.y > 3.0 - resolution)
+          continue;
+        ASSERT_NE(patch.at(x, y), 0) << resolution;
+      }
+    }
+  }
 }
 
 TEST(DrawLogOdds, CoarseCellsAreSpreadOverTheLattice) {

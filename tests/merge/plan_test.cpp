@@ -223,6 +223,40 @@ TEST(PlaceOnPlan, DependsNeitherOnThreadsNorOnTheOrder) {
               one.components[0].members[1 - i].T_component_map);
 }
 
+TEST(PlaceOnPlan, HearsAllOfAPartTheSameWhicheverMapComesFirst) {
+  const Team team;
+  const OccupancyGrid plan = scaled(draw_building(1), 0.8);
+  const auto placed = [&](const std::vector<OccupancyGrid>& maps) {
+    return place_on_plan(maps, plan, merge(maps), {}, at_scales(1.2, 1.3));
+  };
+  const MergeResult one = placed(team.maps);
+  const MergeResult other = placed({team.maps[4], team.maps[3], team.maps[2], team.maps[1], team.maps[0]});
+  ASSERT_EQ(one.plan->parts.size(), 2u);
+  ASSERT_EQ(other.plan->parts.size(), 2u);
+  EXPECT_TRUE(one.plan->parts[0].on_plan());
+  EXPECT_TRUE(other.plan->parts[1].on_plan());
+  EXPECT_NEAR(other.plan->parts[1].probability, one.plan->parts[0].probability, 1e-9);
+  EXPECT_NEAR(other.plan->scale, one.plan->scale, 1e-9);
+}
+
+TEST(PlaceOnPlan, APartWithoutAWallLeftSaysNothing) {
+  // Where one map has walls the other has floor, of which it is surer.
+  const auto room = [](int from, int to) {
+    OccupancyGrid map = make_grid(60, 60, 0.05, {}, Cell::free);
+    for (int i = from; i <= to; ++i)
+      map.at(i, from) = map.at(from, i) = map.at(i, to) = map.at(to, i) = Cell::occupied;
+    for (const Cell cell : map.cells) map.probability.push_back(cell == Cell::occupied ? 0.66F : 0.05F);
+    return map;
+  };
+  const std::vector<OccupancyGrid> maps{room(10, 30), room(33, 50)};
+  const MergeResult merged = merge(maps, {}, {KnownPose{{}, 0.01, 0.01}, KnownPose{{}, 0.01, 0.01}});
+  ASSERT_EQ(merged.components.size(), 1u);
+  ASSERT_EQ(count_cells(merged.components[0].fused.grid).occupied, 0u);
+  const MergeResult result = place_on_plan(maps, Ends().plan, merged, {}, at_scales(1.2, 1.3));
+  ASSERT_EQ(result.plan->parts.size(), 1u);
+  EXPECT_FALSE(result.plan->parts[0].on_plan());
+}
+
 TEST(PlaceOnPlan, AMapThatHangsThereAloneStaysLeftOut) {
   const Ends ends;
   const std::vector<OccupancyGrid> maps{ends.maps[0], draw_building(2)};
@@ -285,6 +319,10 @@ TEST(PlaceOnPlan, RefusesWhatMakesNoSense) {
     }
   };
   fails(make_grid(30, 20, 0.1, {}, Cell::free), apart(2), {}, "no walls");
+  fails(make_grid(30, 20, 0.1, {}, Cell::occupied), apart(2), {}, "floor beside");
+  OccupancyGrid corner = make_grid(100, 80, 0.05);  // encloses nothing
+  for (int i = 10; i < 70; ++i) corner.at(i, 70) = corner.at(10, i) = Cell::occupied;
+  fails(corner, apart(2), {}, "floor beside");
   fails(ends.maps[1], apart(2), {}, "map 1");
   fails(ends.plan, apart(2), at_scales(2.0, 1.0), "scales");
   fails(ends.plan, apart(2), at_scales(0.05, 2.0), "scales");

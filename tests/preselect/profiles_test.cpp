@@ -190,5 +190,14 @@ TEST(Profiles, SayNothingOfWallsThatFaceAllWays) {
   EXPECT_TRUE(align_profiles(room, profiles, 20).empty());
 }
 
+TEST(Profiles, SayNothingOfMapsThatAreTooLong) {
+  OccupancyGrid room = turned_room(0.3);
+  for (const double resolution : {1.0, 1e7, 1e9, 1e300}) {
+    room.resolution = resolution;
+    const WallProfiles profiles = make_profiles(make_likelihood_field(room, 4.0 * resolution));
+    for (const auto& side : profiles.sides) EXPECT_TRUE(side.empty()) << resolution;
+  }
+}
+
 }  // namespace
 }  // namespace gridmerge::internal

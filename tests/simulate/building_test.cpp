@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "gridmerge/simulate/simulate.hpp"
 #include "simulate/floor_plan.hpp"
@@ -100,6 +102,32 @@ TEST(Building, RefusesSidesThatAreNone) {
     EXPECT_THROW(make_building(BuildingKind::hall, side, 20.0, 1), std::invalid_argument);
     EXPECT_THROW(make_building(BuildingKind::hall, 20.0, side, 1), std::invalid_argument);
   }
+}
+
+TEST(Building, RefusesToBeDrawnIfItCannotBe) {
+  const Building good = make_building(BuildingKind::bare, 24.0, 16.0, 5);
+  EXPECT_NO_THROW(draw_building(good, 0.1));
+  const auto refused = [&](auto change) {
+    Building building = good;
+    change(building);
+    EXPECT_THROW(validate(building), std::invalid_argument);
+    EXPECT_THROW(draw_building(building, 0.1), std::invalid_argument);
+    const std::vector<Point2> stays{{10.0, 8.0}};
+    EXPECT_THROW(simulate_way(building, stays, {}), std::invalid_argument);
+  };
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (const double side : {kNaN, -1.0, 0.0, 501.0, 1e12}) {
+    refused([&](Building& building) { building.width = side; });
+    refused([&](Building& building) { building.height = side; });
+  }
+  for (const Point2 end : {Point2{kNaN, 0.0}, Point2{0.0, 1e7}, Point2{-501.0, 0.0}, Point2{0.0, HUGE_VAL}}) {
+    refused([&](Building& building) { building.edges.push_back({{1.0, 1.0}, end}); });
+    refused([&](Building& building) { building.edges.push_back({end, {1.0, 1.0}}); });
+  }
+  for (const double echo : {kNaN, -0.1, 1.1})
+    refused([&](Building& building) { building.edges.push_back({{1.0, 1.0}, {2.0, 1.0}, echo}); });
+  // 50,000 x 50,000 cells.
+  EXPECT_THROW(draw_building({BuildingKind::bare, 500.0, 500.0, {}}, 0.01), std::invalid_argument);
 }
 
 TEST(Building, TheSymmetricOneIsItselfTurnedByHalfATurnInItsWalls) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 
 #include "simulate/random.hpp"
 
@@ -22,7 +23,7 @@ Cell value_at(const OccupancyGrid& grid, Point2 p) {
 TEST(Mapper, DrawsBeamsFreeAndTheirEndsOccupied) {
   Random random(3);
   for (int run = 0; run < 200; ++run) {
-    Mapper mapper(0.1, 6.0);
+    Mapper mapper(0.1, {-6.0, -6.0, 6.0, 6.0});
     const Point2 from{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)};
     const double angle = run % 10 == 0 ? 1.5707963267948966 * (run / 10 % 4) : random.uniform(0.0, 6.3);
     const double length = random.uniform(0.3, 4.0);
@@ -47,8 +48,29 @@ TEST(Mapper, DrawsBeamsFreeAndTheirEndsOccupied) {
   }
 }
 
+TEST(Mapper, DrawsTheSameInAWiderRaster) {
+  Random random(5);
+  for (int run = 0; run < 50; ++run) {
+    const double resolution = random.uniform(0.01, 0.2);
+    Mapper narrow(resolution, {-3.0, -3.0, 3.0, 3.0});
+    Mapper wide(resolution, {-random.uniform(3.0, 9.0), -4.0, 3.0, random.uniform(3.0, 9.0)});
+    const Point2 from{random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0)};
+    const Point2 to{random.uniform(-2.9, 2.9), random.uniform(-2.9, 2.9)};
+    narrow.add_beam(from, to, true);
+    wide.add_beam(from, to, true);
+    EXPECT_EQ(narrow.grid().cells, wide.grid().cells);
+    EXPECT_EQ(narrow.grid().origin, wide.grid().origin);
+  }
+}
+
+TEST(Mapper, ARasterOfTooManyCellsIsRefused) {
+  EXPECT_THROW(Mapper(0.01, {-200.0, -200.0, 200.0, 200.0}), std::invalid_argument);
+  EXPECT_THROW(Mapper(0.01, {0.0, 0.0, 1e12, 1.0}), std::invalid_argument);
+  EXPECT_NO_THROW(Mapper(0.01, {-200.0, 0.0, 200.0, 1.0}));  // long, but narrow
+}
+
 TEST(Mapper, WhatBeamsPassOftenIsFreeAgainAndOutsideIsLeftOut) {
-  Mapper mapper(0.1, 2.0);
+  Mapper mapper(0.1, {-2.0, -2.0, 2.0, 2.0});
   mapper.add_beam({0.0, 0.0}, {1.05, 0.05}, true);
   EXPECT_EQ(value_at(mapper.grid(), {1.05, 0.05}), Cell::occupied);
   for (int i = 0; i < 6; ++i) mapper.add_beam({0.05, 0.05}, {50.0, 0.05}, true);

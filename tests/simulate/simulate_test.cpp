@@ -297,7 +297,36 @@ TEST(SimulateWay, RefusesWaysThatCannotBe) {
   EXPECT_THROW(go({}), std::invalid_argument);
   EXPECT_THROW(go({{10.0, 8.0}, {100.0, 8.0}}), std::invalid_argument);  // through the outer wall
   EXPECT_THROW(go({{-20.0, 8.0}}), std::invalid_argument);
-  EXPECT_THROW(go({{10.0, 8.0}, {std::numeric_limits<double>::quiet_NaN(), 8.0}}), std::invalid_argument);
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(go({{10.0, 8.0}, {kNaN, 8.0}}), std::invalid_argument);
+  EXPECT_THROW(go({{kNaN, kNaN}}), std::invalid_argument);
+  Building open = hall;  // no wall is in the way
+  open.edges.erase(std::remove_if(open.edges.begin(), open.edges.end(),
+                                  [](const Edge& edge) { return edge.a.x > 23.0 && edge.b.x > 23.0; }),
+                   open.edges.end());
+  const std::vector<Point2> far{{10.0, 8.0}, {1e12, 8.0}};
+  EXPECT_THROW(simulate_way(open, far, options), std::invalid_argument);
+}
+
+TEST(SimulateWay, APlaceTwiceIsAPlaceOnce) {
+  const SimulateOptions options = small();
+  const Building hall = make_building(BuildingKind::bare, 24.0, 16.0, 5);
+  const std::vector<Point2> once{{10.0, 8.0}, {14.0, 8.0}};
+  const std::vector<Point2> twice{{10.0, 8.0}, {10.0, 8.0}, {14.0, 8.0}, {14.0, 8.0}};
+  EXPECT_EQ(simulate_way(hall, twice, options).path, simulate_way(hall, once, options).path);
+  const std::vector<Point2> stays{{10.0, 8.0}, {10.0, 8.0}};
+  EXPECT_EQ(simulate_way(hall, stays, options).path, (std::vector<SE2>{{10.0, 8.0, 0.0}}));
+}
+
+TEST(Simulate, MapsOfTooManyCellsAreRefused) {
+  SimulateOptions options = small(BuildingKind::corridor);
+  options.robots = 1;
+  options.width = 500.0;
+  options.height = 8.0;
+  options.resolution = 0.01;
+  options.sensor.range = 200.0;  // the map could be 400 m long both ways
+  options.longest_way = 1.0;
+  EXPECT_THROW(simulate(options), std::invalid_argument);
 }
 
 TEST(Simulate, SparseAndDenseSensorsAndMuchDriftStillGiveMapsAndATruth) {
@@ -336,6 +365,8 @@ TEST(Simulate, RefusesWhatCannotBe) {
   refused([](auto& o) { o.overlap = 0.9, o.starts = {{2.0, 8.0}, {22.0, 8.0}}, o.longest_way = 2.0; });
   refused([](auto& o) { o.starts = {{-5.0, 8.0}, {22.0, 8.0}}; });
   refused([](auto& o) { o.starts = {{2.0, 8.0}}; });
+  refused([](auto& o) { o.starts = {{kNaN, 8.0}, {22.0, 8.0}}; });
+  refused([](auto& o) { o.starts = {{2.0, 8.0}, {kNaN, kNaN}}; });
   refused([](auto& o) { o.headings = {0.0}; });
   refused([](auto& o) { o.headings = {0.0, kNaN}; });
   refused([](auto& o) { o.width = 3.0; });

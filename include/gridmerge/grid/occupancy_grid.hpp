@@ -55,7 +55,7 @@ struct OccupancyGrid {
 /// exact as a floating point number too.
 inline constexpr std::uint32_t kMaxGridCells = std::uint32_t{1} << 28;
 
-/// A grid of `width` x `height` cells, all of them `fill`.
+/// A grid of `width` x `height` cells, all of them `fill`. Throws std::invalid_argument for a negative size.
 GRIDMERGE_EXPORT OccupancyGrid make_grid(int width, int height, double resolution, const SE2& origin = {},
                                          Cell fill = Cell::unknown);
 

@@ -41,6 +41,9 @@ GRIDMERGE_EXPORT Point2 operator*(const SE2& T_a_b, const Point2& p_b);
 /// T_b_a.
 GRIDMERGE_EXPORT SE2 inverse(const SE2& T_a_b);
 
+/// Whether all three numbers of a transform are finite.
+GRIDMERGE_EXPORT bool is_finite(const SE2& T_a_b);
+
 /// A transform for many points, or many products: its sine and cosine are computed once. Points go where the
 /// SE2 takes them, to the bit; products and inverses are those of the SE2s, to rounding.
 class GRIDMERGE_EXPORT ManyPointsTransform {

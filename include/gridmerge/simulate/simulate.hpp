@@ -61,13 +61,19 @@ struct Building {
 inline constexpr double kMinBuildingSide = 8.0;    ///< [m]
 inline constexpr double kMaxBuildingSide = 500.0;  ///< [m]
 
+/// Throws std::invalid_argument, saying what is wrong, for a building that cannot be: sides that are not
+/// positive or above kMaxBuildingSide, edges that end farther than this beyond a side, echoes outside [0, 1].
+/// O(edges).
+GRIDMERGE_EXPORT void validate(const Building& building);
+
 /// An invented building of about `width` x `height` metres. The same arguments give the same building.
 /// Throws std::invalid_argument for sides outside [kMinBuildingSide, kMaxBuildingSide]. O(area); O(area^2)
 /// for an arena, a quarter of a second at the largest.
 GRIDMERGE_EXPORT Building make_building(BuildingKind kind, double width, double height, std::uint64_t seed);
 
 /// The building as a map in its own frame, `resolution` metres a cell: edges occupied, floor that can be
-/// reached free, the rest unknown. Throws std::invalid_argument unless resolution is in [0.01, 1]. O(cells).
+/// reached free, the rest unknown. Throws std::invalid_argument for a building that cannot be, a resolution
+/// outside [0.01, 1], and a map of more than kMaxGridCells. O(cells).
 GRIDMERGE_EXPORT OccupancyGrid draw_building(const Building& building, double resolution);
 
 /// A scanning laser range finder.
@@ -172,15 +178,16 @@ struct Simulation {
 ///
 /// The same options give the same result on the same machine, for any number of threads. Throws
 /// std::invalid_argument, saying what is wrong, for options out of range, a building in which no robot can
-/// stand, starts where none can, and an overlap that cannot be had. O(robots * way * beams), and some ten
-/// times the planning where an overlap is asked for.
+/// stand, starts where none can, an overlap that cannot be had, and a map of more than kMaxGridCells.
+/// O(robots * way * beams), and some ten times the planning where an overlap is asked for.
 GRIDMERGE_EXPORT Simulation simulate(const SimulateOptions& options);
 
 /// The map of one robot that goes along a given way: straight from corner to corner, turning on the spot. Of
 /// the options those count that say how a robot maps: `sensor`, `robot_radius`, `scan_every`, `drift`,
 /// `clutter`, `resolution`, `tidy` and `seed`. `way` is in the building's frame [m]. Throws
-/// std::invalid_argument, saying what is wrong, for such options out of range, a way without a point, one
-/// that goes through a wall, and a start where no robot can stand. O(way * beams).
+/// std::invalid_argument, saying what is wrong, for such options out of range, a building that cannot be, a
+/// way without a point, one that leaves the building's surroundings or goes through a wall, a start where no
+/// robot can stand, and a map of more than kMaxGridCells. O(way * beams).
 GRIDMERGE_EXPORT SimulatedMap simulate_way(const Building& building, std::span<const Point2> way,
                                            const SimulateOptions& options);
 
