@@ -60,9 +60,11 @@ void add_export_option(CLI::App& command, ExportOptions& options) {
   command
       .add_option(
           "--export", options.wanted,
-          "Also write where the maps lie, for other programs: g2o is a pose graph, open-rmf has points "
-          "for fleet adapters, geojson has outlines. If not named, the file is merged.g2o, "
-          "open_rmf.yaml or merged.geojson in DIR. Repeat the option for others")
+          "Also write the merge for other programs: g2o is a pose graph, open-rmf has points "
+          "for fleet adapters, geojson has outlines, geotiff is the merged map in the cells of its finest "
+          "map, "
+          "of any size. If not named, the file is merged.g2o, open_rmf.yaml, merged.geojson or merged.tif in "
+          "DIR. Repeat the option for others")
       ->option_text("FORMAT[=FILE]")
       ->allow_extra_args(false)  // or it would take the maps behind it
       ->check(CLI::Validator([](std::string& text) { return what_is_wrong(text); }, ""));
@@ -79,6 +81,17 @@ std::vector<Export> exports_of(const ExportOptions& options, const std::string& 
   return exports;
 }
 
+namespace {
+
+/// Whether an export may write this file too, beside the one that it is told.
+bool may_write(const Export& one, const std::filesystem::path& file) {
+  const std::filesystem::path a = normal(one.file), b = normal(file);
+  return one.format == ExportFormat::geotiff && a.parent_path() == b.parent_path() &&
+         internal::is_numbered(b.filename(), a.filename());
+}
+
+}  // namespace
+
 void require_two_files(const std::filesystem::path& a, const std::filesystem::path& b,
                        std::string_view writers) {
   if (normal(a) == normal(b))
@@ -87,6 +100,8 @@ void require_two_files(const std::filesystem::path& a, const std::filesystem::pa
 
 void try_result_file(const std::filesystem::path& file, const std::string& directory,
                      const std::vector<std::filesystem::path>& inputs) {
+  if (normal(file) == normal_folder(directory))
+    throw FileError(file, "is the folder of the results: choose another name");
   const bool beside = normal_folder(file.parent_path()) == normal_folder(directory);
   if (beside && internal::is_merge_output(file.filename()))
     throw FileError(file, "is a file that the merge itself writes: choose another name");
@@ -96,7 +111,19 @@ void try_result_file(const std::filesystem::path& file, const std::string& direc
 void try_exports(const std::vector<Export>& exports, const std::string& directory,
                  const std::vector<std::filesystem::path>& inputs) {
   for (std::size_t i = 0; i < exports.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) require_two_files(exports[i].file, exports[j].file, "two exports");
+    for (std::size_t j = 0; j < i; ++j) {
+      require_two_files(exports[i].file, exports[j].file, "two exports");
+      if (may_write(exports[i], exports[j].file) || may_write(exports[j], exports[i].file))
+        throw FileError(exports[i].file,
+                        "may be written by two exports, as a GeoTIFF of a further merged map: "
+                        "choose another name for one");
+    }
+    for (const std::filesystem::path& input : inputs) {
+      if (may_write(exports[i], input))
+        throw FileError(input,
+                        "is an input and might be replaced by a GeoTIFF of a further merged map: choose "
+                        "another name for that");
+    }
     try_result_file(exports[i].file, directory, inputs);
   }
 }
@@ -105,8 +132,8 @@ std::string write_exports(const std::vector<Export>& exports,
                           const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge) {
   std::string text;
   for (const Export& one : exports) {
-    write_export(one.format, one.file, inputs, merge);
-    text += fmt::format("{}: {}\n", name_of(one.format), escape_controls(one.file.string()));
+    for (const std::filesystem::path& file : write_export(one.format, one.file, inputs, merge))
+      text += fmt::format("{}: {}\n", name_of(one.format), escape_controls(file.string()));
   }
   return text;
 }

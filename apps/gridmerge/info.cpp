@@ -121,21 +121,34 @@ NamedMap read_topic(const Bag& bag, const std::string& topic) {
       Recording{maps.topic(), std::move(last.frame_id), maps.messages() - maps.updates(), maps.updates()}};
 }
 
-// Of a bag without a topic, the map of each of its topics.
+// Of a bag without a topic, the map of each of its topics that has one: a robot that has seen nothing yet
+// does not hide the others.
 template <typename Use>
-void for_each_map(const std::string& path, const LoadOptions& load, const Use& use) {
+void for_each_map(const std::string& path, const LoadOptions& load, Console& console, const Use& use) {
   const auto [file, topic] = parse_map_name(path);
   if (!is_bag(file)) return use(NamedMap{path, load_any_map(path, load), std::nullopt});
   const Bag bag(file, load);
   const std::vector<BagTopic> topics = bag.map_topics();
   if (!topic.empty() || topics.empty()) return use(read_topic(bag, topic));
-  for (const BagTopic& one : topics) use(read_topic(bag, one.name));
+  std::vector<NamedMap> maps;
+  std::vector<EmptyTopic> empty;
+  for (const BagTopic& one : topics) {
+    try {
+      maps.push_back(read_topic(bag, one.name));
+    } catch (const EmptyTopic& error) {
+      empty.push_back(error);
+    }
+  }
+  if (maps.empty()) throw empty.front();
+  for (const EmptyTopic& error : empty) console.warn(error.what());
+  for (const NamedMap& map : maps) use(map);
 }
 
 int info(const InfoOptions& options) {
+  Console console(options.common);
   Json maps = Json::array();
   for (const std::string& path : options.maps) {
-    for_each_map(path, options.load, [&](const NamedMap& map) {
+    for_each_map(path, options.load, console, [&](const NamedMap& map) {
       if (options.json) {
         maps.push_back(describe_json(map));
       } else {

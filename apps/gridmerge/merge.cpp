@@ -59,8 +59,8 @@ struct Inputs {
   std::vector<std::filesystem::path> files;  // that all of it was read from
 };
 
-/// A map that is given twice is no second opinion. Says so once for names and once for copies.
-/// Maps of which both have known poses count each, equal or not.
+/// A map that is given twice is no second opinion, except up a tree of merges, which takes every one. Says so
+/// once for names and once for copies. Maps of which both have known poses count each, equal or not.
 void tell_of_copies(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
                     const std::vector<std::optional<KnownPose>>& known_poses, Console& console) {
   std::vector<std::string> twice;   // named before
@@ -82,11 +82,13 @@ void tell_of_copies(const MergeCommandOptions& options, const std::vector<Occupa
       copies.push_back(fmt::format("{} (of {})", options.maps[i], options.maps[*original]));
     }
   }
+  const char* const count = options.search.up_the_tree() ? "each time" : "once";
   if (!twice.empty())
     console.warn(
-        fmt::format("given twice, and counted once: {}{}", fmt::join(twice, ", "),
+        fmt::format("given twice, and counted {}: {}{}", count, fmt::join(twice, ", "),
                     options.known.fix.empty() ? "" : ". --fix takes one map: write it again before another"));
-  if (!copies.empty()) console.warn(fmt::format("copies, which count once: {}", fmt::join(copies, ", ")));
+  if (!copies.empty())
+    console.warn(fmt::format("copies, which count {}: {}", count, fmt::join(copies, ", ")));
 }
 
 Inputs load_inputs(const MergeCommandOptions& options, const KnownPoses& known_poses, Console& console) {
@@ -223,7 +225,7 @@ int run_merge(const MergeCommandOptions& options) {
     not_exported = std::current_exception();
   }
   const AskedMerge asked{options.maps, options.search, map_transform(options.transform).value(),
-                         options.max_false_joins};
+                         options.max_false_joins, options.output_resolution != 0.0};
   const std::string hints = scale_hints(options, inputs.maps, result, console) +
                             describe_doubled(asked, inputs.maps, result, options.common.verbose);
   console.clear();
@@ -282,7 +284,8 @@ void add_files(CLI::App& command, MergeCommandOptions& options) {
       ->type_name("DIR");
   command
       .add_option("--output-resolution", options.output_resolution,
-                  "Metres per cell of the merged map; if not given, those of the finest map")
+                  "Metres per cell of the merged map; if not given, those of the finest map, or so many more "
+                  "that it has at most 2^28 cells")
       ->type_name("METRES")
       ->check(kMetresPerCell);
 }

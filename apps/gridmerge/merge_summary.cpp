@@ -138,6 +138,21 @@ std::string describe_joins(const AskedMerge& asked, const MergeResult& result) {
   return text;
 }
 
+namespace {
+
+/// A merged map that does not fit in the cells of its finest map.
+std::string describe_coarser(const std::vector<OccupancyGrid>& maps, const Component& component) {
+  double finest = component.fused.grid.resolution;
+  for (const Member& member : component.members) finest = std::min(finest, maps[member.map].resolution);
+  if (finest == component.fused.grid.resolution) return {};
+  return fmt::format(
+      "  in cells of {:g} m: of {:g} m, as its finest map, it would have more than 2^28; --export geotiff "
+      "has them all\n",
+      component.fused.grid.resolution, finest);
+}
+
+}  // namespace
+
 std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyGrid>& maps,
                            const MergeResult& result, const std::string& unused_poses) {
   const std::vector<std::string>& names = asked.names;
@@ -147,6 +162,7 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     const Component& component = result.components[i];
     fmt::format_to(out, "{}: {} of {} maps\n", component_file(i), component.members.size(), names.size());
+    if (!asked.resolution) text += describe_coarser(maps, component);
     for (const Member& member : component.members) {
       fmt::format_to(out, "  {}: {}{}\n", escape_controls(names[member.map]),
                      describe_pose(member.T_component_map),

@@ -15,6 +15,7 @@ struct AskedMerge {
   const SearchOptions& search;
   MapTransform transform = MapTransform::rigid;
   double max_false_joins = MergeOptions{}.max_false_joins;
+  bool resolution = false;  ///< that of the merged maps was asked for
 };
 
 /// What became of each comparison, a line each.

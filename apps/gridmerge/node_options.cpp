@@ -171,7 +171,8 @@ void add_merge_options(CLI::App& command, NodeCommandOptions& options) {
       ->capture_default_str();
   command
       .add_option("--output-resolution", node.team.merge.resolution,
-                  "Metres per cell of the merged map; if not given, those of the finest map")
+                  "Metres per cell of the merged map; if not given, those of the finest map, or so many more "
+                  "that it has at most 2^28 cells")
       ->type_name("METRES")
       ->check(kMetresPerCell);
 }

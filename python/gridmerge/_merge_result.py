@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 JoinOutcome: TypeAlias = Literal["refused", "accepted", "rescued", "rejected", "known"]
 """What became of a comparison of two maps: "rescued" is too weak by itself and agrees with the others, "rejected" would
 be believed by itself and contradicts them, "known" lies so because it is known beforehand."""
-ExportFormat: TypeAlias = Literal["g2o", "open-rmf", "geojson"]
+ExportFormat: TypeAlias = Literal["g2o", "open-rmf", "geojson", "geotiff"]
 """What other programs read of a merge."""
 
 
@@ -215,11 +215,12 @@ class MergeResult:
         self._core.save(path, [_arguments.to_bytes(name) for name in self.names], list(self._more_inputs))
 
     def export(self, format: ExportFormat, file: str | os.PathLike[str]) -> None:
-        """Writes where the maps lie for other programs, as `gridmerge merge --export` does.
+        """Writes the merge for other programs, as `gridmerge merge --export` does.
 
         Args:
             format: "g2o" is a pose graph, "open-rmf" has the points by which fleet adapters find where maps lie, and
-                "geojson" has the outlines of all placed maps.
+                "geojson" has the outlines of all placed maps. "geotiff" is the merged map itself in the cells of its
+                finest map, of up to 2^36 cells; further components go to `file`_2 and so on beside it.
             file: is replaced as a whole.
 
         Metres and radians, in the frame of each merged map. Raises ValueError for another format, and FileError if no

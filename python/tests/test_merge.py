@@ -237,7 +237,7 @@ def test_names_of_maps(robots: list[str]) -> None:
     assert gridmerge.merge([bare, bare]).names == ("map 0", "map 1")
 
 
-@pytest.mark.parametrize("format", ["g2o", "open-rmf", "geojson"])
+@pytest.mark.parametrize("format", ["g2o", "open-rmf", "geojson", "geotiff"])
 def test_exports_equal_the_command_lines(
     cli: Cli, robots: list[str], elsewhere: str, tmp_path: Path, format: gridmerge.ExportFormat
 ) -> None:
@@ -250,7 +250,7 @@ def test_exports_equal_the_command_lines(
 
 def test_exports_that_cannot_be(robots: list[str], elsewhere: str, tmp_path: Path) -> None:
     result = gridmerge.merge(robots[:2])
-    with pytest.raises(ValueError, match="format: must be one of g2o, open-rmf, geojson, is 'kml'"):
+    with pytest.raises(ValueError, match="format: must be one of g2o, open-rmf, geojson, geotiff, is 'kml'"):
         result.export("kml", tmp_path / "x")  # type: ignore[arg-type]
     with pytest.raises(gridmerge.FileError, match="No such file or directory"):
         result.export("g2o", tmp_path / "no" / "x")

@@ -328,6 +328,8 @@ std::vector<StoredMessage> McapFile::find(const std::vector<BagTopic>& topics) {
         add(file_.read(offset, head_of(head.bytes)), head.bytes, 0, offset + kMessageHeadBytes);
       return head.kind != McapRecord::data_end;
     });
+    // Of the last chunk of a file that is cut off, indexes may be missing.
+    if (pending && is_cut_off_) pending->has_index = false;
     finish_pending();
   });
   return messages;

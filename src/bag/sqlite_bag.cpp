@@ -44,12 +44,23 @@ std::string uri_of(const std::filesystem::path& path, bool is_at_rest) {
   return uri + (is_at_rest ? "?mode=ro&immutable=1" : "?mode=ro");
 }
 
-// Whether nobody is writing to the database, or was when the recorder ended. Then it can be read without any
-// of the files that SQLite makes beside one.
-bool is_at_rest(const std::filesystem::path& path) {
+// What a recorder that still writes, or was killed, has left beside the database; nothing after one that
+// ended well. Then it can be read without any of the files that SQLite makes beside one.
+std::filesystem::path log_of(const std::filesystem::path& path) {
   std::error_code error;
-  return !std::filesystem::exists(path.string() + "-wal", error) &&
-         !std::filesystem::exists(path.string() + "-journal", error);
+  for (const char* const ending : {"-wal", "-journal"}) {
+    std::filesystem::path log = path;
+    log += ending;
+    if (std::filesystem::exists(log, error)) return log;
+  }
+  return {};
+}
+
+// The file itself, where links lead to it: its log lies beside that.
+std::filesystem::path without_links(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::path file = std::filesystem::canonical(path, error);
+  return error ? path : file;
 }
 
 std::string text_of(sqlite3_stmt* statement, int column) {
@@ -92,7 +103,9 @@ SqliteBag::~SqliteBag() = default;
 
 void SqliteBag::open(const std::filesystem::path& path) {
   sqlite3* database = nullptr;
-  const int code = sqlite3_open_v2(uri_of(path, is_at_rest(path)).c_str(), &database,
+  const std::filesystem::path file = without_links(path);
+  log_ = log_of(file);
+  const int code = sqlite3_open_v2(uri_of(file, log_.empty()).c_str(), &database,
                                    SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr);
   database_.reset(database);
   if (!database_) throw std::bad_alloc();
@@ -112,6 +125,11 @@ void SqliteBag::throw_error() const {
   if (code == SQLITE_NOMEM) throw std::bad_alloc();
   if (code == SQLITE_TOOBIG)
     throw ParseError(fmt::format("a message exceeds the limit of {} bytes", max_message_bytes_));
+  if (!log_.empty() && (code == SQLITE_CANTOPEN || (code & 0xFF) == SQLITE_READONLY))
+    throw ParseError(fmt::format(
+        "{} beside it holds what a recorder wrote last, and reading that takes writing beside it: copy "
+        "both files to a folder of yours",
+        log_.filename().string()));
   throw ParseError(fmt::format("SQLite cannot read it: {}", sqlite3_errmsg(database_.get())));
 }
 

@@ -50,6 +50,7 @@ class SqliteBag : public BagStorage {
   auto working(const Work& work);
 
   std::filesystem::path shown_;
+  std::filesystem::path log_;  // that a recorder has left; empty if none
   std::size_t max_message_bytes_;
   std::unique_ptr<sqlite3, Close> database_;
   std::vector<BagTopic> topics_;

@@ -30,4 +30,9 @@ struct Box {
   }
 };
 
+/// Whether the two have a point in common; an empty one has none.
+inline bool overlap(const Box& a, const Box& b) {
+  return a.min_x <= b.max_x && b.min_x <= a.max_x && a.min_y <= b.max_y && b.min_y <= a.max_y;
+}
+
 }  // namespace gridmerge::internal

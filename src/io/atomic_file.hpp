@@ -9,8 +9,8 @@
 
 namespace gridmerge::internal {
 
-/// A file in two steps: the constructor writes the bytes to a temporary file in the same directory and
-/// flushes them to the disk; commit() renames it into place and flushes the directory. Without commit the
+/// A file in two steps: bytes go to a temporary file in the same directory, and are flushed to the disk;
+/// commit() renames it into place and flushes the directory. Without commit the
 /// temporary file disappears with this object. What a killed program has left is removed by the next file
 /// that is staged in the same directory; a lock tells it from the file of a program that still runs.
 ///
@@ -20,20 +20,28 @@ namespace gridmerge::internal {
 /// umask. A process over its file size limit gets a FileError only if it ignores SIGXFSZ.
 class GRIDMERGE_INTERNAL_EXPORT StagedFile {
  public:
-  /// Throws FileError; then nothing is left behind.
+  /// Without bytes yet. Throws FileError; then nothing is left behind.
+  explicit StagedFile(std::filesystem::path path);
+  /// With these, flushed. Throws FileError; then nothing is left behind.
   StagedFile(std::filesystem::path path, std::string_view bytes);
   ~StagedFile();
   StagedFile(const StagedFile&) = delete;
   StagedFile& operator=(const StagedFile&) = delete;
+
+  /// Writes more bytes. Throws FileError.
+  void append(std::string_view bytes);
 
   /// Once only. Throws FileError: the destination is as it was, or, if the directory alone cannot be flushed,
   /// it is the new file.
   void commit();
 
  private:
+  void flush();
+
   std::filesystem::path path_;
   std::filesystem::path temporary_;  // empty once it is gone
   int descriptor_ = -1;              // open, as it holds the lock
+  bool is_flushed_ = false;
 };
 
 /// One file, staged and committed. Throws FileError.

@@ -10,8 +10,11 @@ namespace gridmerge::internal {
 /// The system's words for an errno.
 std::string describe_errno(int error);
 
-/// Writes all bytes and flushes them to the disk. 0, or the errno that stopped it.
-int write_and_flush(int descriptor, std::string_view bytes);
+/// Writes all bytes. 0, or the errno that stopped it.
+int write_all(int descriptor, std::string_view bytes);
+
+/// Flushes a file to the disk, or what a directory lists. 0, or an errno.
+int flush_descriptor(int descriptor);
 
 /// Flushes a file, or what a directory lists, so that a rename in it outlives a power cut. 0, or an errno.
 int flush_path(const std::filesystem::path& path);

@@ -78,9 +78,11 @@ void settle(const fs::path& directory) {
   }
 }
 
-/// A file system such as FAT, which has no links.
+/// A file system such as FAT, which has no links. Folders that a virtual machine shares with its host say
+/// that they are read-only, or speak of the protocol, though files can be written.
 bool has_no_links(int error) {
-  return error == EPERM || error == ENOSYS || error == ENOTSUP || error == EOPNOTSUPP;
+  return error == EPERM || error == ENOSYS || error == ENOTSUP || error == EOPNOTSUPP || error == EROFS ||
+         error == EPROTO || error == EINVAL;
 }
 
 }  // namespace
@@ -110,7 +112,8 @@ void FileSet::add(const std::string& name, std::string_view bytes) {
   const int descriptor =
       ::open((directory_ / kWork / kNew / name).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) fail(path, errno);
-  const int error = write_and_flush(descriptor, bytes);
+  int error = write_all(descriptor, bytes);
+  if (error == 0) error = flush_descriptor(descriptor);
   ::close(descriptor);
   if (error != 0) fail(path, error);
   added_.push_back(name);

@@ -23,14 +23,15 @@ constexpr const char* kImagesRead = "PGM, PPM, PNG, BMP or JPEG";
 }  // namespace
 
 std::size_t most_image_bytes(std::string_view head, std::size_t max_pixels) {
-  // A plain PPM writes a pixel as three numbers of up to five digits, each with a space.
-  constexpr std::size_t kOfPlainPnm = 24, kOfOthers = 8, kRest = std::size_t{8} << 20;
+  // A plain PPM writes a pixel as three numbers of up to five digits, each with a space. The rest is what
+  // cameras and programs say of a picture: thumbnails, depths, texts.
+  constexpr std::size_t kOfPlainPnm = 24, kOfOthers = 8, kRest = std::size_t{64} << 20;
   const std::optional<ImageSize> size = looks_like_png(head)    ? png_size(head)
                                         : looks_like_pnm(head)  ? pnm_size(head)
                                         : looks_like_bmp(head)  ? bmp_size(head)
                                         : looks_like_jpeg(head) ? jpeg_size(head)
                                                                 : std::nullopt;
-  if (!size) return head.size();
+  if (!size) return looks_like_jpeg(head) ? kRest : head.size();  // of a JPEG it may come behind all that
   check_image_size(size->width, size->height, max_pixels);
   return size->width * size->height * (is_plain_pnm(head) ? kOfPlainPnm : kOfOthers) + kRest;
 }

@@ -23,7 +23,7 @@ struct MapImage {
 /// So many first bytes of a file tell what it is.
 inline constexpr std::size_t kTellingBytes = 64;
 
-/// The header of an image lies within so many first bytes.
+/// The header of an image lies within so many first bytes; that of a JPEG may come later.
 inline constexpr std::size_t kHeaderBytes = std::size_t{1} << 20;
 
 struct ImageSize {
@@ -32,8 +32,8 @@ struct ImageSize {
 };
 
 /// So many bytes of a file are worth reading that begins with `head` (kHeaderBytes of it, or all): 8 a pixel,
-/// which are RGBA of 16 bits, uncompressed, and some more for the rest. Those of `head` where it does not
-/// tell the size. Throws ParseError for an image of more than `max_pixels`.
+/// which are RGBA of 16 bits, uncompressed, and some more for the rest. Those of `head` where it is of no
+/// image that tells its size. Throws ParseError for an image of more than `max_pixels`.
 std::size_t most_image_bytes(std::string_view head, std::size_t max_pixels);
 
 /// Whether the bytes begin as an image of a kind that decode_image() reads.

@@ -93,7 +93,7 @@ Component make_component(const NodeGroup& group, const JoinProblem& problem,
     placed.push_back({inputs[group[i].map].grid, component.members[i].T_component_map});
   std::sort(component.members.begin(), component.members.end(),
             [](const Member& a, const Member& b) { return a.map < b.map; });
-  component.fused = fuse(placed, merged_resolution(options.resolution, placed), deformations);
+  component.fused = fuse(placed, merged_resolution(options.resolution, placed, deformations), deformations);
   return component;
 }
 

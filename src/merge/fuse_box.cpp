@@ -40,9 +40,9 @@ class Totals {
     });
   }
 
-  SharedCells draw_row(int row, OccupancyGrid& fused) const {
+  SharedCells draw_row(int row, OccupancyGrid& fused, const LatticeCell& first) const {
     SharedCells shared;
-    std::size_t from = index(box_.left, row), to = fused.index(box_.left, row);
+    std::size_t from = index(box_.left, row), to = fused.index(box_.left - first.column, row - first.row);
     for (int column = box_.left; column < box_.right; ++column, ++from, ++to) {
       const bool conflict = (witnesses_[from] & kSawFree) != 0 && (witnesses_[from] & kSawOccupied) != 0;
       if (conflict) ++shared.conflicting;
@@ -91,14 +91,15 @@ bool FusedInputs::is_any_painted() const {
 }
 
 SharedCells fuse_box(const std::vector<PlacedMap>& inputs, const std::vector<Deformation>& deformations,
-                     const Lattice& lattice, const CellBox& box, OccupancyGrid& fused) {
+                     const Lattice& lattice, const CellBox& box, OccupancyGrid& fused,
+                     const LatticeCell& first) {
   Totals totals(box);
   for (std::size_t i = 0; i < inputs.size(); ++i)
     totals.add(
         draw_log_odds(inputs[i], lattice, i < deformations.size() ? deformations[i] : Deformation(), box));
   std::vector<SharedCells> of_rows(static_cast<std::size_t>(box.height()));
   parallel_rows(box.bottom, box.top, [&](int row) {
-    of_rows[static_cast<std::size_t>(row - box.bottom)] = totals.draw_row(row, fused);
+    of_rows[static_cast<std::size_t>(row - box.bottom)] = totals.draw_row(row, fused, first);
   });
   SharedCells shared;
   for (const SharedCells& of_row : of_rows) shared.add(of_row);

@@ -38,9 +38,16 @@ struct SharedCells {
   }
 };
 
+/// A cell of a lattice.
+struct LatticeCell {
+  int column = 0;
+  int row = 0;
+};
+
 /// Fuses maps as fuse() does in the cells of `box`, and writes them to `fused`, a grid with probabilities
-/// whose cells are the lattice's. O(cells of the inputs + cells of the box).
+/// whose cells are those of the lattice from `first` on. O(cells of the inputs + cells of the box).
 SharedCells fuse_box(const std::vector<PlacedMap>& inputs, const std::vector<Deformation>& deformations,
-                     const Lattice& lattice, const CellBox& box, OccupancyGrid& fused);
+                     const Lattice& lattice, const CellBox& box, OccupancyGrid& fused,
+                     const LatticeCell& first = {});
 
 }  // namespace gridmerge::internal

@@ -25,6 +25,24 @@ void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution) {
   }
 }
 
+namespace {
+
+/// What all cells of the maps cover, known or not, in the output frame [m].
+Box box_of_grids(const std::vector<PlacedMap>& maps) {
+  Box box;
+  for (const PlacedMap& one : maps) {
+    const ManyPointsTransform T_output_grid(one.T_output_map * one.map->origin);
+    const double width = one.map->width * one.map->resolution;
+    const double height = one.map->height * one.map->resolution;
+    for (const double x : {0.0, width}) {
+      for (const double y : {0.0, height}) box.add(T_output_grid * Point2{x, y});
+    }
+  }
+  return box;
+}
+
+}  // namespace
+
 double finest_resolution(const std::vector<PlacedMap>& maps) {
   return std::min_element(
              maps.begin(), maps.end(),
@@ -34,16 +52,27 @@ double finest_resolution(const std::vector<PlacedMap>& maps) {
 
 double fitting_resolution(double resolution, const std::vector<PlacedMap>& maps,
                           const std::vector<Deformation>& deformations) {
-  const Box box = covered_box(maps, deformations);
-  if (box.empty()) return resolution;
   // A cell more on either side than the box is long, whatever the lattice continues.
-  const auto cells = [&](double low, double high) { return (high - low) / resolution + 2.0; };
-  while (cells(box.min_x, box.max_x) * cells(box.min_y, box.max_y) > kMaxGridCells) resolution *= 2.0;
+  const auto fits = [&](const Box& box) {
+    return box.empty() ||
+           ((box.max_x - box.min_x) / resolution + 2.0) * ((box.max_y - box.min_y) / resolution + 2.0) <=
+               kMaxGridCells;
+  };
+  const bool is_bent = std::any_of(deformations.begin(), deformations.end(),
+                                   [](const Deformation& one) { return !one.is_identity(); });
+  if (!is_bent && fits(box_of_grids(maps))) return resolution;
+  const Box box = covered_box(maps, deformations);
+  while (!fits(box)) resolution *= 2.0;
   return resolution;
 }
 
-double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps) {
-  return asked_for > 0.0 ? asked_for : finest_resolution(maps);
+double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps,
+                         const std::vector<Deformation>& deformations) {
+  // Coarser still, maps would be a few cells: poses so far apart are a mistake, and fuse() refuses them.
+  constexpr double kMostCoarser = 16.0;
+  if (asked_for > 0.0) return asked_for;
+  const double finest = finest_resolution(maps);
+  return std::min(kMostCoarser * finest, fitting_resolution(finest, maps, deformations));
 }
 
 FusedMap fuse_members(const std::vector<Member>& members, const std::vector<std::size_t>& places,
@@ -55,7 +84,7 @@ FusedMap fuse_members(const std::vector<Member>& members, const std::vector<std:
     placed.push_back({grids[member.map], member.T_component_map});
     deformations.push_back(member.deformation);
   }
-  return fuse(placed, merged_resolution(resolution, placed), deformations);
+  return fuse(placed, merged_resolution(resolution, placed, deformations), deformations);
 }
 
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match) {

@@ -19,12 +19,15 @@ void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution);
 double finest_resolution(const std::vector<PlacedMap>& maps);
 
 /// The resolution in which these maps are fused to be compared with another one: `resolution`, or so much
-/// coarser that the result has no more than kMaxGridCells. `deformations` as of fuse(). O(cells).
+/// coarser, by a power of two, that the result has no more than kMaxGridCells. `deformations` as of fuse().
+/// O(maps) where they fit by far, else O(cells).
 double fitting_resolution(double resolution, const std::vector<PlacedMap>& maps,
                           const std::vector<Deformation>& deformations = {});
 
-/// The resolution of a merged map of these: the one that is asked for, or the finest of theirs if that is 0.
-GRIDMERGE_INTERNAL_EXPORT double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps);
+/// The resolution of a merged map of these: the one that is asked for, or, if that is 0, the finest of theirs
+/// or so much coarser that the merged map fits, up to 16 times. O(1), O(cells) where it may not fit.
+GRIDMERGE_INTERNAL_EXPORT double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps,
+                                                   const std::vector<Deformation>& deformations = {});
 
 /// The members at these places, fused where they lie and bent as they say. `grids[i]` is input map i.
 GRIDMERGE_INTERNAL_EXPORT FusedMap fuse_members(const std::vector<Member>& members,

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <tuple>
 
 #include "grid/parallel.hpp"
@@ -328,7 +329,7 @@ Box covered_box(const std::vector<PlacedMap>& inputs, const std::vector<Deformat
 }
 
 Lattice cover(const std::vector<PlacedMap>& inputs, double resolution,
-              const std::vector<Deformation>& deformations) {
+              const std::vector<Deformation>& deformations, const LatticeLimits& limits) {
   if (!std::isfinite(resolution) || resolution <= 0.0) {
     throw std::invalid_argument("the output's resolution must be a positive number of metres");
   }
@@ -342,8 +343,13 @@ Lattice cover(const std::vector<PlacedMap>& inputs, double resolution,
   const Point2 corner{snap(box.min_x, anchor.x), snap(box.min_y, anchor.y)};
   const double columns = std::max(1.0, std::ceil((box.max_x - corner.x) / resolution - kSlack));
   const double rows = std::max(1.0, std::ceil((box.max_y - corner.y) / resolution - kSlack));
-  if (!(columns * rows <= kMaxGridCells))
-    throw std::invalid_argument("the merged map would exceed 2^28 cells");
+  const auto require_within = [](double size, double limit, const char* what) {
+    if (!(size <= limit))
+      throw std::invalid_argument("the merged map would exceed 2^" + std::to_string(std::ilogb(limit)) +
+                                  what);
+  };
+  require_within(columns * rows, limits.cells, " cells");
+  require_within(std::max(columns, rows), limits.side, " cells a side");
   return {static_cast<int>(columns), static_cast<int>(rows), resolution, corner};
 }
 

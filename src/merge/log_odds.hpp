@@ -28,14 +28,21 @@ struct Lattice {
 /// invalid grid or a transform that is not finite. `deformations` as of fuse(). O(cells of the inputs).
 Box covered_box(const std::vector<PlacedMap>& inputs, const std::vector<Deformation>& deformations);
 
+/// How large a lattice may be: powers of two.
+struct LatticeLimits {
+  double cells = kMaxGridCells;
+  double side = kMaxGridCells;  ///< cells of a side
+};
+
 /// The lattice of `resolution` [m] that just covers the known cells of all inputs; one cell when there is
 /// none. It continues the cell boundaries of the input that lies at the identity, so that the map that gives
 /// the frame is not shifted by a part of a cell; without such an input it starts at the lower-left corner of
 /// what it covers. The inputs' order plays no part. Throws std::invalid_argument for an invalid grid, a
-/// transform that is not finite, a resolution that is not positive, or a lattice of more than 2^28 cells.
+/// transform that is not finite, a resolution that is not positive, or a lattice beyond the limits.
 /// `deformations` as of fuse(). O(cells of the inputs).
 GRIDMERGE_INTERNAL_EXPORT Lattice cover(const std::vector<PlacedMap>& inputs, double resolution,
-                                        const std::vector<Deformation>& deformations = {});
+                                        const std::vector<Deformation>& deformations = {},
+                                        const LatticeLimits& limits = {});
 
 /// Log-odds are kept in steps of 1/1024 nat, so that sums are exact and their order does not matter.
 inline constexpr double kLogOddsPerNat = 1024.0;

@@ -54,11 +54,7 @@ std::string geojson_text(const NamedMerge& merge) {
   for (std::size_t i = 0; i < merge.result.components.size(); ++i) {
     const Component& component = merge.result.components[i];
     const std::string file = component_file(i);
-    const std::optional<std::size_t> frame = frame_of(component);
-    const std::optional<PlanPlacement>& plan = merge.result.plan;
-    frames[file] = frame  ? "that of the map " + merge.names.at(*frame)
-                   : plan ? "that of the plan " + plan->name + ", in metres of the maps"
-                          : "that of the poses that were given";
+    frames[file] = "that of " + frame_owner(merge, component);
     std::vector<Json> members;
     std::vector<Point2> all;
     for (const Member& member : component.members) {

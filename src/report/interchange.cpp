@@ -7,7 +7,10 @@
 #include <system_error>
 
 #include "gridmerge/report/merge_output.hpp"
+#include "gridmerge/report/merge_record.hpp"
 #include "io/atomic_file.hpp"
+#include "report/json_values.hpp"
+#include "report/output_names.hpp"
 
 namespace gridmerge {
 
@@ -19,18 +22,39 @@ struct Format {
   ExportFormat format;
   const char* name;
   const char* file;
-  std::string (*text)(const NamedMerge&);
+  std::string (*text)(const NamedMerge&);  // null of one that is no text
 };
 
-constexpr std::array<Format, 3> kFormats{{
+constexpr std::array<Format, 4> kFormats{{
     {ExportFormat::g2o, "g2o", "merged.g2o", &g2o_text},
     {ExportFormat::open_rmf, "open-rmf", "open_rmf.yaml", &open_rmf_text},
     {ExportFormat::geojson, "geojson", "merged.geojson", &geojson_text},
+    {ExportFormat::geotiff, "geotiff", "merged.tif", nullptr},
 }};
 
 const Format& of(ExportFormat format) {
   return *std::find_if(kFormats.begin(), kFormats.end(),
                        [format](const Format& one) { return one.format == format; });
+}
+
+void check_placed(const NamedMerge& merge) {
+  if (merge.result.components.empty())
+    throw std::invalid_argument("no two maps were joined, so that no map has a place to tell");
+  for (const Component& component : merge.result.components) {
+    for (const Member& member : component.members) {
+      if (member.map >= merge.names.size() || member.map >= merge.maps.size())
+        throw std::out_of_range("there are fewer names or maps than the result speaks of");
+    }
+  }
+}
+
+/// No file that the maps were read from is replaced.
+void protect(const std::filesystem::path& file, const std::vector<std::filesystem::path>& inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code absent;
+    if (std::filesystem::equivalent(file, input, absent))
+      throw FileError(file, "is an input and would be replaced: choose another file for the export");
+  }
 }
 
 }  // namespace
@@ -60,25 +84,33 @@ const char* export_file(ExportFormat format) {
 }
 
 std::string export_text(ExportFormat format, const NamedMerge& merge) {
-  if (merge.result.components.empty())
-    throw std::invalid_argument("no two maps were joined, so that no map has a place to tell");
+  if (of(format).text == nullptr)
+    throw std::invalid_argument(std::string(of(format).name) + " is no text: write_export() writes it");
+  check_placed(merge);
   return of(format).text(merge);
 }
 
-void write_export(ExportFormat format, const std::filesystem::path& file,
-                  const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge) {
-  for (const std::filesystem::path& input : inputs) {
-    std::error_code absent;
-    if (std::filesystem::equivalent(file, input, absent))
-      throw FileError(file, "is an input and would be replaced: choose another file for the export");
-  }
-  std::string text;
+std::vector<std::filesystem::path> write_export(ExportFormat format, const std::filesystem::path& file,
+                                                const std::vector<std::filesystem::path>& inputs,
+                                                const NamedMerge& merge) {
+  const bool is_text = of(format).text != nullptr;
+  const std::size_t files = is_text ? 1 : std::max<std::size_t>(1, merge.result.components.size());
+  for (std::size_t i = 0; i < files; ++i) protect(numbered(file, i), inputs);
   try {
-    text = export_text(format, merge);
+    check_placed(merge);
+    if (!is_text) return write_geotiff(file, merge);
+    write_file_atomically(file, export_text(format, merge));
   } catch (const std::invalid_argument& error) {
     throw FileError(file, std::string("is not written: ") + error.what());
   }
-  write_file_atomically(file, text);
+  return {file};
+}
+
+std::string internal::frame_owner(const NamedMerge& merge, const Component& component) {
+  const std::optional<std::size_t> frame = frame_of(component);
+  if (frame) return "the map " + merge.names.at(*frame);
+  const std::optional<PlanPlacement>& plan = merge.result.plan;
+  return plan ? "the plan " + plan->name + ", in metres of the maps" : "the poses that were given";
 }
 
 }  // namespace gridmerge

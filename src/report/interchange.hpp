@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,10 +11,18 @@
 
 namespace gridmerge::internal {
 
-// The texts of export_text(), one a format.
+// The texts of export_text(), one a format that is a text.
 std::string g2o_text(const NamedMerge& merge);
 std::string open_rmf_text(const NamedMerge& merge);
 std::string geojson_text(const NamedMerge& merge);
+
+/// A GeoTIFF of each merged map: `file`, and for further components files beside it (numbered()). Returns all
+/// of them. Runs in the calling TBB arena. Throws FileError, and std::invalid_argument for a merged map that
+/// is too large even so; then no file is there that was not. O(cells).
+std::vector<std::filesystem::path> write_geotiff(const std::filesystem::path& file, const NamedMerge& merge);
+
+/// Whose frame a component's merged map is in: "the map robot1.yaml".
+std::string frame_owner(const NamedMerge& merge, const Component& component);
 
 /// A text in double quotes, as YAML and JSON have it: one line of printable characters. What is not UTF-8
 /// becomes U+FFFD. O(length).

@@ -19,6 +19,7 @@
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/report/merge_record.hpp"
 #include "io/add_map.hpp"
+#include "io/destination.hpp"
 #include "io/directory_names.hpp"
 #include "io/made_directories.hpp"
 #include "report/output_names.hpp"
@@ -38,14 +39,7 @@ constexpr const char* kTransforms = "transforms.json";
 
 // merged.yaml, merged_2.yaml, and so on, and the same as .pgm.
 bool is_merged_map(const fs::path& file) {
-  if (file.extension() != ".yaml" && file.extension() != ".pgm") return false;
-  constexpr std::string_view kFirst = "merged", kFurther = "merged_";
-  constexpr std::size_t kMostDigits = 6;  // what is longer is a date
-  const std::string stem = file.stem().string();
-  if (stem == kFirst) return true;
-  const std::string_view number = std::string_view(stem).substr(std::min(stem.size(), kFurther.size()));
-  return stem.starts_with(kFurther) && !number.empty() && number.size() <= kMostDigits && number != "1" &&
-         number.front() != '0' && number.find_first_not_of("0123456789") == std::string_view::npos;
+  return is_numbered(file, "merged.yaml") || is_numbered(file, "merged.pgm");
 }
 
 }  // namespace
@@ -54,11 +48,29 @@ bool internal::is_merge_output(const fs::path& name) {
   return is_merged_map(name) || name == kPreview || name == kReport || name == kTransforms;
 }
 
+fs::path internal::numbered(const fs::path& file, std::size_t component) {
+  if (component == 0) return file;
+  return file.parent_path() /
+         fmt::format("{}_{}{}", file.stem().string(), component + 1, file.extension().string());
+}
+
+bool internal::is_numbered(const fs::path& name, const fs::path& file) {
+  if (name == file) return true;
+  if (name.extension() != file.extension()) return false;
+  constexpr std::size_t kMostDigits = 6;  // what is longer is a date
+  const std::string stem = name.stem().string(), first = file.stem().string() + "_";
+  if (!stem.starts_with(first)) return false;
+  const std::string_view number = std::string_view(stem).substr(first.size());
+  return !number.empty() && number.size() <= kMostDigits && number != "1" && number.front() != '0' &&
+         number.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 namespace {
 
 bool is_export(const fs::path& name) {
   const auto formats = export_formats();
-  return std::any_of(formats.begin(), formats.end(),
+  return is_numbered(name, export_file(ExportFormat::geotiff)) ||
+         std::any_of(formats.begin(), formats.end(),
                      [&](ExportFormat format) { return name == export_file(format); });
 }
 
@@ -75,12 +87,8 @@ std::vector<fs::path> outputs_in(const fs::path& directory) {
 
 // Maps and exports of an earlier run that this one has none for. Who asks for an export writes it later.
 void remove_stale(FileSet& files, const fs::path& directory, std::size_t components) {
-  std::error_code absent;
-  for (const ExportFormat format : export_formats()) {
-    const char* const name = export_file(format);
-    if (fs::exists(directory / kTransforms, absent) && fs::is_regular_file(directory / name, absent))
-      files.remove(name);
-  }
+  std::error_code error;
+  const bool is_of_a_merge = fs::exists(directory / kTransforms, error);
   std::set<fs::path> current;
   for (std::size_t i = 0; i < components; ++i) {
     const fs::path yaml = directory / component_file(i);
@@ -88,9 +96,11 @@ void remove_stale(FileSet& files, const fs::path& directory, std::size_t compone
     current.insert(fs::path(yaml).replace_extension(".pgm"));
   }
   for (const fs::path& path : outputs_in(directory)) {
-    std::error_code error;
-    if (!is_merged_map(path.filename()) || current.contains(path)) continue;
-    if (!fs::is_directory(path, error)) files.remove(path.filename().string());  // or it is no map of ours
+    const fs::path name = path.filename();
+    const bool is_stale = is_merged_map(name)
+                              ? !current.contains(path) && !fs::is_directory(path, error)
+                              : is_export(name) && is_of_a_merge && fs::is_regular_file(path, error);
+    if (is_stale) files.remove(name.string());
   }
 }
 
@@ -113,13 +123,12 @@ std::optional<double> check_merged_size(const std::vector<std::string>& names,
                                         const std::vector<OccupancyGrid>& maps, double resolution) {
   if (names.size() < maps.size()) throw std::out_of_range("there are fewer names than maps");
   if (maps.empty()) return std::nullopt;
-  double diagonals = 0.0, finest = maps.front().resolution;
+  double diagonals = 0.0;
   for (const OccupancyGrid& map : maps) {
     diagonals += std::hypot(map.width, map.height) * map.resolution;
-    finest = std::min(finest, map.resolution);
   }
-  const bool is_asked_for = resolution != 0.0;
-  if (!is_asked_for) resolution = finest;
+  const bool is_asked_for =
+      resolution != 0.0;  // otherwise the merged map is drawn coarser where it has to be
   // With room to spare, in two digits.
   const auto fitting = [&](double cells) {
     const double least = resolution * std::sqrt(2.0 * cells / kMaxGridCells);
@@ -133,11 +142,12 @@ std::optional<double> check_merged_size(const std::vector<std::string>& names,
       throw FileError(
           names[i],
           fmt::format("lies too far from zero: with the other maps it may reach beyond {} m", kMaxOrigin));
+    if (!is_asked_for) continue;
     const double ratio = map.resolution / resolution;
     double own = static_cast<double>(map.cells.size()) * ratio * ratio;
     if (own > kMaxGridCells && count_cells(map).known() > 0)
       own = static_cast<double>(crop_to_known(map).cells.size()) * ratio * ratio;
-    if (own > kMaxGridCells && is_asked_for)
+    if (own > kMaxGridCells)
       throw FileError(names[i],
                       fmt::format("alone has {:.3g} cells of {:.4g} m, and a merged map may have 2^28: "
                                   "choose an output resolution of {:.2g} m (--output-resolution)",
@@ -152,6 +162,8 @@ void prepare_merge_output(const fs::path& directory, const std::vector<fs::path>
   if (::access(directory.c_str(), W_OK | X_OK) != 0)
     throw FileError(directory, "cannot be written to: " + std::generic_category().message(errno));
   protect(inputs, directory);
+  for (const char* const name : {"merged.yaml", "merged.pgm", kPreview, kReport, kTransforms})
+    check_destination(directory / name);
 }
 
 void write_merge_output(const fs::path& directory, const std::vector<fs::path>& inputs,

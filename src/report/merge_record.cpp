@@ -7,7 +7,6 @@
 #include <map>
 #include <memory>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -16,9 +15,9 @@
 
 #include "gridmerge/io/map_file.hpp"
 #include "io/file_reader.hpp"
-#include "merge/copies.hpp"
 #include "merge/joins.hpp"
 #include "report/deformation_json.hpp"
+#include "report/fused_places.hpp"
 #include "report/json_reader.hpp"
 #include "report/json_values.hpp"
 #include "report/plan_json.hpp"
@@ -332,28 +331,11 @@ MergeRecord read_merge_record(const std::filesystem::path& directory) {
 namespace {
 
 /// The places of the members that were fused.
-std::vector<std::size_t> fused_members(const Component& component, const std::vector<OccupancyGrid>& maps,
-                                       bool without_their_copies) {
-  if (!without_their_copies) {
-    std::vector<std::size_t> all(component.members.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    return all;
-  }
-  std::vector<std::unique_ptr<const PreparedMap>> prepared;
-  std::vector<PlacedInput> placed;
-  for (const Member& member : component.members) {
-    prepared.push_back(std::make_unique<const PreparedMap>(maps[member.map]));
-    placed.push_back({prepared.back().get(), member.T_component_map});
-  }
-  return without_copies(placed);
-}
-
 }  // namespace
 
 std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<OccupancyGrid>& maps,
                                     const std::filesystem::path& directory) {
   if (maps.size() != record.names.size()) throw std::invalid_argument("there are not as many maps as names");
-  const bool drops_copies = record.result.expected_false_joins.has_value();  // merge() does, a tree does not
   std::vector<const OccupancyGrid*> grids;
   grids.reserve(maps.size());
   for (const OccupancyGrid& map : maps) grids.push_back(&map);
@@ -362,7 +344,7 @@ std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<Occup
     Component& component = record.result.components[i];
     const std::filesystem::path file = directory / component_file(i);
     const OccupancyGrid merged = load_map(file, {.regular_files_only = true}).grid;
-    const std::vector<std::size_t> places = fused_members(component, maps, drops_copies);
+    const std::vector<std::size_t> places = fused_places(record.result, i, maps);
     try {
       component.fused = fuse_members(component.members, places, grids, merged.resolution);
     } catch (const std::invalid_argument& error) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 
 #include "internal_export.hpp"
@@ -9,5 +10,14 @@ namespace gridmerge::internal {
 
 /// Whether a file of this name in the output directory is a merge's own: written, replaced or removed by it.
 GRIDMERGE_INTERNAL_EXPORT bool is_merge_output(const std::filesystem::path& name);
+
+/// What a file is called that each merged map has one of, for merged map `component`, from 0 on: the first
+/// has the name itself, the next is file_2, as the merged maps are.
+GRIDMERGE_INTERNAL_EXPORT std::filesystem::path numbered(const std::filesystem::path& file,
+                                                         std::size_t component);
+
+/// Whether numbered(file, ...) may be `name`, both without folders.
+GRIDMERGE_INTERNAL_EXPORT bool is_numbered(const std::filesystem::path& name,
+                                           const std::filesystem::path& file);
 
 }  // namespace gridmerge::internal

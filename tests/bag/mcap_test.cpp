@@ -108,6 +108,25 @@ RC_GTEST_PROP(Mcap, OfAFileCutShortTheBeginningIsRead, ()) {
   }
 }
 
+// The last chunk is whole, and some of its indexes are not there: of which topics it holds nothing can be
+// told.
+RC_GTEST_PROP(Mcap, OfAFileCutShortAmongIndexesTheLastChunkIsRead, ()) {
+  std::vector<Recorded> messages;
+  for (int i = 0; i < 6; ++i)
+    messages.push_back(row_at(i, *any_row(), i % 3 == 0 ? "/map" : i % 3 == 1 ? "/tb2/map" : "/tb3/map"));
+  McapStyle style = *any_style();
+  style.messages_a_chunk = *rc::gen::element<std::size_t>(3, 6);
+  style.has_index = true;
+  style.has_end = false;
+  const std::string whole = mcap_file(messages, style);
+  constexpr std::size_t kIndexes = 3 * (9 + 2 + 4 + 16);
+  const auto lost = *rc::gen::inRange<std::size_t>(0, kIndexes + 1);
+  const test::TemporaryDirectory directory;
+  const Bag bag(directory.write("a.mcap", whole.substr(0, whole.size() - lost)));
+  for (const char* topic : {"/map", "/tb2/map", "/tb3/map"})
+    RC_ASSERT(all_cells(bag, topic) == rows_of(messages, topic));
+}
+
 RC_GTEST_PROP(Mcap, DamageIsAnErrorOrHarmless, ()) {
   std::vector<Recorded> messages;
   for (int i = 0; i < 4; ++i) messages.push_back(row_at(i, *any_row()));

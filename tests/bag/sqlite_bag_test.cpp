@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <filesystem>
 #include <random>
 #include <string>
 
@@ -89,6 +91,21 @@ TEST_F(SqliteBagTest, WhatARecorderLeftInItsLogIsRead) {
   directory_.write("copy.db3-wal", test::read_file(path_ + "-wal"));
   sqlite3_close(database);
   EXPECT_EQ(BagMaps(Bag(copy)).last().time, 5);
+  // By a link as well: the log lies beside the file that it leads to.
+  std::filesystem::create_directory(directory_.path() / "links");
+  std::filesystem::create_symlink("../copy.db3", directory_.path() / "links" / "a.db3");
+  EXPECT_EQ(BagMaps(Bag(directory_.file("links/a.db3"))).last().time, 5);
+}
+
+TEST_F(SqliteBagTest, ALogThatCannotBeUsedIsNamed) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+  write_db3(path_, {row_at(1, {0, 100})});
+  run_sql(path_, "PRAGMA journal_mode = WAL");
+  directory_.write("a.db3-wal", "");
+  std::filesystem::permissions(directory_.path(),
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  EXPECT_TRUE(contains(error_of(path_), "a.db3-wal beside it holds what a recorder wrote last"));
+  std::filesystem::permissions(directory_.path(), std::filesystem::perms::owner_all);
 }
 
 TEST_F(SqliteBagTest, WhatIsNoBagIsRefused) {

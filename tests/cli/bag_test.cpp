@@ -37,6 +37,24 @@ TEST_F(BagCommand, InfoShowsTheLastMapOfEachTopic) {
   EXPECT_EQ(one.out.find("/left/map"), std::string::npos) << one.out;
 }
 
+TEST_F(BagCommand, InfoShowsOtherTopicsThanTheOneThatHasNone) {
+  const std::string path = directory.write(
+      "empty.mcap",
+      mcap_file({record("/a/map", 1, make_grid(0, 0, 0.05)), record("/b/map", 2, draw_building(2))}, {}));
+  const Outcome outcome = run({"info", path});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.out.find(path + "#/b/map\n"), 0u) << outcome.out;
+  EXPECT_NE(outcome.err.find("warning: " + path + ": has no map with cells on /a/map"), std::string::npos)
+      << outcome.err;
+  const Json maps = Json::parse(run({"info", "--json", path}).out).at("maps");
+  ASSERT_EQ(maps.size(), 1u);
+  EXPECT_EQ(maps.at(0).at("source"), path + "#/b/map");
+  expect_error(run({"info", path + "#/a/map"}), path, "has no map with cells on /a/map");
+  const std::string none =
+      directory.write("none.mcap", mcap_file({record("/a/map", 1, make_grid(0, 0, 0.05))}, {}));
+  expect_error(run({"info", none}), none, "has no map with cells on /a/map");
+}
+
 TEST_F(BagCommand, InfoTellsProgramsTheSameAsOfMapFiles) {
   Json of_bag = Json::parse(run({"info", "--json", team}).out).at("maps").at(0);
   Json of_file = Json::parse(run({"info", "--json", left}).out).at("maps").at(0);

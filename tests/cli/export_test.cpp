@@ -19,10 +19,16 @@ class Export : public CliTest {
 };
 
 TEST_F(Export, OfAnEarlierMergeIsRemoved) {
-  ASSERT_EQ(merge({"--export", "g2o", "--export", "geojson"}).exit_code, 0);
+  ASSERT_EQ(merge({"--export", "g2o", "--export", "geojson", "--export", "geotiff"}).exit_code, 0);
   ASSERT_TRUE(std::filesystem::exists(output + "/merged.g2o"));
+  ASSERT_TRUE(std::filesystem::exists(output + "/merged.tif"));
+  std::ofstream(output + "/merged_2.tif") << "of a second merged map";
+  std::ofstream(output + "/merged_x.tif") << "mine";
   ASSERT_EQ(merge({"--export", "geojson"}).exit_code, 0);
   EXPECT_FALSE(std::filesystem::exists(output + "/merged.g2o")) << "it tells of another merge";
+  EXPECT_FALSE(std::filesystem::exists(output + "/merged.tif"));
+  EXPECT_FALSE(std::filesystem::exists(output + "/merged_2.tif"));
+  EXPECT_TRUE(std::filesystem::exists(output + "/merged_x.tif"));
   EXPECT_TRUE(std::filesystem::exists(output + "/merged.geojson"));
   // What lies in a folder into which nothing was merged yet is none of an earlier merge.
   const std::string fresh = directory.file("fresh");
@@ -52,14 +58,37 @@ TEST_F(Export, IsWrittenBesideTheResultOrWhereItIsTold) {
 }
 
 TEST_F(Export, OfASavedMergeIsTheSame) {
-  ASSERT_EQ(merge({"--export", "g2o", "--export", "open-rmf", "--export", "geojson"}).exit_code, 0);
+  ASSERT_EQ(merge({"--export", "g2o", "--export", "open-rmf", "--export", "geojson", "--export", "geotiff"})
+                .exit_code,
+            0);
   const Outcome outcome =
       run({"report", output, "--export", "g2o=" + directory.file("g"), "--export",
-           "open-rmf=" + directory.file("o"), "--export", "geojson=" + directory.file("j")});
+           "open-rmf=" + directory.file("o"), "--export", "geojson=" + directory.file("j"), "--export",
+           "geotiff=" + directory.file("t")});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(read_file(directory.file("g")), read_file(output + "/merged.g2o"));
   EXPECT_EQ(read_file(directory.file("o")), read_file(output + "/open_rmf.yaml"));
   EXPECT_EQ(read_file(directory.file("j")), read_file(output + "/merged.geojson"));
+  EXPECT_TRUE(read_file(directory.file("t")) == read_file(output + "/merged.tif"));
+}
+
+TEST_F(Export, UpATreeHoldsCopiesEachAsTheMergedMapDoes) {
+  ASSERT_EQ(run({"merge", left, right, left, left, "-o", output, "--strategy", "tree", "--export", "geotiff"})
+                .exit_code,
+            0);
+  const std::string twice = read_file(output + "/merged.tif");
+  ASSERT_EQ(merge({"--strategy", "tree", "--export", "geotiff"}).exit_code, 0);
+  EXPECT_FALSE(read_file(output + "/merged.tif") == twice) << "log-odds add up";
+}
+
+TEST_F(Export, OfAMapTooLargeToBeHeldIsWhole) {
+  const std::string poses =
+      directory.write("poses.tsv", "map\tx\ty\ttheta\n" + left + "\t0\t0\t0\n" + right + "\t4000\t20\t1\n");
+  const Outcome outcome = merge(
+      {"--init", poses, "--fix", left, "--fix", right, "--output-resolution", "2", "--export", "geotiff"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("geotiff: " + output + "/merged.tif\n"), std::string::npos) << outcome.out;
+  EXPECT_LT(std::filesystem::file_size(output + "/merged.tif"), 10'000'000u);
 }
 
 TEST_F(Export, OfAFormatThatThereIsNotIsAMistake) {
@@ -68,7 +97,8 @@ TEST_F(Export, OfAFormatThatThereIsNotIsAMistake) {
     EXPECT_EQ(outcome.exit_code, 2) << format;
     EXPECT_NE(outcome.err.find("--export"), std::string::npos) << outcome.err;
     if (format.size() > 0) {
-      EXPECT_NE(outcome.err.find("is no format: there are g2o, open-rmf, geojson"), std::string::npos)
+      EXPECT_NE(outcome.err.find("is no format: there are g2o, open-rmf, geojson, geotiff"),
+                std::string::npos)
           << outcome.err;
     }
   }
@@ -86,6 +116,15 @@ TEST_F(Export, ToWhereItCannotBeIsAnErrorBeforeTheWork) {
       merge({"--export", "g2o=" + directory.file("x"), "--export", "geojson=" + directory.file("./x")}),
       directory.file("./x"), "would be written by two exports");
   expect_error(merge({"--export", "g2o=/dev/null"}), "/dev/null", "");
+  expect_error(merge({"--export", "g2o=" + output}), output, "is the folder of the results");
+  expect_error(merge({"--export", "geotiff=" + directory.file("x.tif"), "--export",
+                      "g2o=" + directory.file("./x_2.tif")}),
+               directory.file("./x_2.tif"), "may be written by two exports");
+  const std::string base = left.substr(0, left.rfind("left"));
+  std::filesystem::copy_file(left, base + "in_3.yaml");
+  expect_error(
+      run({"merge", base + "in_3.yaml", right, "-o", output, "--export", "geotiff=" + base + "in.yaml"}),
+      base + "in_3.yaml", "is an input and might be replaced");
   EXPECT_FALSE(std::filesystem::exists(output));
 }
 

@@ -3,7 +3,7 @@
 // start of a thread, from the beginning of main() to its end. GRIDMERGE_FAULT names the call that fails:
 // "kill 3" kills the program at the third one that changes the disk, "fail 3 28" lets it fail with an errno,
 // "signal 3 15" sends a signal first; "memory 3" lets the third allocation fail, "thread 3" the third start.
-// "refuse 0" lets every symbolic link fail with EPERM, as FAT does; with "hang 0" no connection is ever
+// "refuse 1" lets every symbolic link fail with errno 1, as FAT does; with "hang 0" no connection is ever
 // ended. The numbers of calls are written to the file that GRIDMERGE_FAULT_COUNT names when main() ends.
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -181,7 +181,7 @@ int linkat(int from_at, const char* from, int to_at, const char* to, int flags) 
 }
 int symlink(const char* text, const char* path) noexcept {
   if (plan().is("refuse")) {
-    errno = EPERM;
+    errno = plan().at;
     return -1;
   }
   return call("symlink", text, path);

@@ -168,6 +168,10 @@ TEST_F(Merge, OfOneMapTwiceIsThatMap) {
       << outcome.err;
   const Json json = Json::parse(read_file(output + "/transforms.json"));
   expect_near(json.at("components").at(0).at("members").at(1).at("transform"), {}, 0.05, 0.0035);
+  // Up a tree it is fused twice.
+  const Outcome tree = run({"merge", left, left, "-o", output, "--strategy", "tree"});
+  EXPECT_NE(tree.err.find("given twice, and counted each time: " + left + "\n"), std::string::npos)
+      << tree.err;
 }
 
 TEST_F(Merge, AMapThatIsGivenTwiceCanBeShownAgain) {

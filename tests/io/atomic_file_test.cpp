@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/file_size_limit.hpp"
+#include "io/spool_file.hpp"
 #include "io/support.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -52,6 +53,42 @@ TEST(AtomicFile, ShowsNothingBeforeCommit) {
   EXPECT_EQ(read_file(directory.file("a")), "old");
   staged.commit();
   EXPECT_EQ(read_file(directory.file("a")), "new");
+}
+
+TEST(AtomicFile, MayBeWrittenInPieces) {
+  const TemporaryDirectory directory;
+  directory.write("a", "old");
+  StagedFile staged(directory.file("a"));
+  staged.append("ne");
+  staged.append("w, in pieces");
+  EXPECT_EQ(read_file(directory.file("a")), "old");
+  staged.commit();
+  EXPECT_EQ(read_file(directory.file("a")), "new, in pieces");
+  EXPECT_EQ(directory.names(), Names{"a"});
+}
+
+TEST(SpoolFile, HoldsWhatIsWrittenLaterAndHasNoName) {
+  const TemporaryDirectory directory;
+  std::string all;
+  StagedFile staged(directory.file("a"));
+  {
+    SpoolFile spool(directory.file("a")), other(directory.file("a"));
+    for (int i = 0; i < 300; ++i) {
+      const std::string piece(static_cast<std::size_t>(7919 * i % 10007), static_cast<char>('a' + i % 26));
+      spool.append(piece);
+      all += piece;
+    }
+    other.append("other");
+    EXPECT_EQ(spool.size(), all.size());
+    EXPECT_EQ(directory.names().size(), 1u) << "the staged one alone";
+    other.copy_to(staged);
+    spool.copy_to(staged);
+  }
+  staged.commit();
+  EXPECT_EQ(read_file(directory.file("a")), "other" + all);
+  EXPECT_EQ(directory.names(), Names{"a"});
+  EXPECT_TRUE(contains(test::message_of<FileError>([&] { SpoolFile(directory.file("no/such/a")); }),
+                       "a: cannot be written: No such file"));
 }
 
 TEST(AtomicFile, DisappearsWithoutCommit) {

@@ -137,6 +137,18 @@ TEST(LoadMap, ReadsPpmBmpAndJpeg) {
   EXPECT_EQ(grid.at(28, 3), kUnknown);
 }
 
+TEST(LoadMap, ReadsPicturesOfWhichMuchIsSaid) {
+  const TemporaryDirectory directory;
+  const std::string yaml = directory.write("a.yaml", yaml_with_image("a.img"));
+  std::string image = test::gray_jpeg(32, 16, std::vector<std::uint8_t>(32 * 16, 254));
+  const std::string part = std::string("\xff\xe1\xff\xff", 4) + std::string(65533, 'x');  // as a camera's
+  std::string parts;
+  for (int i = 0; i < 40; ++i) parts += part;
+  image.insert(2, parts);
+  directory.write("a.img", image);
+  EXPECT_EQ(load_map(yaml).grid.width, 32);
+}
+
 TEST(LoadMap, ReadsThresholdsToTheLetterOnRequest) {
   const TemporaryDirectory directory;
   directory.write("a.pgm", kPgm);

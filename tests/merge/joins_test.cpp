@@ -150,6 +150,13 @@ TEST(MergedResolution, IsTheOneAskedForOrTheFinest) {
   const OccupancyGrid coarse = make_grid(2, 2, 0.2), fine = make_grid(2, 2, 0.05);
   EXPECT_EQ(merged_resolution(0.3, {{&coarse, {}}, {&fine, {}}}), 0.3);
   EXPECT_EQ(merged_resolution(0.0, {{&coarse, {}}, {&fine, {}}}), 0.05);
+  // As coarse as it takes, unless it was asked for.
+  const OccupancyGrid known = make_grid(2, 2, 0.05, {}, Cell::free);
+  const std::vector<PlacedMap> far{{&known, {}}, {&known, {2000.0, 2000.0, 0.0}}};
+  EXPECT_EQ(merged_resolution(0.0, far), 0.2);
+  EXPECT_EQ(merged_resolution(0.05, far), 0.05);
+  EXPECT_EQ(merged_resolution(0.0, {{&known, {}}, {&known, {1e6, 1e6, 0.0}}}), 0.8)
+      << "and then it is refused";
 }
 
 TEST(ValidateMerge, RefusesResolutionsThatMakeNoSense) {

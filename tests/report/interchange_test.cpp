@@ -141,6 +141,7 @@ TEST(Exports, OfNothingOrToNowhereAreErrors) {
   const test::TemporaryDirectory directory;
   const Fleet fleet(6);
   const MergeResult nothing;
+  EXPECT_THROW(export_text(ExportFormat::geotiff, fleet.named()), std::invalid_argument);  // is no text
   for (const ExportFormat format : export_formats()) {
     EXPECT_THROW(export_text(format, {fleet.names, fleet.maps, nothing}), std::invalid_argument);
     const std::string error = message_of<FileError>([&] {
@@ -149,7 +150,9 @@ TEST(Exports, OfNothingOrToNowhereAreErrors) {
     EXPECT_TRUE(contains(error, "x: is not written: no two maps were joined")) << error;
     EXPECT_THROW(write_export(format, directory.file("no/such/folder"), {}, fleet.named()), FileError);
     const std::vector<std::string> few{"a"};
-    EXPECT_THROW(export_text(format, {few, fleet.maps, fleet.result}), std::out_of_range);
+    EXPECT_THROW(write_export(format, directory.file("x"), {}, {few, fleet.maps, fleet.result}),
+                 std::out_of_range);
+    EXPECT_EQ(directory.names(), std::vector<std::string>{});
   }
   const std::string input = directory.write("in.yaml", "");
   EXPECT_TRUE(

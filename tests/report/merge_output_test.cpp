@@ -154,6 +154,9 @@ TEST(MergeOutput, SaysWhatIsNoDirectory) {
   EXPECT_TRUE(contains(message_of<FileError>([&] { prepare_merge_output(file, {}); }), file));
   EXPECT_TRUE(contains(message_of<FileError>([&] { prepare_merge_output(file + "/under", {}); }), file));
   EXPECT_EQ(read_file(file), "mine");
+  std::filesystem::create_directories(directory.path() / "out" / "report.html");
+  EXPECT_TRUE(contains(message_of<FileError>([&] { prepare_merge_output(directory.file("out"), {}); }),
+                       "report.html: cannot be written: it names a directory"));
 }
 
 TEST(MergeOutput, SaysWhereItMayNotWrite) {

@@ -11,9 +11,17 @@
 
 #include "gridmerge/export.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/io/file_error.hpp"
 #include "gridmerge/io/map_file.hpp"
 
 namespace gridmerge {
+
+/// A topic of maps that has no map with cells: its robot had not seen anything yet.
+class GRIDMERGE_EXPORT EmptyTopic : public FileError {
+ public:
+  /// The bag, and the topic's name.
+  EmptyTopic(const std::filesystem::path& bag, const std::string& topic);
+};
 
 /// A topic of a bag.
 struct BagTopic {
@@ -105,8 +113,8 @@ class GRIDMERGE_EXPORT BagMaps {
   /// exceeds the limit; the one after it comes with the next call. O(cells).
   std::optional<BagMap> next();
 
-  /// The last map of the topic, its updates applied; what next() gives is not changed. Throws FileError
-  /// where there is none, or where a message that it needs is damaged. O(cells and updates since).
+  /// The last map of the topic, its updates applied; what next() gives is not changed. Throws EmptyTopic
+  /// where there is none, and FileError where a message that it needs is damaged. O(cells and updates since).
   BagMap last();
 
  private:

@@ -101,8 +101,8 @@ GRIDMERGE_EXPORT std::vector<std::filesystem::path> map_files(const std::filesys
 
 /// Writes the map for map_server: the YAML, and beside it the image, of the same name but for its ending
 /// `.pgm` (trinary: occupied 0, free 254, unknown 205; thresholds 0.65 and 0.196). `yaml_path` must end in
-/// .yaml or .yml. Loading gives the same cells, resolution and origin, to the bit; probabilities are not
-/// kept.
+/// .yaml or .yml. Loading gives the same cells, resolution and origin, to the bit (an angle that is in
+/// (-pi, pi]); probabilities are not kept.
 ///
 /// Both files take their places at one point of time, even if the program is killed. A link of such a name is
 /// replaced, not followed. Throws FileError, then the old files are there and nothing is left behind, or

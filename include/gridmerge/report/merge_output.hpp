@@ -33,10 +33,10 @@ GRIDMERGE_EXPORT void prepare_merge_output(const std::filesystem::path& director
                                            const std::vector<std::filesystem::path>& inputs);
 
 /// Makes sure, before long work, that what comes of the maps can be written: throws FileError, naming the
-/// map, when one alone has more than kMaxGridCells of `resolution` [m] (0: that of the finest map that is
-/// placed, so that nothing is sure yet), or lies so far from zero that the merged map may begin further off
-/// than a map file can say. Returns a resolution to choose where the merged map may have more cells than
-/// that, as all maps side by side have; else nothing. Throws std::out_of_range when there are fewer names
+/// map, when one alone has more than kMaxGridCells of `resolution` [m] (0: merged maps are drawn so that they
+/// fit), or lies so far from zero that the merged map may begin further off than a map file can say. Returns
+/// a resolution to choose where the merged map may have more cells than that, as all maps side by side have;
+/// else nothing. Throws std::out_of_range when there are fewer names
 /// than maps. O(cells).
 GRIDMERGE_EXPORT std::optional<double> check_merged_size(const std::vector<std::string>& names,
                                                          const std::vector<OccupancyGrid>& maps,
@@ -70,31 +70,36 @@ enum class ExportFormat {
   open_rmf,
   /// Outlines of maps (RFC 7946), in metres of the merged map's frame.
   geojson,
+  /// The merged maps themselves as cloud-optimised GeoTIFFs, in the cells of their finest maps, and of any
+  /// size: up to 2^36 cells, and 2^19 a side.
+  geotiff,
 };
 
 /// All of them, in the order in which they are told.
 GRIDMERGE_EXPORT std::span<const ExportFormat> export_formats();
 
-/// As users spell it: "g2o", "open-rmf", "geojson".
+/// As users spell it: "g2o", "open-rmf", "geojson", "geotiff".
 GRIDMERGE_EXPORT const char* name_of(ExportFormat format);
 
 /// The one that name_of() calls so, if there is one.
 GRIDMERGE_EXPORT std::optional<ExportFormat> export_format(std::string_view name);
 
 /// What the file beside transforms.json is called, unless it is named: "merged.g2o", "open_rmf.yaml",
-/// "merged.geojson".
+/// "merged.geojson", "merged.tif".
 GRIDMERGE_EXPORT const char* export_file(ExportFormat format);
 
 /// The text of such a file: of all maps that were placed, those of each component in its own frame. Names are
 /// text in it, whatever bytes they hold. The same merge gives the same bytes. Throws std::invalid_argument if
-/// no map was placed, and std::out_of_range when there are fewer names or maps than the result speaks of.
-/// O(cells + joins).
+/// no map was placed, or the format is no text (`geotiff`), and std::out_of_range when there are fewer names
+/// or maps than the result speaks of. O(cells + joins).
 GRIDMERGE_EXPORT std::string export_text(ExportFormat format, const NamedMerge& merge);
 
-/// Writes it to a file, which is replaced as a whole. Throws FileError, also if no map was placed, or if the
-/// file is one of `inputs`: files that the maps were read from.
-GRIDMERGE_EXPORT void write_export(ExportFormat format, const std::filesystem::path& file,
-                                   const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge);
+/// Writes it to a file, which is replaced as a whole, and returns the files that it wrote: of `geotiff` one
+/// for each component, `file`, then file_2 and so on beside it. Throws FileError, also if no map was placed,
+/// or if such a file is one of `inputs`: files that the maps were read from. O(cells + joins).
+GRIDMERGE_EXPORT std::vector<std::filesystem::path> write_export(
+    ExportFormat format, const std::filesystem::path& file, const std::vector<std::filesystem::path>& inputs,
+    const NamedMerge& merge);
 
 /// A colour, 8 bits a channel.
 struct Colour {
