@@ -132,9 +132,6 @@ std::optional<BagMap> BagMaps::next() {
   return std::nullopt;
 }
 
-EmptyTopic::EmptyTopic(const std::filesystem::path& bag, const std::string& topic)
-    : FileError(bag, fmt::format("has no map with cells on {}", topic)) {}
-
 BagMap BagMaps::last() {
   const State& state = *state_;
   GrowingMap map(state.content->max_cells());
@@ -143,7 +140,10 @@ BagMap BagMaps::last() {
     --begin;
     if (state.messages[begin].stored.topic == kMap) state.take(map, state.messages[begin]);
   }
-  if (!map.is_there()) throw EmptyTopic(state.content->path(), state.topic);
+  if (!map.is_there())
+    throw EmptyTopic(state.content->path(), state.messages.empty()
+                                                ? fmt::format("has no message on {}", state.topic)
+                                                : fmt::format("has no map with cells on {}", state.topic));
   std::size_t newest = begin;
   for (std::size_t i = begin + 1; i < state.messages.size(); ++i) {
     if (state.messages[i].stored.topic != kMap && state.take(map, state.messages[i])) newest = i;

@@ -19,8 +19,7 @@ namespace gridmerge {
 /// A topic of maps that has no map with cells: its robot had not seen anything yet.
 class GRIDMERGE_EXPORT EmptyTopic : public FileError {
  public:
-  /// The bag, and the topic's name.
-  EmptyTopic(const std::filesystem::path& bag, const std::string& topic);
+  using FileError::FileError;
 };
 
 /// A topic of a bag.
