@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -39,13 +40,20 @@ std::string host_of(const std::string& address) {
   return address.find(':') == std::string::npos ? address : "[" + address + "]";
 }
 
+/// Hosts have no case, and browsers send them in small letters.
+std::string in_small_letters(std::string host) {
+  std::transform(host.begin(), host.end(), host.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return host;
+}
+
 /// `number` is what browsers make of an address such as "127.1".
 std::set<std::string> own_hosts(const std::string& address, const std::string& number, int port) {
   std::set<std::string> hosts;
   for (const std::string& host : {std::string("127.0.0.1"), std::string("localhost"), std::string("[::1]"),
                                   host_of(address), host_of(number)}) {
-    hosts.insert(fmt::format("{}:{}", host, port));
-    if (port == kPlainHttpPort) hosts.insert(host);
+    hosts.insert(in_small_letters(fmt::format("{}:{}", host, port)));
+    if (port == kPlainHttpPort) hosts.insert(in_small_letters(host));
   }
   return hosts;
 }
@@ -87,12 +95,12 @@ std::optional<HttpResponse> find_fault(const HttpHead& request, const std::set<s
   if (request.count(http::field::range) > 0) return HttpResponse{Status::range_not_satisfiable};
   const auto text = [&](http::field field) { return std::string(request[field]); };
   if (request.version() != 10 && request.version() != 11) return plain_error(Status::bad_request);
-  if (request.count(http::field::host) != 1 || !hosts.contains(text(http::field::host)))
+  if (request.count(http::field::host) != 1 || !hosts.contains(in_small_letters(text(http::field::host))))
     return error_response(Status::forbidden, "the request is for another host");
   if (request.count(http::field::origin) > 0) {
     constexpr std::string_view kScheme = "http://";
     const std::string origin = text(http::field::origin);
-    if (!origin.starts_with(kScheme) || !hosts.contains(origin.substr(kScheme.size())))
+    if (!origin.starts_with(kScheme) || !hosts.contains(in_small_letters(origin.substr(kScheme.size()))))
       return error_response(Status::forbidden, "the request is from another site's page");
   }
   if (request.method() == http::verb::get || request.method() == http::verb::head) return std::nullopt;

@@ -272,7 +272,7 @@ def test_simulate_passes_on_what_the_engine_says() -> None:
 def test_maps_too_far_apart_to_merge(tmp_path: Path) -> None:
     cells = np.zeros((3, 3), dtype=np.int8)
     grid = gridmerge.OccupancyGrid(cells, 0.05)
-    poses = {0: (0.0, 0.0, 0.0), 1: (9e6, 0.0, 0.0)}
+    poses = {0: (0.0, 0.0, 0.0), 1: (9e6, 9e6, 0.0)}
     with pytest.raises(ValueError, match="2\\^28|cells"):
         gridmerge.merge([grid, grid], init=poses, fix=[0, 1])
 

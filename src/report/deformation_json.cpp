@@ -48,10 +48,15 @@ Deformation read_lattice(const JsonReader& json, double farthest) {
 
 }  // namespace
 
-Json deformation_json(const Deformation& deformation) {
+Json shape_json(const Deformation& deformation) {
   Json json{{"kind", name_of(deformation.kind())}};
+  if (const std::optional<Affine> affine = deformation.affine()) json["scale"] = number_json(affine->scale());
+  return json;
+}
+
+Json deformation_json(const Deformation& deformation) {
+  Json json = shape_json(deformation);
   if (const std::optional<Affine> affine = deformation.affine()) {
-    json["scale"] = number_json(affine->scale());
     Json rows = Json::array({Json::array(), Json::array()});
     const std::array<double, 6> entries = entries_of(*affine);
     for (std::size_t i = 0; i < entries.size(); ++i) rows[i / 3].push_back(number_json(entries[i]));

@@ -7,6 +7,9 @@
 
 namespace gridmerge::internal {
 
+/// What it does to a map, without the lattice: `kind`, and `scale` of one that does not bend. O(shifts).
+Json shape_json(const Deformation& deformation);
+
 /// The lattice of a map that is bent or stretched, as docs/merging.md describes it: its kind, of one that is
 /// not elastic the scale and the matrix that it stands for, and the lattice itself.
 Json deformation_json(const Deformation& deformation);

@@ -45,7 +45,7 @@ Json map_json(const std::string& name, std::size_t index, const ShownMap& shown)
   return json;
 }
 
-/// With the lattices of bent maps, or without.
+/// With the lattices of bent maps, or with what these do to a map alone.
 Json component_json(std::size_t index, const Component& component, const ShownMap& shown, bool in_full) {
   Json members = Json::array();
   for (const Member& member : component.members) {
@@ -53,8 +53,12 @@ Json component_json(std::size_t index, const Component& component, const ShownMa
                        {"transform", transform_json(member.T_component_map)},
                        {"probability", probability_json(member.probability)},
                        {"sd", deviation_json(member.sd)}});
-    if (in_full && !member.deformation.is_identity())
+    if (member.deformation.is_identity()) continue;
+    if (in_full) {
       members.back()["deformation"] = deformation_json(member.deformation);
+    } else {
+      members.back()["shape"] = shape_json(member.deformation);
+    }
   }
   const std::optional<std::size_t> frame = frame_of(component);
   Json json{{"file", component_file(index)},

@@ -168,7 +168,7 @@ TEST_F(View, AnswersItsOwnPageAlone) {
     return answer ? answer->status : -1;
   };
   const std::string at = host.substr(host.find(':'));
-  for (const std::string& own : {"127.0.0.1" + at, "localhost" + at, "[::1]" + at}) {
+  for (const std::string& own : {"127.0.0.1" + at, "localhost" + at, "[::1]" + at, "LocalHost" + at}) {
     EXPECT_EQ(status({{"Host", own}, {"Origin", "http://" + own}}), 200) << own;
   }
   for (const std::string& foreign :

@@ -80,9 +80,19 @@ TEST(ReportPage, TellsWhatStaysOpen) {
 }
 
 TEST(ReportPage, OfManyMapsHasTheJoinsThatMatter) {
-  const MergeResult result = test::fleet(120, 1);
+  MergeResult result = test::fleet(120, 1);
   const std::vector<OccupancyGrid> maps(120, map_from({"#.", ".#"}, 0.1));
+  const Deformation scaled = Deformation({-1.0, -1.0, 0.0}, 1.0, 5, 5, [] {
+    std::vector<Point2> shifts;  // a hundredth of where they lie
+    for (int i = 0; i < 25; ++i) shifts.push_back({0.01 * (i % 5 - 1), 0.01 * (i / 5 - 1)});
+    return shifts;
+  }());
+  result.components[0].members[1].deformation = scaled;
   const Json data = data_of(report_page({test::fleet_names(120), maps, result}));
+  const Json& members = data["components"][0]["members"];
+  EXPECT_FALSE(members[0].contains("shape"));
+  EXPECT_FALSE(members[1].contains("deformation"));
+  EXPECT_EQ(members[1]["shape"]["kind"], name_of(scaled.kind()));
   const ToldJoins told = tell_joins(result);
   EXPECT_EQ(data.at("joins").size(), told.objects.size());
   ASSERT_EQ(data.at("refused").at("rows").size(), told.rows.size());

@@ -4,7 +4,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { test } from "node:test";
 import { bend } from "../src/deformation";
 import { apply } from "../src/se2";
-import { cursor, middle, open } from "./browser";
+import { cursor, lastCopied, middle, open } from "./browser";
 import { examples, mergeInto, reportData, simulated } from "./reports";
 
 const drifted = () =>
@@ -79,5 +79,44 @@ test("only merged maps of bent maps can be straightened", async () => {
   await page.locator("button[data-join]").first().click();
   await page.click("#tab-layers");
   assert.equal(await page.locator("#bent").count(), 0, "a pair is shown as its maps were read");
+  await tab.close();
+});
+
+test("what is put by hand is held against maps as they are merged", async () => {
+  const [first, second, third] = simulated("true_to_scale", 3, ["--kind", "office", "--overlap", "0.7", "--drift", "0", "--others", "0", "--seed", "101"]);
+  const long = second.replace(".yaml", "_long.yaml");
+  writeFileSync(long, readFileSync(second, "utf8").replace("resolution: 0.05", "resolution: 0.0515"));
+  const tab = await open(mergeInto("scaled", [first, long, third], "--transform", "similarity", "--fix", `${first}`));
+  const { page } = tab;
+  await page.click("#tab-hand");
+  await page.selectOption("#hand-map", "2");
+  await page.waitForSelector("#hand-yardstick:has-text('by chance')");
+  const band = async () => (await page.textContent("#hand-yardstick"))!.match(/have (\d+) %/)!.map(Number)[1];
+  const bent = await band();
+  assert.ok(bent >= 90, `maps that fit meet their walls: ${bent} %`);
+  await page.click("#tab-layers");
+  await page.fill("#bent", "0");
+  await page.click("#tab-hand");
+  await page.selectOption("#hand-map", "2");
+  await page.waitForFunction((before) => {
+    const text = document.querySelector("#hand-yardstick")!.textContent!;
+    return text !== "" && !text.includes(`have ${before} %`);
+  }, bent);
+  assert.ok(await band() < bent, "straight, they fit worse");
+  await tab.close();
+});
+
+test("a link keeps how far maps are bent, and the arrows", async () => {
+  const folder = mergeInto("bent", drifted(), "--elastic");
+  const tab = await open(folder);
+  await tab.page.fill("#bent", "30");
+  await tab.page.click("#arrows");
+  await tab.page.click("button[aria-label^='Copy a link']");
+  const link = await lastCopied(tab.page);
+  assert.match(link, /bent=0\.3&arrows=1/);
+  const other = await open(link);
+  assert.equal(await other.page.inputValue("#bent"), "30");
+  assert.ok(await other.page.isChecked("#arrows"));
+  await other.close();
   await tab.close();
 });

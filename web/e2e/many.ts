@@ -91,3 +91,23 @@ test("ways that stay open are told", async () => {
   assert.equal(await page.getAttribute("#tab-hand", "aria-selected"), "true");
   await tab.close();
 });
+
+test("a search finds maps that were left out, and a map that was found stays pointed out", async () => {
+  const tab = await open(fleet(count));
+  const { page } = tab;
+  await page.click("#tab-layers");
+  await page.fill("#panel-layers .search", `robot_${count - 4}.yaml`);
+  assert.equal(await page.locator("#panel-layers .left-out li[data-map]").count(), 1);
+  assert.match((await page.textContent("#panel-layers .left-out"))!, new RegExp(`robot_${count - 4}\\.yaml`));
+  await page.click("#tab-overview");
+  await page.fill("#panel-overview .search", "robot_20.yaml");
+  await page.click(".hit >> nth=0");
+  const chosen = await tab.picture();
+  await page.mouse.move(5, 5);
+  assert.equal(await tab.picture(), chosen);
+  // By keyboard the focus goes along, and comes back.
+  await page.locator(".own-joins button").first().focus();
+  await page.keyboard.press("Enter");
+  assert.equal(await page.evaluate(() => document.activeElement?.className), "back");
+  await tab.close();
+});

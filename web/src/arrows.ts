@@ -28,7 +28,9 @@ export function drawArrows(context: CanvasRenderingContext2D, view: Viewport, co
     drawArrowsOf(context, view, placed, grid, enlarged);
   }
   context.font = "12px system-ui, sans-serif";
-  label(context, colors, enlarged > 1 ? `arrows: ${enlarged} times enlarged` : "arrows: true to scale", 46, view.height - 14);
+  // Above the scale bar, away from what is read at the cursor.
+  context.textAlign = "right";
+  label(context, colors, enlarged > 1 ? `arrows: ${enlarged} times enlarged` : "arrows: true to scale", view.width - 16, view.height - 44);
   context.restore();
 }
 

@@ -11,11 +11,13 @@ export interface Layer {
   color: Rgb;
   /** 0: not to be seen, 1: in full. */
   opacity: number;
+  /** It lies where the merged map does not have it, and is seen above that. */
+  above?: boolean;
 }
 
 /** Everything that is drawn from cells. */
 export interface Picture {
-  /** The fused map, in the scene's frame, over the others: at an opacity of 1 nothing is seen of them. */
+  /** The fused map, in the scene's frame, over its members: at an opacity of 1 nothing is seen of them. */
   merged: { grid: Grid; opacity: number } | null;
   layers: Layer[];
   /** How strongly what the layers agree and disagree on is marked, 0 to 1. */
@@ -171,7 +173,10 @@ export function paint(picture: Picture, square: Square): Uint8ClampedArray<Array
   const count = square.pixels * square.pixels;
   const out = new Uint8ClampedArray(4 * count);
   if (!picture.merged || picture.merged.opacity < 1) paintLayers(picture, square, out);
-  if (picture.merged && picture.merged.opacity > 0) cover(picture.merged, square, out);
+  if (!picture.merged || picture.merged.opacity === 0) return out;
+  cover(picture.merged, square, out);
+  const above = picture.layers.filter((layer) => layer.above);
+  if (above.length > 0) paintLayers({ merged: null, layers: above, agreement: 0 }, square, out);
   return out;
 }
 

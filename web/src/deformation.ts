@@ -2,11 +2,15 @@
 import { Cell, Grid } from "./grid";
 import { type Point, type SE2, apply, compose, inverse } from "./se2";
 
-/** How a map is bent, as transforms.json has it: see docs/merging.md. */
-export interface Deformation {
+/** What is done to a map. */
+export interface Shape {
   kind: "similarity" | "affine" | "elastic";
   /** Of a similarity, and the mean one of an affine map. */
   scale?: number;
+}
+
+/** How a map is bent, as transforms.json has it: see docs/merging.md. */
+export interface Deformation extends Shape {
   /** Of the lattice in the map's frame. */
   frame: SE2;
   /** Between neighbouring points, in metres. */

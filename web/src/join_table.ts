@@ -50,9 +50,11 @@ export class JoinTable {
       moreNote(large ? all.length : 0, "join"));
   }
 
-  /** The table may have been made anew, and the focus is lost with the old one. */
-  focus(join: number, scroll: boolean): void {
-    this.element.querySelector<HTMLElement>(`button[data-join="${join}"]`)?.focus({ preventScroll: !scroll });
+  /** The table may have been made anew, and the focus is lost with the old one. Returns whether the join is in it. */
+  focus(join: number, scroll: boolean): boolean {
+    const button = this.element.querySelector<HTMLElement>(`button[data-join="${join}"]`);
+    button?.focus({ preventScroll: !scroll });
+    return button !== null;
   }
 
   /** Ties are broken by probability. */

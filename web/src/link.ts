@@ -20,6 +20,9 @@ export interface SharedView {
   /** By map: poses given by hand in this scene. */
   placed: Map<number, SE2>;
   grid: boolean;
+  /** By which share bent maps are bent. */
+  bent: number;
+  arrows: boolean;
   ruler: { from: Point; to: Point } | null;
 }
 
@@ -29,7 +32,7 @@ export function defaultView(report: Report): SharedView {
     scene: firstScene(report), center: null, metres: 0, tab: isLarge(report) ? "overview" : "layers",
     // A thousand maps over each other say less than what they make.
     merged: isLarge(report) && report.components.length > 0 ? 1 : 0, agreement: 1, maps: new Map(), colors: new Map(),
-    placed: new Map(), grid: true, ruler: null,
+    placed: new Map(), grid: true, bent: 1, arrows: false, ruler: null,
   };
 }
 
@@ -51,6 +54,8 @@ export function toHash(view: SharedView, report: Report): string {
   const placed = [...view.placed].map(([map, { x, y, theta }]) => `${map}:${[x, y, theta].map((value) => short(value)).join(",")}`);
   if (placed.length > 0) parts.set("placed", placed.join(";"));
   if (!view.grid) parts.set("grid", "0");
+  if (view.bent !== usual.bent) parts.set("bent", short(view.bent));
+  if (view.arrows) parts.set("arrows", "1");
   if (view.ruler) {
     const { from, to } = view.ruler;
     parts.set("ruler", [from.x, from.y, to.x, to.y].map((value) => short(value)).join(","));
@@ -92,6 +97,8 @@ export function fromHash(hash: string, report: Report, tabs: readonly string[]):
     }
   }
   view.grid = get("grid") !== "0";
+  view.bent = share(get("bent")) ?? view.bent;
+  view.arrows = get("arrows") === "1";
   const ends = numbers(get("ruler"), 4);
   if (ends) view.ruler = { from: { x: ends[0], y: ends[1] }, to: { x: ends[2], y: ends[3] } };
   return view;

@@ -215,12 +215,13 @@ function build(report: Report): void {
     show: (map) => {
       state.wanted = [map];
       state.show(sceneOf(report, map));
-      state.point(map);
+      state.choose(map);
       stage.lookAtMap(map);
     },
     showJoin: (join) => {
       tabs.select("joins");
-      joins.choose(join);
+      joins.goTo(join);
+      joins.focus();
     },
     placeSo,
   });

@@ -70,12 +70,14 @@ export class HandPanel {
       h("label", { class: "field" }, "Map in hand ", this.picker), this.tools, this.saving);
     state.on("scene", () => this.rebuild());
     state.on("hand", () => this.update());
-    state.on("grids", () => this.score());
+    for (const topic of ["grids", "bend"] as const) state.on(topic, () => this.score());
     this.rebuild();
   }
 
   /** Takes a map in hand; one that is not in the scene comes to where its best comparison has it. */
   take(map: number): void {
+    // A map that was offered and not placed is no company.
+    if (this.state.handled !== null && this.state.handled !== map) this.state.letGo();
     const middle = this.state.grids[map]?.middle() ?? { x: 0, y: 0 };
     const to = this.middleOfView();
     this.answer.textContent = "";
@@ -223,15 +225,15 @@ export class HandPanel {
     const inHand = this.state.inHand();
     if (!inHand) return;
     const { map, grid, pose } = inHand;
-    const others = laid(this.state.grids, this.others(map));
+    const others = laid(this.others(map), (placed) => this.state.gridOf(placed));
     const scorer = this.scorerOf(map, grid);
     this.gauge.show(scorer.score(pose, others));
     // Worked out once for the same maps at the same places.
-    const key = JSON.stringify([map, this.others(map), this.state.grids.map((known) => known !== null)]);
+    const key = JSON.stringify([map, this.others(map), this.state.bent, this.state.grids.map((known) => known !== null)]);
     if (key === this.yardstickOf) return;
     this.yardstickOf = key;
     const isRunning = this.yardstick !== null;
-    this.yardstick = yardstickOf(scorer, grid, others, laid(this.state.grids, this.members()));
+    this.yardstick = yardstickOf(scorer, grid, others, laid(this.members(), (placed) => this.state.bentGridOf(placed)));
     this.gauge.hold(null);
     if (!isRunning) this.workOutYardstick();
   }

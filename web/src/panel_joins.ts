@@ -21,7 +21,7 @@ const mostInGraph = 8;
 
 /** Every comparison that the merge made: as a graph or a matrix, as a table, and one of them in full. */
 export class JoinsPanel {
-  readonly element = h("div", { class: "panel", id: "panel-joins" });
+  readonly element = h("div", { class: "panel", id: "panel-joins", tabindex: -1 });
   private readonly state: State;
   private readonly chosen = h("section", { class: "chosen-join" });
   private readonly graph = h("div");
@@ -81,14 +81,20 @@ export class JoinsPanel {
   }
 
   /** What is said of the join stands at the top: most of it is longer than the panel. */
-  private goTo(join: number): void {
+  goTo(join: number): void {
     this.choose(join);
     this.chosen.scrollIntoView({ block: "start" });
   }
 
+  /** For who comes from elsewhere, whose focus is lost with what was there. */
+  focus(): void {
+    this.chosen.querySelector<HTMLElement>("button.back")?.focus({ preventScroll: true });
+  }
+
   private goBack(join: number): void {
     this.state.show(this.state.whole);
-    this.table.focus(join, true);
+    // A filter or the search may hide its row.
+    if (!this.table.focus(join, true)) this.element.focus();
   }
 
   private showChosen(): void {

@@ -7,7 +7,7 @@ import { Cell } from "./grid";
 import { fixed } from "./numbers";
 import { type SE2, apply, inverse } from "./se2";
 import { openWays } from "./open_ways";
-import { type Component, isLarge } from "./report";
+import { type Component, type LeftOut, isLarge } from "./report";
 import { moreNote, mostRows, searchBox } from "./search";
 import type { Look, State } from "./state";
 import { count, flat } from "./text";
@@ -20,8 +20,11 @@ export class LayersPanel {
   private readonly state: State;
   private readonly mapRows = h("div");
   private readonly ownRows = h("div");
+  /** Maps that were left out, and ways that are open. */
+  private readonly lists = h("div");
   private readonly showLeftOut: (map: number) => void;
   private readonly placeByHand: (map: number) => void;
+  private readonly placeSo: (map: number, on: number, T_on_map: SE2) => void;
   private readings = new Map<number, HTMLElement>();
   private readonly boxes = new Map<HTMLInputElement, Look>();
   private readonly sliders = new Map<HTMLInputElement, Look>();
@@ -39,13 +42,17 @@ export class LayersPanel {
         h("button", { type: "button", click: () => this.setAll(true) }, "All"),
         h("button", { type: "button", click: () => this.setAll(false) }, "None")),
       isLarge(state.report) ? searchBox(state) : null,
-      this.mapRows, this.leftOut(), openWays(state, state.report.open_ways, actions.placeSo));
+      this.mapRows, this.lists);
+    this.placeSo = actions.placeSo;
     state.on("scene", () => this.rebuild());
     for (const topic of ["hand", "query"] as const) state.on(topic, () => this.rebuild());
     state.on("looks", () => this.update());
+    state.on("bend", () => this.tellBend());
     state.on("colors", () => this.recolor());
     for (const topic of ["cursor", "hand", "grids", "bend"] as const) state.on(topic, () => this.read());
+    state.on("query", () => this.list());
     this.rebuild();
+    this.list();
   }
 
   toggle(look: Look): void {
@@ -74,7 +81,7 @@ export class LayersPanel {
     const { component } = state.scene;
     replace(this.ownRows,
       component === null ? null : this.ownRow("merged", "Merged map", state.merged,
-        h("span", { class: "legend soft" }, "Covers the maps that it is made of."), "m"),
+        h("span", { class: "legend soft" }, "Covers the maps that it is made of, where it has them."), "m"),
       maps.length < 2 ? null : this.ownRow("agreement", "Agreement", state.agreement, h("span", { class: "legend" },
         legendItem(ink, "walls in two maps or more"), legendItem(white, "floor in two maps or more"),
         legendItem(disagreement, "they contradict each other"),
@@ -140,6 +147,14 @@ export class LayersPanel {
     }
   }
 
+  /** A link to a view says it too. */
+  private tellBend(): void {
+    const slider = this.element.querySelector<HTMLInputElement>("#bent");
+    const arrows = this.element.querySelector<HTMLInputElement>("#arrows");
+    if (slider) slider.value = String(100 * this.state.bent);
+    if (arrows) arrows.checked = this.state.arrows;
+  }
+
   private recolor(): void {
     for (const row of this.element.querySelectorAll<HTMLElement>("[data-map]")) {
       const map = Number(row.dataset.map);
@@ -162,13 +177,26 @@ export class LayersPanel {
         continue;
       }
       const lying = apply(inverse(T_scene_map), cursor);
-      const p = deformation ? straighten(deformation, lying, this.state.bent) : lying;
-      reading.textContent = `${fixed(p.x, 2)}, ${fixed(p.y, 2)} m · ${cellWords[grid.at(p)]}`;
+      // In hand it is drawn straight.
+      const isBent = deformation !== undefined && map !== this.state.handled;
+      const p = isBent ? straighten(deformation, lying, this.state.bent) : lying;
+      // Where the cells came bent, their coordinates are none of the map's own.
+      const own = placed.cameBent ? "" : `${fixed(p.x, 2)}, ${fixed(p.y, 2)} m · `;
+      reading.textContent = `${own}${cellWords[grid.at(p)]}`;
     }
   }
 
-  private leftOut(): HTMLElement | null {
-    const { left_out: leftOut, maps, components } = this.state.report;
+  private list(): void {
+    const { state } = this;
+    const isWanted = (...maps: number[]) => !isLarge(state.report) || maps.some((map) => state.isFound(map));
+    replace(this.lists,
+      this.leftOut(({ map }) => isWanted(map)),
+      openWays(state, state.report.open_ways.filter(({ fixed, moving }) => isWanted(fixed, moving)), this.placeSo));
+  }
+
+  private leftOut(isWanted: (one: LeftOut) => boolean): HTMLElement | null {
+    const { left_out: all, maps, components } = this.state.report;
+    const leftOut = all.filter(isWanted);
     if (leftOut.length === 0) return null;
     const items = leftOut.slice(0, isLarge(this.state.report) ? mostRows : leftOut.length).map(({ map, explanation }) => h("li", { "data-map": map },
       h("div", {}, badge(this.state, map), name(this.state.names[map], maps[map].name)),

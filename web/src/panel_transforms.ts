@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { mapLabel } from "./badge";
 import { copyButton } from "./clipboard";
-import type { Deformation } from "./deformation";
+import type { Shape } from "./deformation";
 import { h, replace } from "./dom";
 import { type NamedPose, asJson, asStaticTransforms, asYaml, frameIds } from "./formats";
 import { degrees, fixed, probability } from "./numbers";
@@ -17,7 +17,7 @@ function otherFrame(state: State): HTMLElement {
 }
 
 /** What is done to a map before its transform places it. */
-const shapeWords: Record<Deformation["kind"], (deformation: Deformation) => string> = {
+const shapeWords: Record<Shape["kind"], (shape: Shape) => string> = {
   similarity: ({ scale }) => `scaled by ${fixed(scale!, 4)} first`,
   affine: ({ scale }) => `scaled by ${fixed(scale!, 4)} and sheared first`,
   elastic: () => "bent first",
@@ -92,8 +92,8 @@ export class TransformsPanel {
   private certainty(map: number): string {
     const member = this.memberOf(map);
     const parts: string[] = [];
-    const { deformation } = member ?? {};
-    if (deformation) parts.push(shapeWords[deformation.kind](deformation));
+    const shape = member?.deformation ?? member?.shape;
+    if (shape) parts.push(shapeWords[shape.kind](shape));
     if (member?.probability != null) parts.push(`probability ${probability(member.probability)}`);
     if (map === this.state.scene.frame) parts.push("holds the frame");
     else if (member?.sd) parts.push(`± ${fixed(member.sd.position, 3)} m, ± ${fixed(degrees(member.sd.theta), 2)}°`);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Deformation } from "./deformation";
+import type { Deformation, Shape } from "./deformation";
 import type { SE2 } from "./se2";
 import { probability } from "./numbers";
-import { count } from "./text";
+import { count, flat } from "./text";
 
 // What a merge has to tell, as the program writes it into the page.
 
@@ -27,6 +27,8 @@ export interface Member {
   sd: { position: number; theta: number } | null;
   /** Only of bent maps. */
   deformation?: Deformation;
+  /** The same without its lattice, of one of many maps: their cells come bent. */
+  shape?: Shape;
 }
 
 export interface Component extends PackedGrid {
@@ -167,7 +169,8 @@ export function summary(report: Report): string {
 }
 
 function planSummary(plan: Plan, maps: number): string {
-  if (plan.maps.length === 0) return `No map hangs on the plan ${plan.name}.`;
-  const hung = `${plan.maps.length} of ${maps} hang on the plan ${plan.name}`;
+  const name = flat(plan.name);
+  if (plan.maps.length === 0) return `No map hangs on the plan ${name}.`;
+  const hung = `${plan.maps.length} of ${maps} hang on the plan ${name}`;
   return `${hung}, enlarged by ${plan.scale.toFixed(4)} (probability ${probability(plan.probability)}).`;
 }

@@ -15,6 +15,8 @@ export interface Placed {
   T_scene_map: SE2;
   /** Only of a map that the merge has bent, where it lies as the merge has it. */
   deformation?: Deformation;
+  /** Its cells are bent already: those of many maps are. */
+  cameBent?: boolean;
 }
 
 export interface Scene {
@@ -48,8 +50,8 @@ export function makeScene(report: Report, id: SceneId): Scene {
         id,
         title: component.file,
         frame: component.frame,
-        placed: component.members.map(({ map, transform, deformation }) => ({
-          map, T_scene_map: transform, ...(deformation && { deformation }),
+        placed: component.members.map(({ map, transform, deformation, shape }) => ({
+          map, T_scene_map: transform, ...(deformation && { deformation }), ...(shape && { cameBent: true }),
         })),
         component: id.component,
       };

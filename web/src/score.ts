@@ -6,6 +6,8 @@ import { type Point, type SE2, apply, compose, inverse } from "./se2";
 export interface Score {
   /** Share of the map's walls, where others have seen, that lie within about 0.2 m of a wall of theirs, or two cells. */
   wallsMet: number;
+  /** Share of the map's walls where others have seen. */
+  wallsSeen: number;
   /** Share of the cells known to it and to others of which most of these say the same. */
   agreement: number;
   /** Share of its known cells that another knows. */
@@ -52,6 +54,7 @@ export class Scorer {
     }
     return {
       wallsMet: seen === 0 ? 0 : met / seen,
+      wallsSeen: seen / Math.max(1, this.samples.walls.length),
       agreement: agreeing / common,
       overlap: common / this.samples.known.length,
     };

@@ -46,6 +46,8 @@ export class SharedState {
     for (const [map, pose] of view.placed) state.put(map, pose);
     this.tabs.select(view.tab);
     stage.showGrid(view.grid);
+    state.setBent(view.bent);
+    state.showArrows(view.arrows);
     stage.lookAt(view.center && { center: view.center, metres: view.metres });
     state.measure(view.ruler && { ...view.ruler, open: false });
   }
@@ -65,6 +67,8 @@ export class SharedState {
       colors: new Map(state.looks.map(({ color }, map) => [map, color])),
       placed: state.byHand(),
       grid: stage.gridShown,
+      bent: state.bent,
+      arrows: state.arrows,
       ruler: ruler?.from && ruler.to ? { from: ruler.from, to: ruler.to } : null,
     };
   }

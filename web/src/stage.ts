@@ -176,13 +176,17 @@ export class Stage {
     const similar = this.stale === "similar";
     this.stale = "no";
     const layers: Picture["layers"] = [];
+    const byHand = state.byHand();
     const parts: unknown[] = [this.place, state.merged, state.agreement];
     for (const placed of state.placed()) {
       const { map, T_scene_map } = placed;
       const grid = state.gridOf(placed);
       const look = state.looks[map];
       if (!grid || map === state.handled) continue;
-      layers.push({ grid, T_scene_map, color: parseColor(look.color), opacity: look.visible ? look.opacity : 0 });
+      layers.push({
+        grid, T_scene_map, color: parseColor(look.color), opacity: look.visible ? look.opacity : 0,
+        above: byHand.has(map),
+      });
       parts.push(map, T_scene_map, look, placed.deformation ? state.bent : 0);
     }
     const grid = this.mergedGrid();

@@ -47,6 +47,8 @@ export class State {
   arrows = false;
   scene: Scene;
   spotlight: number | null = null;
+  /** The map that is pointed out while nothing else is: it was chosen from a list. */
+  private chosen: number | null = null;
   /** In the scene's frame. */
   cursor: Point | null = null;
   /** Null while nothing is to be measured. */
@@ -89,7 +91,7 @@ export class State {
     if (id.kind !== "component") this.wanted = this.scene.placed.map(({ map }) => map);
     if (id.kind !== "join") this.whole = id;
     this.handled = this.offered = null;
-    this.spotlight = null;
+    this.spotlight = this.chosen = null;
     // Another frame: what was measured in the old one means nothing.
     if (this.ruler) this.measure({ from: null, to: null, open: false });
     this.changed("scene");
@@ -136,10 +138,15 @@ export class State {
     this.changed("bend");
   }
 
-  /** A placed map's cells, bent as far as it is shown; null until they are there. */
-  gridOf({ map, deformation }: Placed): Grid | null {
+  /** A placed map's cells as they are drawn: bent as far as it is shown, and straight in hand; null until they are there. */
+  gridOf(placed: Placed): Grid | null {
+    return placed.map === this.handled ? this.grids[placed.map] : this.bentGridOf(placed);
+  }
+
+  /** The same whether the map is in hand or not. */
+  bentGridOf({ map, deformation }: Placed): Grid | null {
     const grid = this.grids[map];
-    if (!grid || !deformation || this.bent === 0 || map === this.handled) return grid;
+    if (!grid || !deformation || this.bent === 0) return grid;
     const known = this.bentGrids.get(map);
     if (known && known.of === grid && known.share === this.bent) return known.grid;
     const bent = bentGrid(grid, deformation, this.bent);
@@ -172,13 +179,21 @@ export class State {
   }
 
   point(map: number | null): void {
-    if (this.spotlight === map) return;
-    this.spotlight = map;
+    const pointed = map ?? this.chosen;
+    if (this.spotlight === pointed) return;
+    this.spotlight = pointed;
     this.changed("spotlight");
+  }
+
+  /** Points a map out until something else is chosen or taken in hand. */
+  choose(map: number | null): void {
+    this.chosen = map;
+    this.point(map);
   }
 
   /** Takes a map in hand; one that is not in the scene is offered at `T_scene_map`, and gone again if nobody moves it. */
   take(map: number, T_scene_map: SE2): void {
+    this.choose(null);
     this.offered = null;
     this.offered = this.poseOf(map) ? null : T_scene_map;
     this.handled = map;

@@ -55,11 +55,12 @@ export function visibleBox(view: Viewport): Box {
   };
 }
 
-/** The view that shows the whole box with a margin. */
+/** The view that shows the whole box with a margin; half a metre at least. */
 export function fit(box: Box, width: number, height: number, margin = 0.04): Viewport {
   const room = 1 - 2 * margin;
+  const least = 0.5;
   const scale = Math.min(
-    (width * room) / Math.max(box.right - box.left, 1e-6), (height * room) / Math.max(box.top - box.bottom, 1e-6));
+    (width * room) / Math.max(box.right - box.left, least), (height * room) / Math.max(box.top - box.bottom, least));
   const center = { x: (box.left + box.right) / 2, y: (box.bottom + box.top) / 2 };
   return { width, height, center, scale: Math.max(scale, 1e-6) };
 }

@@ -7,6 +7,8 @@ import { boxAround } from "./viewport";
 
 /** So many poses show what a map meets by chance. */
 const chancePoses = 40;
+/** At such a pose others have seen so great a share of its walls at least. */
+const leastSeen = 0.1;
 /** So many of the maps that were joined show what they have. */
 const mostMembers = 20;
 
@@ -14,7 +16,7 @@ const mostMembers = 20;
 export interface Yardstick {
   /** The least and the most that maps of the merge, twenty at most, have where they were joined; null where none were. */
   joined: { least: number; most: number } | null;
-  /** What the map in hand does not exceed in 19 of 20 places anywhere. */
+  /** What the map in hand does not exceed in 19 of 20 places anywhere that others have seen a tenth of its walls. */
   chance: number;
 }
 
@@ -38,7 +40,8 @@ export function* yardstickOf(scorer: Scorer, grid: Grid, others: Laid[], members
   const shares: number[] = [];
   for (let i = 0; i < chancePoses; i++) {
     const score = scorer.score(chancePose(i, grid, others), others);
-    if (score) shares.push(score.wallsMet);
+    // A handful of walls meets others by chance, and says nothing of a place where most are seen.
+    if (score && score.wallsSeen >= leastSeen) shares.push(score.wallsMet);
     yield;
   }
   return {
@@ -47,11 +50,11 @@ export function* yardstickOf(scorer: Scorer, grid: Grid, others: Laid[], members
   };
 }
 
-/** Maps of which the cells are there. */
-export function laid(grids: readonly (Grid | null)[], placed: readonly Placed[]): Laid[] {
-  return placed.flatMap(({ map, T_scene_map }) => {
-    const grid = grids[map];
-    return grid ? [{ grid, pose: T_scene_map }] : [];
+/** Maps of which the cells are there, as `gridOf` has them. */
+export function laid(placed: readonly Placed[], gridOf: (placed: Placed) => Grid | null): Laid[] {
+  return placed.flatMap((one) => {
+    const grid = gridOf(one);
+    return grid ? [{ grid, pose: one.T_scene_map }] : [];
   });
 }
 

@@ -119,3 +119,9 @@ test("the extent holds all corners", () => {
     assert.ok(Math.abs(value - expected) < 1e-9);
   }
 });
+
+test("a map that lies elsewhere than the merged map has it is seen above that", () => {
+  const merged = { grid: one(Cell.free), opacity: 1 };
+  assert.deepEqual(pixel({ merged, layers: [layer(one(Cell.occupied))] }), [...white, 255]);
+  assert.deepEqual(pixel({ merged, layers: [{ ...layer(one(Cell.occupied)), above: true }] }), [...blue, 255]);
+});

@@ -36,3 +36,9 @@ test("places that several comparisons find are one", () => {
   assert.deepEqual(placesOf(report, 2, middle, placed).map(({ probability }) => probability), [0.3, 0.1]);
   assert.deepEqual(placesOf(report, 2, middle, []), [], "of nothing that is seen");
 });
+
+test("maps that could not be compared have no place", () => {
+  const at = { x: 0, y: 0, theta: 0 };
+  const report = reportOf([at, at], [join(0, 1, at, { outcome: "refused", probability: 0 })]);
+  assert.deepEqual(placesOf(report, 1, middle, [{ map: 0, T_scene_map: at }]), []);
+});

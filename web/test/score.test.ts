@@ -21,7 +21,7 @@ test("a map on itself fits in full, wherever both lie", () => {
   const random = randomNumbers(1);
   for (let i = 0; i < 5; i++) {
     const pose = randomPose(random);
-    assert.deepEqual(new Scorer(grid).score(pose, [{ grid, pose }]), { wallsMet: 1, agreement: 1, overlap: 1 });
+    assert.deepEqual(new Scorer(grid).score(pose, [{ grid, pose }]), { wallsMet: 1, wallsSeen: 1, agreement: 1, overlap: 1 });
   }
 });
 
@@ -54,5 +54,5 @@ test("nothing in common is no score", () => {
 test("what any of several maps knows counts", () => {
   const grid = rooms();
   const far = { grid, pose: { x: 500, y: 0, theta: 0 } };
-  assert.deepEqual(new Scorer(grid).score(identity, [far, { grid, pose: identity }]), { wallsMet: 1, agreement: 1, overlap: 1 });
+  assert.deepEqual(new Scorer(grid).score(identity, [far, { grid, pose: identity }]), { wallsMet: 1, wallsSeen: 1, agreement: 1, overlap: 1 });
 });
