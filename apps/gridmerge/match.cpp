@@ -7,14 +7,12 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "commands.hpp"
 #include "console.hpp"
-#include "match/verdict.hpp"
 #include "report/json_lines.hpp"
 #include "scale_hint.hpp"
 #include "search_options.hpp"
@@ -45,34 +43,13 @@ std::string describe_verdict(const MatchResult& result, const SearchOptions& sea
                        std::floor(1e4 * result.acceptance_index) / 1e4, search.accept_from());
   }
   if (result.verdict == Verdict::accepted) {
-    return fmt::format("accepted: the maps show one place, with probability {:.4f}", result.probability);
+    return fmt::format("accepted: {}, with probability {:.4f}", explain(result), result.probability);
   }
-  const auto refused = [&](const std::string& why) {
-    return fmt::format("refused: {} (probability {:.4f})", why, result.probability);
-  };
-  switch (result.reason) {
-    case Reason::nothing_to_compare:
-      return "refused: there is too little in the maps to compare";
-    case Reason::ambiguous:
-      if (slides(result.hypotheses.front().figures))
-        return refused(
-            fmt::format("the maps are free to slide along {:.0f} degrees",
-                        180.0 / std::numbers::pi * result.hypotheses.front().figures.free_direction));
-      if (result.hypotheses.size() > 1 &&
-          is_near_rival(result.hypotheses[0].probability, result.hypotheses[1].probability,
-                        search.accept_from()))
-        return refused("two ways to lay the maps explain them nearly equally well");
-      return refused("this way to lay the maps hardly stands out from all others");
-    case Reason::contradiction:
-      return refused("the maps disagree where both know the same places");
-    case Reason::too_little_overlap:
-      return refused("the maps agree, but on too little to be sure");
-    case Reason::several:
-    case Reason::contradicts_others:
-    case Reason::none:
-      break;
-  }
-  return refused("no way to lay the maps explains them well");
+  const std::string why = explain(result, search.accept_from());
+  // Where nothing was compared no pose has a probability.
+  return result.reason == Reason::nothing_to_compare
+             ? "refused: " + why
+             : fmt::format("refused: {} (probability {:.4f})", why, result.probability);
 }
 
 std::string describe(const MatchResult& result, const MatchCommandOptions& options) {

@@ -81,6 +81,8 @@ class MatchResult(PairPose):
     scale: float = 1.0
     """What the moving map is enlarged by first: p_fixed = scale * R(theta) * p_moving + (x, y), theta, x and y those
     of the transform. 1 unless match() was given `scale`."""
+    explanation: str = ""
+    """What the verdict says, in words. Of the random walk, which knows no reasons, the acceptance index tells more."""
 
     @property
     def accepted(self) -> bool:
@@ -135,7 +137,7 @@ def match(
         None if scale is None else _arguments.scales("scale", scale, search),
         _arguments.progress(progress),
     )
-    return to_match_result(result)
+    return to_match_result(result, _core.DEFAULT_ACCEPT if accept is None else accept)
 
 
 def pair_pose(core: _core.PairPose) -> dict[str, Any]:
@@ -150,7 +152,7 @@ def pair_pose(core: _core.PairPose) -> dict[str, Any]:
     }
 
 
-def to_match_result(core: _core.MatchResult) -> MatchResult:
+def to_match_result(core: _core.MatchResult, accept: float = _core.DEFAULT_ACCEPT) -> MatchResult:
     return MatchResult(
         **pair_pose(core),
         verdict=cast(Verdict, core.verdict),
@@ -161,4 +163,5 @@ def to_match_result(core: _core.MatchResult) -> MatchResult:
             for one in core.hypotheses
         ),
         scale=core.scale,
+        explanation=core.explain(accept),
     )

@@ -48,6 +48,9 @@ void bind_match(nb::module_& module) {
   nb::class_<MatchResult, PairPose>(module, "MatchResult")
       .def_prop_ro("verdict", [](const MatchResult& result) { return name_of(result.verdict); })
       .def_prop_ro("reason", [](const MatchResult& result) { return name_of(result.reason); })
+      .def(
+          "explain", [](const MatchResult& result, double accept) { return explain(result, accept); },
+          nb::arg("accept"))
       .def_ro("seconds", &MatchResult::seconds)
       .def_ro("scale", &MatchResult::scale)
       .def_ro("hypotheses", &MatchResult::hypotheses);

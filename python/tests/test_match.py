@@ -164,3 +164,10 @@ def test_the_random_walk_is_a_search_like_others(robots: list[str]) -> None:
         gridmerge.merge([fixed, moving], search="random-walk")
     merged = gridmerge.merge([fixed, moving], search="random-walk", strategy="tree", accept=0.0)
     assert len(merged.components) == 1
+
+
+def test_a_verdict_has_words(cli: Cli, robots: list[str], elsewhere: str) -> None:
+    assert gridmerge.match(robots[0], robots[1]).explanation == "the maps show one place"
+    refused = gridmerge.match(robots[0], elsewhere)
+    assert refused.explanation
+    assert f"refused: {refused.explanation} (" in cli("match", robots[0], elsewhere).stdout

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "gridmerge/export.hpp"
@@ -102,6 +103,11 @@ struct MatchOptions {
 /// Throws std::invalid_argument for options that make no sense; `random_walk` is looked at only if it is the
 /// search.
 GRIDMERGE_EXPORT void validate(const MatchOptions& options);
+
+/// What the verdict says, in words: "the maps disagree where both know the same places". `accept_probability`
+/// as it was asked for. Of the random walk, which knows no reasons, the acceptance index tells more.
+GRIDMERGE_EXPORT std::string explain(const MatchResult& result,
+                                     double accept_probability = MatchOptions{}.accept_probability);
 
 /// Finds how `moving` lies on `fixed`, searching every pose, and says whether to believe it.
 /// Throws std::invalid_argument for an invalid grid or option (see validate()), and with `scales` for a map
