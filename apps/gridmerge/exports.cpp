@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "console.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "report/output_names.hpp"
 
@@ -108,15 +109,24 @@ void try_result_file(const std::filesystem::path& file, const std::string& direc
   if (!beside || std::filesystem::exists(directory)) try_output_file(file.string(), inputs);
 }
 
+void require_not_exported(const std::vector<Export>& exports, const std::filesystem::path& file,
+                          std::string_view writers) {
+  for (const Export& one : exports) {
+    require_two_files(file, one.file, writers);
+    if (may_write(one, file))
+      throw FileError(
+          file, fmt::format("may be written by {}, as a GeoTIFF of a further merged map: choose another "
+                            "name for one",
+                            writers));
+  }
+}
+
 void try_exports(const std::vector<Export>& exports, const std::string& directory,
                  const std::vector<std::filesystem::path>& inputs) {
   for (std::size_t i = 0; i < exports.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      require_two_files(exports[i].file, exports[j].file, "two exports");
-      if (may_write(exports[i], exports[j].file) || may_write(exports[j], exports[i].file))
-        throw FileError(exports[i].file,
-                        "may be written by two exports, as a GeoTIFF of a further merged map: "
-                        "choose another name for one");
+      require_not_exported({exports[j]}, exports[i].file, "two exports");
+      require_not_exported({exports[i]}, exports[j].file, "two exports");
     }
     for (const std::filesystem::path& input : inputs) {
       if (may_write(exports[i], input))
@@ -129,12 +139,15 @@ void try_exports(const std::vector<Export>& exports, const std::string& director
 }
 
 std::string write_exports(const std::vector<Export>& exports,
-                          const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge) {
+                          const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge,
+                          int threads) {
   std::string text;
-  for (const Export& one : exports) {
-    for (const std::filesystem::path& file : write_export(one.format, one.file, inputs, merge))
-      text += fmt::format("{}: {}\n", name_of(one.format), escape_controls(file.string()));
-  }
+  with_threads(threads, [&] {
+    for (const Export& one : exports) {
+      for (const std::filesystem::path& file : write_export(one.format, one.file, inputs, merge))
+        text += fmt::format("{}: {}\n", name_of(one.format), escape_controls(file.string()));
+    }
+  });
   return text;
 }
 

@@ -33,6 +33,10 @@ std::vector<Export> exports_of(const ExportOptions& options, const std::string& 
 void require_two_files(const std::filesystem::path& a, const std::filesystem::path& b,
                        std::string_view writers);
 
+/// The same of a file and all that exports may write.
+void require_not_exported(const std::vector<Export>& exports, const std::filesystem::path& file,
+                          std::string_view writers);
+
 /// Makes sure, before long work, that a file can be written in or beside `directory`, which need not be there
 /// yet. Throws FileError, also for a name that a merge itself gives to a file there, or one of `inputs` has.
 void try_result_file(const std::filesystem::path& file, const std::string& directory,
@@ -42,8 +46,10 @@ void try_result_file(const std::filesystem::path& file, const std::string& direc
 void try_exports(const std::vector<Export>& exports, const std::string& directory,
                  const std::vector<std::filesystem::path>& inputs);
 
-/// Writes all of them, and returns what to tell of it: a line for each. Throws FileError.
+/// Writes all of them by so many threads, and returns what to tell of it: a line for each file. Throws
+/// FileError.
 std::string write_exports(const std::vector<Export>& exports,
-                          const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge);
+                          const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge,
+                          int threads);
 
 }  // namespace gridmerge::cli

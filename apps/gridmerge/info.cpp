@@ -130,18 +130,16 @@ void for_each_map(const std::string& path, const LoadOptions& load, Console& con
   const Bag bag(file, load);
   const std::vector<BagTopic> topics = bag.map_topics();
   if (!topic.empty() || topics.empty()) return use(read_topic(bag, topic));
-  std::vector<NamedMap> maps;
   std::vector<EmptyTopic> empty;
   for (const BagTopic& one : topics) {
     try {
-      maps.push_back(read_topic(bag, one.name));
+      use(read_topic(bag, one.name));
     } catch (const EmptyTopic& error) {
       empty.push_back(error);
     }
   }
-  if (maps.empty()) throw empty.front();
+  if (empty.size() == topics.size()) throw empty.front();
   for (const EmptyTopic& error : empty) console.warn(error.what());
-  for (const NamedMap& map : maps) use(map);
 }
 
 int info(const InfoOptions& options) {

@@ -146,9 +146,10 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
       return merge_up_tree_named(maps, options, matcher, {engine.resolution, engine.progress});
     return cached.merge(maps, engine, known_poses);
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one
-    throw FileError(
-        options.output,
-        coarser ? fmt::format("{}: try --output-resolution {:.2g}", error.what(), *coarser) : error.what());
+    const std::string what_helps = coarser ? fmt::format("try --output-resolution {:.2g}", *coarser)
+                                           : "even in cells 16 times as large as those of its finest map: "
+                                             "known poses put maps too far apart";
+    throw FileError(options.output, fmt::format("{}: {}", error.what(), what_helps));
   }
 }
 
@@ -204,10 +205,8 @@ int run_merge(const MergeCommandOptions& options) {
   if (!options.search.trace.empty()) try_result_file(options.search.trace, options.output, inputs.files);
   const std::vector<Export> exports = exports_of(options.exports, options.output);
   try_exports(exports, options.output, inputs.files);
-  for (const Export& one : exports) {
-    if (!options.search.trace.empty())
-      require_two_files(one.file, options.search.trace, "--export and --trace");
-  }
+  if (!options.search.trace.empty())
+    require_not_exported(exports, options.search.trace, "--export and --trace");
   MergeResult result =
       merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
   if (inputs.plan)
@@ -220,7 +219,9 @@ int run_merge(const MergeCommandOptions& options) {
   std::string exported;
   std::exception_ptr not_exported;  // told behind what the merge has found
   try {
-    exported = write_exports(exports, inputs.files, {options.maps, inputs.maps, result});
+    if (!exports.empty()) console.progress("writing the exports");
+    exported =
+        write_exports(exports, inputs.files, {options.maps, inputs.maps, result}, options.common.threads);
   } catch (const FileError&) {
     not_exported = std::current_exception();
   }
@@ -283,9 +284,10 @@ void add_files(CLI::App& command, MergeCommandOptions& options) {
   command.add_option("-o,--output", options.output, "Directory for the results; made if need be")
       ->type_name("DIR");
   command
-      .add_option("--output-resolution", options.output_resolution,
-                  "Metres per cell of the merged map; if not given, those of the finest map, or so many more "
-                  "that it has at most 2^28 cells")
+      .add_option(
+          "--output-resolution", options.output_resolution,
+          "Metres per cell of the merged map; if not given, those of the finest map, or so many more, "
+          "up to 16 times, that it has at most 2^28 cells")
       ->type_name("METRES")
       ->check(kMetresPerCell);
 }

@@ -10,6 +10,7 @@
 #include "console.hpp"
 #include "gridmerge/report/merge_record.hpp"
 #include "merge/doubled_walls.hpp"
+#include "merge/fused_windows.hpp"
 
 namespace gridmerge::cli {
 
@@ -144,11 +145,14 @@ namespace {
 std::string describe_coarser(const std::vector<OccupancyGrid>& maps, const Component& component) {
   double finest = component.fused.grid.resolution;
   for (const Member& member : component.members) finest = std::min(finest, maps[member.map].resolution);
-  if (finest == component.fused.grid.resolution) return {};
+  const OccupancyGrid& grid = component.fused.grid;
+  if (finest == grid.resolution) return {};
+  const double ratio = grid.resolution / finest, columns = ratio * grid.width, rows = ratio * grid.height;
+  const LatticeLimits& limits = FusedWindows::kLimits;
+  const bool is_for_geotiff = columns * rows <= limits.cells && std::max(columns, rows) <= limits.side;
   return fmt::format(
-      "  in cells of {:g} m: of {:g} m, as its finest map, it would have more than 2^28; --export geotiff "
-      "has them all\n",
-      component.fused.grid.resolution, finest);
+      "  in cells of {:g} m, since 2^28 of {:g} m, as those of its finest map, may not be enough{}\n",
+      grid.resolution, finest, is_for_geotiff ? "; --export geotiff has these" : "");
 }
 
 }  // namespace
@@ -162,7 +166,7 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     const Component& component = result.components[i];
     fmt::format_to(out, "{}: {} of {} maps\n", component_file(i), component.members.size(), names.size());
-    if (!asked.resolution) text += describe_coarser(maps, component);
+    if (!asked.is_resolution_asked) text += describe_coarser(maps, component);
     for (const Member& member : component.members) {
       fmt::format_to(out, "  {}: {}{}\n", escape_controls(names[member.map]),
                      describe_pose(member.T_component_map),

@@ -15,7 +15,7 @@ struct AskedMerge {
   const SearchOptions& search;
   MapTransform transform = MapTransform::rigid;
   double max_false_joins = MergeOptions{}.max_false_joins;
-  bool resolution = false;  ///< that of the merged maps was asked for
+  bool is_resolution_asked = false;  ///< that of the merged maps
 };
 
 /// What became of each comparison, a line each.

@@ -170,9 +170,10 @@ void add_merge_options(CLI::App& command, NodeCommandOptions& options) {
       ->check(kNotNegative)
       ->capture_default_str();
   command
-      .add_option("--output-resolution", node.team.merge.resolution,
-                  "Metres per cell of the merged map; if not given, those of the finest map, or so many more "
-                  "that it has at most 2^28 cells")
+      .add_option(
+          "--output-resolution", node.team.merge.resolution,
+          "Metres per cell of the merged map; if not given, those of the finest map, or so many more, "
+          "up to 16 times, that it has at most 2^28 cells")
       ->type_name("METRES")
       ->check(kMetresPerCell);
 }

@@ -26,7 +26,7 @@ int run_report(const ReportCommandOptions& options) {
   with_threads(options.common.threads,
                [&] { write_report(options.merge.directory, merge.files, merge.named()); });
   print((std::filesystem::path(options.merge.directory) / "report.html").string() + "\n");
-  print(write_exports(exports, merge.files, merge.named()));
+  print(write_exports(exports, merge.files, merge.named(), options.common.threads));
   return kDone;
 }
 

@@ -55,8 +55,8 @@ def merge(
             50; those that are least sure are not made. It holds beside `accept`. "tree" does not use it.
         max_missed: of more than 50 maps match likely pairs only: the others may hide this share of all joins, 0.25 or
             so. Up to 0.2 all pairs are matched. "tree" does not use it.
-        output_resolution: of the merged maps [m]; None = the finest of the maps', or so much coarser that it has at
-            most 2^28 cells.
+        output_resolution: of the merged maps [m]; None = the finest of the maps', or so much coarser, up to 16 times,
+            that it has at most 2^28 cells.
         transform: what may be done to maps so that walls that several have seen come to lie on each other: "rigid",
             which is the default, turns and shifts them; "similarity" gives each a scale of its own, "affine" scales
             along two axes, and shear; "elastic" bends them, as drift has. See Member.deformation. Fixed maps stay as

@@ -220,7 +220,7 @@ class MergeResult:
         Args:
             format: "g2o" is a pose graph, "open-rmf" has the points by which fleet adapters find where maps lie, and
                 "geojson" has the outlines of all placed maps. "geotiff" is the merged map itself in the cells of its
-                finest map, of up to 2^36 cells; further components go to `file`_2 and so on beside it.
+                finest map, of up to 2^36 cells; further components go to files beside it: x_2.tif for x.tif.
             file: is replaced as a whole.
 
         Metres and radians, in the frame of each merged map. Raises ValueError for another format, and FileError if no

@@ -28,6 +28,9 @@ class GRIDMERGE_INTERNAL_EXPORT StagedFile {
   StagedFile(const StagedFile&) = delete;
   StagedFile& operator=(const StagedFile&) = delete;
 
+  /// The file that is replaced: where a link leads to, if the path is one.
+  const std::filesystem::path& path() const { return path_; }
+
   /// Writes more bytes. Throws FileError.
   void append(std::string_view bytes);
 

@@ -42,9 +42,11 @@ DirectoryLock::DirectoryLock(const std::filesystem::path& directory, IfMissing i
     // Again for each attempt: another program may have made the directory, and removed it as it was empty.
     if (if_missing == IfMissing::make) made_ = std::make_unique<MadeDirectories>(directory);
     descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
-    // Another user's, whom one waits for all the same.
-    if (descriptor_ < 0 && errno == EACCES)
+    if (descriptor_ < 0 && errno == EACCES) {
+      // Another user's, whom one waits for all the same; or there is none, and none can be made.
       descriptor_ = ::open(file_.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+      if (descriptor_ < 0) errno = EACCES;
+    }
     if (descriptor_ < 0 && (errno != ENOENT || if_missing == IfMissing::fail))
       throw FileError(directory, "cannot be written to: " + describe_errno(errno));
     if (descriptor_ >= 0 && try_lock(descriptor_) && !is_gone(descriptor_)) return;

@@ -25,7 +25,8 @@ double fitting_resolution(double resolution, const std::vector<PlacedMap>& maps,
                           const std::vector<Deformation>& deformations = {});
 
 /// The resolution of a merged map of these: the one that is asked for, or, if that is 0, the finest of theirs
-/// or so much coarser that the merged map fits, up to 16 times. O(1), O(cells) where it may not fit.
+/// or so much coarser that the merged map fits, up to 16 times. O(maps), O(cells) where it may not fit or a
+/// map is bent.
 GRIDMERGE_INTERNAL_EXPORT double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps,
                                                    const std::vector<Deformation>& deformations = {});
 

@@ -240,33 +240,37 @@ void sample_map(const PlacedMap& input, const Lattice& lattice, int samples, Log
 }
 
 // From the output's frame to a bent map's, at the nodes of a coarse grid over a patch; linear between them.
+// Nodes are cells of the lattice by their numbers, so that no patch has others.
 class StraightenedGrid {
  public:
   StraightenedGrid(const PlacedMap& input, const Deformation& deformation, const Lattice& lattice,
                    const LogOddsPatch& patch)
-      // As a number of cells it may be more than an int holds; beyond the patch there is nothing to look up.
+      // As a number of cells it may be more than an int holds; beyond the lattice there is nothing to look
+      // up.
       : step_(static_cast<int>(std::clamp(kNodesApart * deformation.spacing() / lattice.resolution, 1.0,
-                                          static_cast<double>(std::max(patch.width, patch.height))))),
-        columns_(patch.width / step_ + 2) {
+                                          static_cast<double>(std::max(lattice.width, lattice.height))))),
+        first_column_(patch.column / step_),
+        first_row_(patch.row / step_),
+        columns_((patch.column + patch.width) / step_ - first_column_ + 2) {
     const SE2 T_map_output = inverse(input.T_output_map), T_grid_map = inverse(input.map->origin);
-    const int rows = patch.height / step_ + 2;
-    for (int j = 0; j < rows; ++j) {
+    const int end_row = (patch.row + patch.height) / step_ + 2;
+    for (int j = first_row_; j < end_row; ++j) {
       throw_if_cancelled();
-      for (int i = 0; i < columns_; ++i) {
-        const Point2 node{lattice.corner.x + (patch.column + i * step_) * lattice.resolution,
-                          lattice.corner.y + (patch.row + j * step_) * lattice.resolution};
+      for (int i = first_column_; i < first_column_ + columns_; ++i) {
+        const Point2 node{lattice.corner.x + static_cast<double>(i) * step_ * lattice.resolution,
+                          lattice.corner.y + static_cast<double>(j) * step_ * lattice.resolution};
         const Point2 in_grid = T_grid_map * deformation.straighten(T_map_output * node);
         nodes_.push_back({in_grid.x / input.map->resolution, in_grid.y / input.map->resolution});
       }
     }
   }
 
-  // Of a point of the patch, from its lower-left corner [cells of the lattice]: in the map's cells.
-  Point2 at(double column, double row) const {
-    const double x = column / step_, y = row / step_;
-    const int i = static_cast<int>(x), j = static_cast<int>(y);
-    const double u = x - i, v = y - j;
-    const Point2* const low = nodes_.data() + static_cast<std::ptrdiff_t>(j) * columns_ + i;
+  // Of a point of a cell of the lattice, x and y from 0 to 1 across the cell: in the map's cells.
+  Point2 at(int column, int row, double x, double y) const {
+    const int i = column / step_, j = row / step_;
+    const double u = (column - i * step_ + x) / step_, v = (row - j * step_ + y) / step_;
+    const Point2* const low =
+        nodes_.data() + static_cast<std::ptrdiff_t>(j - first_row_) * columns_ + (i - first_column_);
     const Point2* const high = low + columns_;
     return {(1.0 - v) * ((1.0 - u) * low[0].x + u * low[1].x) + v * ((1.0 - u) * high[0].x + u * high[1].x),
             (1.0 - v) * ((1.0 - u) * low[0].y + u * low[1].y) + v * ((1.0 - u) * high[0].y + u * high[1].y)};
@@ -276,6 +280,8 @@ class StraightenedGrid {
   static constexpr double kNodesApart = 1.0 / 16.0;  // [spacings]
 
   int step_;
+  int first_column_;  // of nodes
+  int first_row_;
   int columns_;
   std::vector<Point2> nodes_;
 };
@@ -290,7 +296,8 @@ void sample_bent_map(const PlacedMap& input, const Deformation& deformation, con
     for (int column = 0; column < patch.width; ++column, ++target) {
       for (int j = 0; j < samples; ++j) {
         for (int i = 0; i < samples; ++i) {
-          const Point2 p = straightened.at(column + (i + 0.5) / samples, row + (j + 0.5) / samples);
+          const Point2 p = straightened.at(patch.column + column, patch.row + row, (i + 0.5) / samples,
+                                           (j + 0.5) / samples);
           keep_strongest(patch.log_odds[target], source.at(p.x, p.y));
         }
       }

@@ -82,8 +82,8 @@ struct LogOddsPatch {
 GRIDMERGE_INTERNAL_EXPORT LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice,
                                                      const Deformation& deformation = {});
 
-/// The same of the lattice cells in a box alone: the values are those of the whole lattice. A bent map may
-/// take a neighbouring cell instead. O(map cells + lattice cells in the box).
+/// The same of the lattice cells in a box alone: the values are those of the whole lattice. O(map cells +
+/// lattice cells in the box).
 LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice, const Deformation& deformation,
                            const CellBox& within);
 

@@ -85,13 +85,13 @@ std::vector<std::filesystem::path> write_geotiff(const std::filesystem::path& fi
     staged.push_back(std::make_unique<StagedFile>(files.back()));
     const FusedWindows windows = windows_of(merge, i);
     const Lattice& lattice = windows.lattice();
-    TiffPyramid picture(files.back(), lattice.width, lattice.height);
+    TiffPyramid picture(staged.back()->path(), lattice.width, lattice.height);
     draw(windows, picture);
     const std::string owner = plain(frame_owner(merge, components[i]));
     picture.write(*staged.back(),
                   {{lattice.corner.x, lattice.corner.y + lattice.height * lattice.resolution},
                    lattice.resolution,
-                   "frame of " + owner + ", metres",
+                   "frame of " + owner,
                    fmt::format("merged map of {} maps; occupancy in percent, {} where nothing is known",
                                components[i].members.size(), TiffPyramid::kUnknown)});
   }

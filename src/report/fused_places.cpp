@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/fused_places.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <numeric>
 
@@ -23,7 +25,25 @@ std::vector<std::size_t> fused_places(const MergeResult& merge, std::size_t comp
     prepared.push_back(std::make_unique<const PreparedMap>(maps.at(member.map)));
     placed.push_back({prepared.back().get(), member.T_component_map});
   }
-  return without_copies(placed);
+  std::vector<std::size_t> places = without_copies(placed);
+  // Copies of which both have known poses count each.
+  for (const Join& join : merge.joins) {
+    if (join.outcome != JoinOutcome::known) continue;
+    const auto place_of = [&](std::size_t map) {
+      return std::find_if(members.begin(), members.end(),
+                          [map](const Member& member) { return member.map == map; }) -
+             members.begin();
+    };
+    const auto fixed = place_of(join.fixed), moving = place_of(join.moving);
+    if (std::max(fixed, moving) >= std::ssize(members)) continue;
+    if (!is_copy(*prepared[static_cast<std::size_t>(fixed)], *prepared[static_cast<std::size_t>(moving)]))
+      continue;
+    places.push_back(static_cast<std::size_t>(fixed));
+    places.push_back(static_cast<std::size_t>(moving));
+  }
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  return places;
 }
 
 }  // namespace gridmerge::internal

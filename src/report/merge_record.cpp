@@ -328,11 +328,6 @@ MergeRecord read_merge_record(const std::filesystem::path& directory) {
   return parse_transforms(file, reader.read_all(kMaxBytes));
 }
 
-namespace {
-
-/// The places of the members that were fused.
-}  // namespace
-
 std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<OccupancyGrid>& maps,
                                     const std::filesystem::path& directory) {
   if (maps.size() != record.names.size()) throw std::invalid_argument("there are not as many maps as names");

@@ -72,6 +72,35 @@ TEST_F(Export, OfASavedMergeIsTheSame) {
   EXPECT_TRUE(read_file(directory.file("t")) == read_file(output + "/merged.tif"));
 }
 
+TEST_F(Export, FollowsALinkToItsFolder) {
+  std::filesystem::create_directory(directory.file("there"));
+  std::filesystem::create_symlink("there/m.tif", directory.file("link.tif"));
+  std::ofstream(directory.file("there/m.tif")) << "old";
+  ASSERT_EQ(merge({"--export", "geotiff=" + directory.file("link.tif")}).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(directory.file("link.tif")));
+  EXPECT_EQ(read_file(directory.file("there/m.tif")).substr(0, 3), "II+");
+}
+
+TEST_F(Export, OfCopiesWithKnownPosesIsTheMergedMap) {
+  // Each counts, as both poses are known.
+  const std::string second = directory.file("second.yaml");
+  std::filesystem::copy_file(left, second);
+  const std::string head = "map\tx\ty\ttheta\n" + left + "\t0\t0\t0\n" + right + "\t1\t2\t0\n";
+  const std::string two = directory.write("two.tsv", head);
+  const std::string three = directory.write("three.tsv", head + second + "\t0\t0\t0\n");
+  ASSERT_EQ(run({"merge", left, second, right, "-o", output, "--init", three, "--fix", left, "--fix", second,
+                 "--fix", right, "--export", "geotiff"})
+                .exit_code,
+            0);
+  const std::string each = read_file(output + "/merged.tif");
+  EXPECT_EQ(run({"report", output}).err, "") << "what it makes again is what was merged";
+  ASSERT_EQ(run({"merge", left, right, "-o", output, "--init", two, "--fix", left, "--fix", right, "--export",
+                 "geotiff"})
+                .exit_code,
+            0);
+  EXPECT_FALSE(read_file(output + "/merged.tif") == each);
+}
+
 TEST_F(Export, UpATreeHoldsCopiesEachAsTheMergedMapDoes) {
   ASSERT_EQ(run({"merge", left, right, left, left, "-o", output, "--strategy", "tree", "--export", "geotiff"})
                 .exit_code,
@@ -81,7 +110,7 @@ TEST_F(Export, UpATreeHoldsCopiesEachAsTheMergedMapDoes) {
   EXPECT_FALSE(read_file(output + "/merged.tif") == twice) << "log-odds add up";
 }
 
-TEST_F(Export, OfAMapTooLargeToBeHeldIsWhole) {
+TEST_F(Export, OfAWideSiteIsSmall) {
   const std::string poses =
       directory.write("poses.tsv", "map\tx\ty\ttheta\n" + left + "\t0\t0\t0\n" + right + "\t4000\t20\t1\n");
   const Outcome outcome = merge(
@@ -120,6 +149,12 @@ TEST_F(Export, ToWhereItCannotBeIsAnErrorBeforeTheWork) {
   expect_error(merge({"--export", "geotiff=" + directory.file("x.tif"), "--export",
                       "g2o=" + directory.file("./x_2.tif")}),
                directory.file("./x_2.tif"), "may be written by two exports");
+  expect_error(merge({"--export", "g2o=" + directory.file("x_2.tif"), "--export",
+                      "geotiff=" + directory.file("x.tif")}),
+               directory.file("x_2.tif"), "may be written by two exports");
+  expect_error(merge({"--search", "random-walk", "--strategy", "tree", "--trace", directory.file("x_2.tif"),
+                      "--export", "geotiff=" + directory.file("x.tif")}),
+               directory.file("x_2.tif"), "may be written by --export and --trace");
   const std::string base = left.substr(0, left.rfind("left"));
   std::filesystem::copy_file(left, base + "in_3.yaml");
   expect_error(

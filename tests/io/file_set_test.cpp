@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -110,6 +112,38 @@ TEST(FileSet, NeedsADirectory) {
   EXPECT_TRUE(
       contains(test::message_of<FileError>([&] { const FileSet files(directory.path() / "missing"); }),
                "No such file"));
+}
+
+// As root, who may write everywhere, a child becomes somebody else.
+TEST(FileSet, OfAnotherUsersFolderIsRefusedAtOnceAndBesideHisLockOneWaits) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can become another user";
+  const TemporaryDirectory directory;
+  ::chmod(directory.path().c_str(), 0755);
+  std::filesystem::create_directory(directory.path() / "shared");
+  ::chmod(directory.file("shared").c_str(), 0777);
+  directory.write("shared/.gridmerge.lock", "");
+  ::chmod(directory.file("shared/.gridmerge.lock").c_str(), 0644);
+  const ::pid_t child = ::fork();
+  if (child == 0) {
+    constexpr ::uid_t kNobody = 65534;
+    const auto begin = std::chrono::steady_clock::now();
+    bool is_refused = ::setgid(kNobody) == 0 && ::setuid(kNobody) == 0;
+    const std::string error = test::message_of<FileError>([&] { const FileSet files(directory.path()); });
+    is_refused = is_refused && contains(error, "cannot be written to: Permission denied") &&
+                 std::chrono::steady_clock::now() - begin < std::chrono::seconds(20);
+    bool is_written = false;
+    try {
+      FileSet files(directory.path() / "shared");
+      files.add("a", "new");
+      files.commit();
+      is_written = read_file(directory.file("shared/a")) == "new";
+    } catch (const FileError&) {
+    }
+    ::_exit((is_refused ? 0 : 1) + (is_written ? 0 : 2));
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(WEXITSTATUS(status), 0) << "1: not refused at once, 2: not written";
 }
 
 TEST(FileSet, OneWritesAtATime) {

@@ -36,7 +36,8 @@ export class Gauge {
       return;
     }
     const { joined, chance } = yardstick;
-    this.tick.style.left = `${100 * chance}%`;
+    this.tick.hidden = chance === null;
+    this.tick.style.left = `${100 * (chance ?? 0)}%`;
     this.band.hidden = joined === null;
     if (joined) {
       this.band.style.left = `${100 * joined.least}%`;
@@ -45,7 +46,9 @@ export class Gauge {
     this.meaning.textContent = (joined
       ? `Walls met is the figure that counts: the maps that were joined have ${range(joined.least, joined.most)} (the band). `
       : "Walls met is the figure that counts. ") +
-      `Laid anywhere, this map has up to ${percent(chance)} by chance (the mark): a good place is far above that.`;
+      (chance === null
+        ? "The others have seen too little to tell what this map has by chance."
+        : `Where the others have seen much of it, this map has up to ${percent(chance)} by chance (the mark): a good place is far above that.`);
   }
 }
 

@@ -16,8 +16,8 @@ const mostMembers = 20;
 export interface Yardstick {
   /** The least and the most that maps of the merge, twenty at most, have where they were joined; null where none were. */
   joined: { least: number; most: number } | null;
-  /** What the map in hand does not exceed in 19 of 20 places anywhere that others have seen a tenth of its walls. */
-  chance: number;
+  /** What the map in hand does not exceed in 19 of 20 places anywhere that others have seen a tenth of its walls; null if there are none. */
+  chance: number | null;
 }
 
 interface Laid {
@@ -75,8 +75,8 @@ function chancePose(i: number, grid: Grid, others: Laid[]): SE2 {
   };
 }
 
-/** What all but a twentieth do not exceed; 0 of none. */
-function highOf(shares: number[]): number {
+/** What all but a twentieth do not exceed; null of none. */
+function highOf(shares: number[]): number | null {
   const sorted = [...shares].sort((a, b) => a - b);
-  return sorted[Math.max(0, Math.ceil(0.95 * sorted.length) - 1)] ?? 0;
+  return sorted[Math.max(0, Math.ceil(0.95 * sorted.length) - 1)] ?? null;
 }

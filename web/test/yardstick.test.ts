@@ -34,25 +34,20 @@ test("maps that lie on each other meet their walls, and one that is laid anywher
   const two = [{ grid, pose: identity }, { grid, pose: identity }];
   const { joined, chance } = run(grid, two, two);
   assert.deepEqual(joined, { least: 1, most: 1 });
-  assert.ok(chance > 0 && chance < 0.6, `${chance}`);
+  assert.ok(chance !== null && chance > 0 && chance < 0.6, `${chance}`);
   assert.deepEqual(run(grid, two, two), { joined, chance }, "the same each time");
 });
 
 test("without a merged map there is chance alone, and without anything there is nothing", () => {
   const grid = room(4);
   assert.equal(run(grid, [{ grid, pose: identity }], []).joined, null);
-  assert.deepEqual(run(grid, [], []), { joined: null, chance: 0 });
+  assert.deepEqual(run(grid, [], []), { joined: null, chance: null });
   const two = [{ map: 0, T_scene_map: identity }, { map: 1, T_scene_map: identity }];
   assert.deepEqual(laid(two, ({ map }) => (map === 0 ? grid : null)), [{ grid, pose: identity }]);
 });
 
 test("a place where hardly a wall is seen is none by which chance is told", () => {
-  // A room that the others have seen a strip of, all walls: whatever is laid at its rim meets them.
   const grid = room(5);
-  const strip = new Grid(100, 3, 0.1, { x: 0, y: 0, theta: 0 }, new Uint8Array(300).fill(Cell.occupied));
-  const { chance } = run(grid, [{ grid: strip, pose: identity }], []);
-  const all = run(grid, [{ grid, pose: identity }], []).chance;
-  assert.ok(chance <= 1 && all > 0 && all < 0.6);
   const dot = new Grid(4, 4, 0.1, identity, new Uint8Array(16).fill(Cell.occupied));
-  assert.equal(run(grid, [{ grid: dot, pose: identity }], []).chance, 0, "a dot sees too little of any place");
+  assert.equal(run(grid, [{ grid: dot, pose: identity }], []).chance, null, "a dot sees too little of any place");
 });

@@ -71,7 +71,9 @@ PARAMETERS = (
     ),
     Parameter("accept", 0.95, "Probability from which on two maps are joined."),
     Parameter("max_false_joins", 0.05, "How many joins of the whole team may be expected to be false."),
-    Parameter("output_resolution", 0.0, "Metres per cell of the merged map; 0: those of the finest map, or more, so that it fits."),
+    Parameter(
+        "output_resolution", 0.0, "Metres per cell of the merged map; 0: those of the finest map, or more."
+    ),
     Parameter("search_again", 0.1, "A map is searched anew when this share of its known cells has changed."),
     Parameter("confirmations", 3, "A placed robot moves when so many answers in a row say so."),
     Parameter("quiet", 3.0, "With no newer map for so long, what the maps say is taken at once [s]."),
