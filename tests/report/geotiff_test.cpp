@@ -270,8 +270,7 @@ TEST(GeoTiff, IsAsLargeAsItHasToBe) {
   ASSERT_EQ(pictures.at(0).width(), 1260);
   ASSERT_EQ(pictures.at(0).height(), 3040);
   const auto at = [&](int column, int row) {
-    return pictures[0]
-        .pixels[static_cast<std::size_t>(3039 - row) * 1260 + static_cast<std::size_t>(column)];
+    return pictures[0].pixels[static_cast<std::size_t>(3039 - row) * 1260 + static_cast<std::size_t>(column)];
   };
   EXPECT_EQ(at(5, 7), 85);
   EXPECT_EQ(at(6, 7), 35);
