@@ -68,6 +68,18 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   return misspelt ? "there is no command '" + words.front() + "'" : error.what();
 }
 
+// CLI11 takes whatever follows an option for its value: of "-o --elastic" a folder of that name was made.
+void refuse_options_as_values(CLI::App& command) {
+  const auto check = [&command](const std::string& value) -> std::string {
+    if (!value.starts_with('-') || command.get_option_no_throw(value) == nullptr) return {};
+    return "'" + value + "' is an option, and a value is missing before it (./" + value + " is a file)";
+  };
+  for (CLI::Option* const option : command.get_options()) {
+    if (option->get_items_expected_max() > 0)
+      option->check(CLI::Validator([check](std::string& value) { return check(value); }, ""));
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Merges occupancy grid maps made by robots that do not know where the others are.",
                "gridmerge");
@@ -90,6 +102,7 @@ int run(int argc, char** argv) {
   add_view(app, action);
   add_evaluate(app, action);
   add_simulate(app, action);
+  for (CLI::App* const command : app.get_subcommands({})) refuse_options_as_values(*command);
 
   if (argc < 2) {
     print(app.help());
