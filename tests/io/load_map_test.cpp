@@ -147,6 +147,13 @@ TEST(LoadMap, ReadsPicturesOfWhichMuchIsSaid) {
   image.insert(2, parts);
   directory.write("a.img", image);
   EXPECT_EQ(load_map(yaml).grid.width, 32);
+
+  constexpr std::size_t kHeader = 8 + 4 + 4 + 13 + 4;  // a signature, and the chunk that tells the size
+  std::string png = test::PngBuilder{.width = 2, .height = 2, .rows = bytes({0, 205, 254, 254})}.build();
+  png.insert(kHeader,
+             test::png_chunk("tEXt", std::string("Comment\0", 8) + std::string(std::size_t{9} << 20, 'x')));
+  directory.write("a.img", png);
+  EXPECT_EQ(load_map(yaml).grid.cells, kCells);
 }
 
 TEST(LoadMap, ReadsThresholdsToTheLetterOnRequest) {
