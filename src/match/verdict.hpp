@@ -95,11 +95,11 @@ std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses,
 
 /// Whether the maps can slide along each other at hardly any loss, as two pieces of a corridor can:
 /// PoseFigures::free_direction says which way.
-GRIDMERGE_INTERNAL_EXPORT bool slides(const PoseFigures& figures);
+bool slides(const PoseFigures& figures);
 
 /// Whether the second of two hypotheses, by their probabilities, is nearly as good: the better one would be
 /// refused however much the maps had in common.
-GRIDMERGE_INTERNAL_EXPORT bool is_near_rival(double best, double next, double accept_probability);
+bool is_near_rival(double best, double next, double accept_probability);
 
 /// Why the first of these hypotheses, which is the best, is refused where `accept_probability` is asked for;
 /// `none` if it is not, `nothing_to_compare` if there is no hypothesis.

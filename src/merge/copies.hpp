@@ -21,7 +21,7 @@ struct Copy {
 };
 
 /// Whether two maps hold the same cells, walls among them. O(cells) if they do, mostly O(1) if not.
-bool is_copy(const PreparedMap& a, const PreparedMap& b);
+GRIDMERGE_INTERNAL_EXPORT bool is_copy(const PreparedMap& a, const PreparedMap& b);
 
 /// From b's frame to a's, where the two hold the same cells.
 SE2 between_copies(const PreparedMap& a, const PreparedMap& b);

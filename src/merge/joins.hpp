@@ -16,7 +16,7 @@ namespace gridmerge::internal {
 void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution);
 
 /// The resolution of the finest of these maps, of which there must be one.
-double finest_resolution(const std::vector<PlacedMap>& maps);
+GRIDMERGE_INTERNAL_EXPORT double finest_resolution(const std::vector<PlacedMap>& maps);
 
 /// The resolution in which these maps are fused to be compared with another one: `resolution`, or so much
 /// coarser, by a power of two, that the result has no more than kMaxGridCells. `deformations` as of fuse().

@@ -13,8 +13,7 @@ GRIDMERGE_INTERNAL_EXPORT bool is_merge_output(const std::filesystem::path& name
 
 /// What a file is called that each merged map has one of, for merged map `component`, from 0 on: the first
 /// has the name itself, the next is file_2, as the merged maps are.
-GRIDMERGE_INTERNAL_EXPORT std::filesystem::path numbered(const std::filesystem::path& file,
-                                                         std::size_t component);
+std::filesystem::path numbered(const std::filesystem::path& file, std::size_t component);
 
 /// Whether numbered(file, ...) may be `name`, both without folders.
 GRIDMERGE_INTERNAL_EXPORT bool is_numbered(const std::filesystem::path& name,
