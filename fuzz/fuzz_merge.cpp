@@ -42,7 +42,7 @@ void require_sound(const MergeResult& result, const std::vector<OccupancyGrid>& 
     fuzz::require(!component.members.empty());
     for (const Member& member : component.members) {
       fuzz::require(member.map < maps.size() && seen.insert(member.map).second);
-      fuzz::require(fuzz::is_finite(member.T_component_map));
+      fuzz::require(is_finite(member.T_component_map));
       fuzz::require(is_allowed(member.deformation, options.transform));
       fuzz::require(member.deformation.strain_bound() <= Deformation::kMostStrain);
       fuzz::require(member.probability && *member.probability >= 0.0 && *member.probability <= 1.0);
@@ -55,7 +55,7 @@ void require_sound(const MergeResult& result, const std::vector<OccupancyGrid>& 
   fuzz::require(result.joins.size() == maps.size() * (maps.size() - 1) / 2);
   for (const Join& join : result.joins) {
     fuzz::require_sound(join.match, maps[join.fixed], maps[join.moving], options.match.accept_probability);
-    fuzz::require(fuzz::is_finite(join.T_fixed_moving) && join.probability >= 0.0 && join.probability <= 1.0);
+    fuzz::require(is_finite(join.T_fixed_moving) && join.probability >= 0.0 && join.probability <= 1.0);
     fuzz::require(join.used() == (join.reason() == Reason::none));
   }
 }

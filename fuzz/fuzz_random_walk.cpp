@@ -31,15 +31,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   const std::size_t most_samples = 2 * options.walk.max_proposals + 1;  // a wide one may be there twice
   options.on_walk = [&](int, double, const RandomWalkResult& walk) {
-    fuzz::require(fuzz::is_finite(walk.T_fixed_moving) && std::isfinite(walk.delta));
+    fuzz::require(is_finite(walk.T_fixed_moving) && std::isfinite(walk.delta));
     fuzz::require(walk.accepted <= walk.proposals && walk.proposals <= options.walk.max_proposals);
     fuzz::require(!walk.trace.empty() && walk.trace.size() <= most_samples);
     for (const WalkSample& sample : walk.trace)
-      fuzz::require(fuzz::is_finite(sample.T_fixed_moving) && std::isfinite(sample.delta));
+      fuzz::require(is_finite(sample.T_fixed_moving) && std::isfinite(sample.delta));
   };
   options.threads = 1;
   const MatchResult result = match_by_random_walk(maps[0], maps[1], options);
-  fuzz::require(fuzz::is_finite(result.T_fixed_moving));
+  fuzz::require(is_finite(result.T_fixed_moving));
   for (const double share : {result.probability, result.acceptance_index, result.overlap})
     fuzz::require(share >= 0.0 && share <= 1.0);
   fuzz::require(result.agreement >= 0 && result.disagreement >= 0);

@@ -4,6 +4,7 @@
 
 #include "fuzz_target.hpp"
 #include "gridmerge/match/match.hpp"
+#include "match/drawing.hpp"
 #include "tiny_maps.hpp"
 
 namespace {
@@ -38,8 +39,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.accept_probability = bytes.PickValueInArray({0.95, 0.0, 1.0});
   options.threads = 1;
   const std::vector<OccupancyGrid> maps = fuzz::draw_maps(bytes, 2);
-  const bool has_walls =
-      PreparedMap(maps[0]).counts().occupied > 0 && PreparedMap(maps[1]).counts().occupied > 0;
+  // Of a line drawing, what it encloses counts as free: black on nothing else is painted, and no wall.
+  const bool has_walls = std::all_of(maps.begin(), maps.end(), [](const OccupancyGrid& map) {
+    return PreparedMap(internal::with_enclosed_free(map)).counts().occupied > 0;
+  });
   MatchResult result;
   try {
     result = match(maps[0], maps[1], options);

@@ -102,10 +102,6 @@ std::vector<OccupancyGrid> draw_maps(FuzzedDataProvider& bytes, std::size_t coun
   return maps;
 }
 
-bool is_finite(const SE2& T) {
-  return std::isfinite(T.x) && std::isfinite(T.y) && std::isfinite(T.theta);
-}
-
 void require_sound(const MatchResult& result, const OccupancyGrid& fixed, const OccupancyGrid& moving,
                    double accept_probability) {
   require(is_finite(result.T_fixed_moving) && is_probability(result.probability));

@@ -15,8 +15,6 @@ namespace gridmerge::fuzz {
 /// own, with strokes of its own over it. So many have walls in common, as maps of two robots have.
 std::vector<OccupancyGrid> draw_maps(FuzzedDataProvider& bytes, std::size_t count);
 
-bool is_finite(const SE2& T);
-
 /// Requires what match() and its kin promise of an answer about two maps: numbers that are finite,
 /// probabilities in [0, 1], hypotheses by falling probability, a verdict that follows from them, and no pose
 /// outside the search space, which is where the circles around the maps' known cells touch.
