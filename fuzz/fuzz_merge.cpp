@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -25,6 +26,19 @@ KnownPoses draw_known_poses(FuzzedDataProvider& bytes, std::size_t count) {
                      bytes.ConsumeBool()};
   }
   return poses;
+}
+
+/// Cells of the merged map in which it stays small, wherever the maps lie: of 2^28 cells a run takes minutes.
+/// 0, the finest, where that is so anyway.
+double draw_resolution(const std::vector<OccupancyGrid>& maps) {
+  constexpr double kFarthestPose = 13.0, kMostCellsASide = 1000.0;
+  double finest = maps.front().resolution, side = 0.0;
+  for (const OccupancyGrid& map : maps) {
+    finest = std::min(finest, map.resolution);
+    side += 2.0 * (kFarthestPose + std::hypot(map.origin.x, map.origin.y) +
+                   std::hypot(map.width, map.height) * map.resolution);
+  }
+  return side / finest > kMostCellsASide ? side / kMostCellsASide : 0.0;
 }
 
 /// A map has no more freedom than was asked for.
@@ -87,6 +101,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::vector<OccupancyGrid> maps = fuzz::draw_maps(bytes, count);
   options.transform = bytes.PickValueInArray(
       {MapTransform::rigid, MapTransform::elastic, MapTransform::similarity, MapTransform::affine});
+  options.resolution = draw_resolution(maps);
   MergeResult result;
   try {
     result = merge(maps, options, known);
