@@ -63,8 +63,8 @@ void add_export_option(CLI::App& command, ExportOptions& options) {
           "--export", options.wanted,
           "Also write the merge for other programs: g2o is a pose graph, open-rmf has points "
           "for fleet adapters, geojson has outlines, geotiff is the merged map in the cells of its finest "
-          "map, "
-          "of any size. If not named, the file is merged.g2o, open_rmf.yaml, merged.geojson or merged.tif in "
+          "map, of any size. If not named, the file is merged.g2o, open_rmf.yaml, merged.geojson or "
+          "merged.tif in "
           "DIR. Repeat the option for others")
       ->option_text("FORMAT[=FILE]")
       ->allow_extra_args(false)  // or it would take the maps behind it

@@ -70,13 +70,14 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
 
 // CLI11 takes whatever follows an option for its value: of "-o --elastic" a folder of that name was made.
 void refuse_options_as_values(CLI::App& command) {
-  const auto check = [&command](const std::string& value) -> std::string {
-    if (!value.starts_with('-') || command.get_option_no_throw(value) == nullptr) return {};
-    return "'" + value + "' is an option, and a value is missing before it (./" + value + " is a file)";
-  };
+  const CLI::Validator no_option(
+      [&command](const std::string& value) -> std::string {
+        if (!value.starts_with('-') || command.get_option_no_throw(value) == nullptr) return {};
+        return "'" + value + "' is an option, and a value is missing before it (./" + value + " is a file)";
+      },
+      "");
   for (CLI::Option* const option : command.get_options()) {
-    if (option->get_items_expected_max() > 0)
-      option->check(CLI::Validator([check](std::string& value) { return check(value); }, ""));
+    if (option->get_items_expected_max() > 0) option->check(no_option);
   }
 }
 

@@ -143,9 +143,9 @@ namespace {
 
 /// A merged map that does not fit in the cells of its finest map.
 std::string describe_coarser(const std::vector<OccupancyGrid>& maps, const Component& component) {
-  double finest = component.fused.grid.resolution;
-  for (const Member& member : component.members) finest = std::min(finest, maps[member.map].resolution);
   const OccupancyGrid& grid = component.fused.grid;
+  double finest = grid.resolution;
+  for (const Member& member : component.members) finest = std::min(finest, maps[member.map].resolution);
   if (finest == grid.resolution) return {};
   const double ratio = grid.resolution / finest, columns = ratio * grid.width, rows = ratio * grid.height;
   const LatticeLimits& limits = FusedWindows::kLimits;
