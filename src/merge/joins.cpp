@@ -75,16 +75,21 @@ double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps,
   return std::min(kMostCoarser * finest, fitting_resolution(finest, maps, deformations));
 }
 
-FusedMap fuse_members(const std::vector<Member>& members, const std::vector<std::size_t>& places,
-                      const std::vector<const OccupancyGrid*>& grids, double resolution) {
-  std::vector<PlacedMap> placed;
-  std::vector<Deformation> deformations;
+PlacedMembers placed_members(const std::vector<Member>& members, const std::vector<std::size_t>& places,
+                             const std::vector<const OccupancyGrid*>& grids) {
+  PlacedMembers placed;
   for (const std::size_t place : places) {
     const Member& member = members[place];
-    placed.push_back({grids[member.map], member.T_component_map});
-    deformations.push_back(member.deformation);
+    placed.maps.push_back({grids[member.map], member.T_component_map});
+    placed.deformations.push_back(member.deformation);
   }
-  return fuse(placed, merged_resolution(resolution, placed, deformations), deformations);
+  return placed;
+}
+
+FusedMap fuse_members(const std::vector<Member>& members, const std::vector<std::size_t>& places,
+                      const std::vector<const OccupancyGrid*>& grids, double resolution) {
+  const auto [maps, deformations] = placed_members(members, places, grids);
+  return fuse(maps, merged_resolution(resolution, maps, deformations), deformations);
 }
 
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match) {

@@ -30,6 +30,17 @@ double fitting_resolution(double resolution, const std::vector<PlacedMap>& maps,
 GRIDMERGE_INTERNAL_EXPORT double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps,
                                                    const std::vector<Deformation>& deformations = {});
 
+/// Maps where they lie, and how each is bent, as fuse() takes them.
+struct PlacedMembers {
+  std::vector<PlacedMap> maps;
+  std::vector<Deformation> deformations;
+};
+
+/// The members at these places. `grids[i]` is input map i.
+GRIDMERGE_INTERNAL_EXPORT PlacedMembers placed_members(const std::vector<Member>& members,
+                                                       const std::vector<std::size_t>& places,
+                                                       const std::vector<const OccupancyGrid*>& grids);
+
 /// The members at these places, fused where they lie and bent as they say. `grids[i]` is input map i.
 GRIDMERGE_INTERNAL_EXPORT FusedMap fuse_members(const std::vector<Member>& members,
                                                 const std::vector<std::size_t>& places,

@@ -41,15 +41,12 @@ std::uint8_t percentage(Cell cell, float probability) {
 
 /// Of a component, in the cells of its finest map.
 FusedWindows windows_of(const NamedMerge& merge, std::size_t component) {
-  std::vector<PlacedMap> placed;
-  std::vector<Deformation> deformations;
-  for (const std::size_t place : fused_places(merge.result, component, merge.maps)) {
-    const Member& member = merge.result.components[component].members[place];
-    placed.push_back({&merge.maps[member.map], member.T_component_map});
-    deformations.push_back(member.deformation);
-  }
-  const double resolution = finest_resolution(placed);
-  return FusedWindows(std::move(placed), resolution, std::move(deformations));
+  std::vector<const OccupancyGrid*> grids;
+  for (const OccupancyGrid& map : merge.maps) grids.push_back(&map);
+  PlacedMembers placed = placed_members(merge.result.components[component].members,
+                                        fused_places(merge.result, component, merge.maps), grids);
+  const double resolution = finest_resolution(placed.maps);
+  return FusedWindows(std::move(placed.maps), resolution, std::move(placed.deformations));
 }
 
 void draw(const FusedWindows& windows, TiffPyramid& picture) {
