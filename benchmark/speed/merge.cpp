@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include <cstddef>
+#include <numbers>
 #include <random>
 
 #include "gridmerge/grid/execution.hpp"
@@ -42,6 +43,44 @@ JoinProblem campus(std::size_t maps) {
   }
   return problem;
 }
+
+/// Buildings of five maps that all look alike: every pair of maps that overlap agrees with where they lie in
+/// their buildings, and half a turn about the middle of the building nearly as well.
+JoinProblem look_alikes(std::size_t maps) {
+  std::mt19937 random(1);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  JoinProblem problem;
+  std::vector<SE2> T_building_map;
+  for (std::size_t i = 0; i < maps; ++i) {
+    problem.maps.push_back({{{0.0, 0.0}, 8.0, 20.0}});
+    T_building_map.push_back({uniform(-20.0, 20.0), uniform(-12.0, 12.0), uniform(-3.0, 3.0)});
+  }
+  const SE2 half_turn{0.0, 0.0, std::numbers::pi};
+  for (std::size_t a = 0; a < maps; ++a) {
+    for (std::size_t b = a + 1; b < maps; ++b) {
+      const bool is_one_building = a / 5 == b / 5;
+      if (!is_one_building && random() % 4 != 0) continue;
+      const SE2 off{uniform(-0.8, 0.8), uniform(-0.8, 0.8), uniform(-0.02, 0.02)};
+      const double so = is_one_building ? uniform(0.0, 5.0) : uniform(-5.0, 3.0);
+      problem.pairs.push_back(
+          {a,
+           b,
+           {{inverse(T_building_map[a]) * off * T_building_map[b], so, 0.2},
+            {inverse(T_building_map[a]) * half_turn * off * T_building_map[b], uniform(-6.0, -1.0), 0.2}}});
+    }
+  }
+  return problem;
+}
+
+void BM_ConsistentSetOfLookAlikes(benchmark::State& state) {
+  const JoinProblem problem = look_alikes(static_cast<std::size_t>(state.range(0)));
+  with_threads(1, [&] {
+    for (auto _ : state) benchmark::DoNotOptimize(find_consistent_set_within(problem, 0.95, 0.05));
+  });
+}
+BENCHMARK(BM_ConsistentSetOfLookAlikes)->Arg(50)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond);
 
 void BM_ConsistentSetOfACampus(benchmark::State& state) {
   const JoinProblem problem = campus(static_cast<std::size_t>(state.range(0)));

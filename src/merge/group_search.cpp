@@ -18,6 +18,9 @@ namespace {
 
 /// A map that moves elsewhere must gain so much, or rounding would keep it moving [nats].
 constexpr double kMinGain = 0.1;
+/// A map may gain by a move, and lose it again when poses settle or its old group falls apart. So it may go
+/// back and forth, but not for ever.
+constexpr int kMostMoves = 2;
 /// From a little more on, a probability is 1 to rounding [nats].
 constexpr double kSurely = 36.0;
 
@@ -37,9 +40,7 @@ class Arranger {
 
   NodeGroups settle() {
     join_all();
-    // Every move gains, so this ends; the bound is for consistent sets that are worth the same within
-    // rounding.
-    for (std::size_t moves = 0; moves < 4 * groups_.size() + 64 && move_one(); ++moves) join_all();
+    while (move_one()) join_all();
     NodeGroups all;
     for (auto& [number, group] : groups_) all.push_back(std::move(group));
     return all;
@@ -135,7 +136,8 @@ class Arranger {
     set(a, weights_.adjusted(std::move(joined)));
   }
 
-  /// Takes out the map that gains most by lying elsewhere, or alone, and puts it there; false if none gains.
+  /// Takes out the map that gains most by lying elsewhere, or alone, and puts it there; false if none gains
+  /// that has moves left.
   bool move_one() {
     weigh_moves();
     double most = kMinGain;
@@ -144,13 +146,14 @@ class Arranger {
       if (group.size() < 2) continue;
       for (std::size_t i = 0; i < group.size(); ++i) {
         const auto gain = gains_.find(group[i].map);
-        if (gain == gains_.end() || gain->second <= most) continue;
+        if (gain == gains_.end() || gain->second <= most || moves_[group[i].map] == kMostMoves) continue;
         most = gain->second;
         which = {number, i};
       }
     }
     if (!which) return false;
     const auto [rest, alone] = taken_out(groups_.at(which->first), which->second);
+    ++moves_[alone.front().map];
     remove(which->first);
     for (NodeGroup& part : weights_.connected(rest)) add(std::move(part));
     place_best(alone);
@@ -216,6 +219,7 @@ class Arranger {
   std::set<Best> best_;                      // the same
   std::map<Number, std::set<Number>> near_;  // the groups of each group's joins
   std::map<std::size_t, double> gains_;      // of moving a map
+  std::map<std::size_t, int> moves_;         // of a map, so far
 };
 
 /// The group itself if all its halves belong together surely enough.

@@ -21,6 +21,7 @@ namespace {
 
 /// A map that moves elsewhere must gain so much, or rounding would keep it moving [nats].
 constexpr double kMinGain = 0.1;
+constexpr int kMostMoves = 2;
 
 /// Weighs all groups against each other in every round.
 class LiteralArranger {
@@ -40,9 +41,7 @@ class LiteralArranger {
 
   NodeGroups settle() {
     join_all();
-    // Every move gains, so this ends; the bound is for consistent sets that are worth the same within
-    // rounding.
-    for (std::size_t moves = 0; moves < 4 * groups_.size() + 64 && move_one(); ++moves) join_all();
+    while (move_one()) join_all();
     while (cut_one()) {
     }
     return std::move(groups_);
@@ -88,7 +87,7 @@ class LiteralArranger {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (groups_[g].size() < 2) continue;
       for (std::size_t i = 0; i < groups_[g].size(); ++i) {
-        if (weights_.is_fixed(groups_[g][i].map)) continue;
+        if (weights_.is_fixed(groups_[g][i].map) || moves_[groups_[g][i].map] == kMostMoves) continue;
         const double gain = gain_of_moving(g, i);
         if (gain <= most) continue;
         most = gain;
@@ -97,6 +96,7 @@ class LiteralArranger {
     }
     if (!which) return false;
     const auto [rest, alone] = taken_out(groups_[which->first], which->second);
+    ++moves_[alone.front().map];
     groups_.erase(groups_.begin() + static_cast<std::ptrdiff_t>(which->first));
     for (NodeGroup& part : weights_.connected(rest)) groups_.push_back(std::move(part));
     groups_.push_back(alone);
@@ -232,7 +232,8 @@ class LiteralArranger {
   double keep_;    // and from this one on, they stay together
   NodeGroups groups_;
   std::map<std::pair<Key, Key>, std::optional<WeighedJoin>> weighed_;
-  std::set<Key> sure_;  // groups that need no cut
+  std::set<Key> sure_;                // groups that need no cut
+  std::map<std::size_t, int> moves_;  // of a map
 };
 
 /// Maps of several places, of which pairs speak truly, falsely, weakly or not at all.
