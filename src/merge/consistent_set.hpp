@@ -31,7 +31,9 @@ struct OpenJoin {
 /// a cycle that closes every further pair adds. But pairs do not err independently: maps that look alike in
 /// one place agree with each other there, however many they are. So a pair counts by how much of what its
 /// maps have in common no stronger pair has spoken of; the rest counts less, and not at all where it is asked
-/// whether the groups belong together, rather than how they lie.
+/// whether the groups belong together, rather than how they lie. And of three or more maps there is a third
+/// case beside one place and no relation: two places that look alike. There poses agree as well, so that only
+/// what each pair says by itself counts against it.
 ///
 /// Starting from single maps, and one group of those that are fixed, the two groups that are worth most
 /// together are joined, as long as that is probable enough (`accept_probability`): against lying otherwise,

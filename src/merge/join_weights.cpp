@@ -41,8 +41,14 @@ double sum_of_dependent(std::vector<double> losses) {
 /// A pair across two groups that speaks for joining them.
 struct Witness {
   double worth;
+  double against_alike;        // the same against two places that look alike: there poses agree, too
   std::vector<Point2> places;  // of which it speaks [m, frame of the first group]
 };
+
+/// What speaks for one of three cases, the others of which have this worth against it [nats].
+double against_both(double x, double y) {
+  return std::min(x, y) - std::log1p(std::exp(-std::abs(x - y)));
+}
 
 /// The places of which pairs have spoken, in cells wide enough that none that has been is missed by chance.
 class SpokenOf {
@@ -158,7 +164,7 @@ std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t in
     const double log_odds = pair.candidates[i].log_odds;
     if (!(off <= tolerance * tolerance) || (best && log_odds <= pair.candidates[best->candidate].log_odds))
       continue;
-    best = Agreement{index, i, std::min(log_odds, kMaxLogOdds) + kPoseNats};
+    best = Agreement{index, i, std::min(log_odds, kMaxLogOdds) + kPoseNats, pair.candidates[i].is_known};
   }
   return best;
 }
@@ -179,28 +185,36 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
       const std::optional<Agreement> agreement = find_agreement(*pair, in_a.map, T);
       const Coverage* of_b = problem_.maps[b[i].map].coverage;
       const bool know_coverage = of_a != nullptr && of_b != nullptr;
+      const auto loss = [&] {  // if no candidate agreed
+        const double share = know_coverage ? of_a->share_in_common(*of_b, T) : 0.0;
+        return -kMissNats * std::clamp((share - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
+      };
       if (agreement && agreement->worth > 0.0) {
-        witnesses.push_back({agreement->worth, {}});
+        // What is known beforehand is of this place and no other.
+        double against_alike = agreement->is_known ? agreement->worth : agreement->worth - kPoseNats;
+        if (against_alike < 0.0) against_alike = std::max(against_alike, loss());
+        witnesses.push_back({agreement->worth, against_alike, {}});
         if (know_coverage) witnesses.back().places = of_a->places_in_common(*of_b, T, T_a_map);
       } else {
-        const double share = know_coverage ? of_a->share_in_common(*of_b, T) : 0.0;
-        const double loss = -kMissNats * std::clamp((share - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
-        losses.push_back(agreement ? std::max(loss, agreement->worth) : loss);
+        losses.push_back(agreement ? std::max(loss(), agreement->worth) : loss());
       }
     }
   }
   std::stable_sort(witnesses.begin(), witnesses.end(),
                    [](const Witness& x, const Witness& y) { return x.worth > y.worth; });
-  const double lost = sum_of_dependent(std::move(losses)) - kPoseNats;
-  JoinWorth worth{lost, lost};
+  const double lost = sum_of_dependent(std::move(losses));
+  JoinWorth worth{lost - kPoseNats, lost - kPoseNats};
+  double against_alike = lost + kAlikeNats;
   SpokenOf spoken_of;
   double dependence = 1.0;
   for (const Witness& witness : witnesses) {
     const double fresh = std::pow(spoken_of.add(witness.places), kFreshPower);
     worth.against_apart += fresh * witness.worth;
     worth.against_other_poses += (fresh + (1.0 - fresh) * dependence) * witness.worth;
+    against_alike += fresh * witness.against_alike;
     dependence *= kDependence;
   }
+  if (problem_.may_look_alike()) worth.against_apart = against_both(worth.against_apart, against_alike);
   return worth;
 }
 

@@ -20,10 +20,17 @@ using NodeGroups = std::vector<NodeGroup>;
 /// turn, but walls are parallel nearly everywhere, so that about one in 150 agrees by chance.
 inline constexpr double kPoseNats = 5.0;
 
+/// Maps that are not of one place may be of two places that look alike. There their pairs agree as well, and
+/// only what each pair says by itself tells the two from one. So much likelier one place is beforehand
+/// [nats].
+inline constexpr double kAlikeNats = 0.5;
+
 /// What it is worth to two groups of maps to lie together so [nats].
 struct JoinWorth {
   double against_other_poses = 0.0;  ///< all that speaks for it: tells how they lie, if they belong together
-  double against_apart = 0.0;        ///< what speaks for their belonging together, once for every place
+  /// What speaks for their belonging together, once for every place: against being unrelated, and against
+  /// being of places that look alike.
+  double against_apart = 0.0;
 };
 
 /// A way to join two groups of maps.
@@ -90,6 +97,7 @@ class JoinWeights {
     std::size_t pair;
     std::size_t candidate;
     double worth;
+    bool is_known;
   };
 
   /// A candidate made ready for finding out, many times, whether poses agree with it.

@@ -39,6 +39,12 @@ struct ProblemMap {
 struct JoinProblem {
   std::vector<ProblemMap> maps;
   std::vector<PairCandidates> pairs;  ///< at most one a pair of maps
+  /// All maps lie on the first one, and what pairs say knows how often it fits by chance.
+  bool is_of_a_plan = false;
+
+  /// Maps may be of places that look alike, of which no pair can know: not two by themselves, which lie as
+  /// surely as their pair says.
+  bool may_look_alike() const { return maps.size() > 2 && !is_of_a_plan; }
 };
 
 struct PlacedNode {

@@ -52,7 +52,7 @@ std::vector<double> scales_of(const MergePart& part) {
 class PlanProblem {
  public:
   PlanProblem(const PreparedMap& plan, double scale)
-      : scale_(scale), plan_(scaled(plan.known(), scale)), problem_{{{plan_.extent(), &plan_}}, {}} {}
+      : scale_(scale), plan_(scaled(plan.known(), scale)), problem_{{{plan_.extent(), &plan_}}, {}, true} {}
   PlanProblem(const PlanProblem&) = delete;  // the problem points into it
   PlanProblem& operator=(const PlanProblem&) = delete;
 

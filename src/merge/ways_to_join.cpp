@@ -12,11 +12,7 @@ namespace gridmerge::internal {
 
 namespace {
 
-/// What a pair says by itself of two of three or more maps. Most pairs of them share little or nothing, and
-/// the surest of many matches is too often of a place that looks the same: the odds are so many times what
-/// the match says, and one in so many sure matches is of a place that repeats. With these, 120 simulated
-/// teams have as many false joins as their budgets allow (benchmark/teams.py).
-constexpr double kOddsAmongMany = 0.4;
+/// One in so many sure matches of two of three or more maps is of a place that repeats, whatever they say.
 constexpr double kRepeats = 0.005;
 
 /// So many poses are weighed in full for two groups: those with which most pairs agree.
@@ -105,11 +101,11 @@ std::vector<WeighedJoin> JoinWeights::ways_of_pair(const PlacedNode& a, const Pl
   const std::optional<std::size_t> index = pair_of(a.map, b.map);
   if (!index) return {};
   const PairCandidates& pair = problem_.pairs[*index];
-  const bool of_many = problem_.maps.size() > 2;
   const auto probability = [&](const CandidateJoin& candidate) {
     const double p = logistic(candidate.log_odds);
-    if (!of_many || candidate.is_known) return p;
-    const double odds = kOddsAmongMany * p / (1.0 - p + kRepeats);
+    if (!problem_.may_look_alike() || candidate.is_known) return p;
+    // As worth_of() weighs one pair against being unrelated, and against two places that look alike.
+    const double odds = logistic(kAlikeNats) * p / (1.0 - p + kRepeats);
     return odds / (1.0 + odds);
   };
   double sum = 0.0;  // above 1 where candidates were made likelier by what is known beforehand

@@ -217,11 +217,46 @@ TEST(ConsistentSet, AWeakPairThatAgreesWithACycleIsUsed) {
 TEST(ConsistentSet, TwoWeakPairsThatAgreeAreEnoughTogether) {
   World world(3);
   world.say(0, 1, 4.0);
-  world.say(0, 2, 0.0);
-  world.say(1, 2, 0.0);
+  world.say(0, 2, 1.0);
+  world.say(1, 2, 1.0);
   EXPECT_EQ(find_consistent_set(world.problem, kAccept).groups.size(), 1u);
   world.pair(1, 2).candidates[0].T_fixed_moving = world.T(1, 2) * kWrong;  // they agree no more
   EXPECT_EQ(find_consistent_set(world.problem, kAccept).groups.size(), 2u);
+}
+
+/// Twenty maps of places that look alike: all pairs agree, and none knows whether it is right. So they do not
+/// make each other right. Once they were all joined, with a probability of 1.
+TEST(ConsistentSet, MapsOfPlacesThatLookAlikeAreNoPlaceHoweverManyTheyAre) {
+  World world(20);
+  for (std::size_t a = 0; a < 20; ++a) {
+    for (std::size_t b = a + 1; b < 20; ++b) world.say(a, b, a + 1 == b && a % 2 == 0 ? 4.0 : -0.5);
+  }
+  const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+  EXPECT_EQ(consistent_set.groups.size(), 10u);
+  for (const NodeGroup& group : consistent_set.groups) EXPECT_EQ(group.size(), 2u);
+}
+
+/// Where each pair is sure by itself, many are surer.
+TEST(ConsistentSet, MapsWhosePairsAreAllSureAreOnePlace) {
+  World world(6);
+  for (std::size_t a = 0; a < 6; ++a) {
+    for (std::size_t b = a + 1; b < 6; ++b) world.say(a, b, 3.0);
+  }
+  const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+  ASSERT_EQ(consistent_set.groups.size(), 1u);
+  for (const PlacedNode& node : consistent_set.groups[0]) EXPECT_GT(node.probability, 0.999);
+}
+
+/// What was known beforehand is of this place: nothing that looks alike has it.
+TEST(ConsistentSet, AKnownPoseIsOfNoOtherPlace) {
+  World world(3);
+  world.say(0, 1, 4.0);
+  world.say(0, 2, -3.0);
+  world.say(1, 2, -3.0);
+  EXPECT_EQ(find_consistent_set(world.problem, kAccept).groups.size(), 2u);
+  for (const std::size_t other : {0u, 1u}) world.pair(other, 2).candidates[0].is_known = true;
+  for (const std::size_t other : {0u, 1u}) world.pair(other, 2).candidates[0].log_odds = 0.0;
+  EXPECT_EQ(find_consistent_set(world.problem, kAccept).groups.size(), 1u);
 }
 
 TEST(ConsistentSet, AWrongJoinStrongerThanEveryRightOneIsNotUsed) {

@@ -31,7 +31,7 @@ TEST(ConsistentSet, AVerySurePairKeepsNoOtherMapFromMoving) {
   for (int i = 0; i < 6; ++i) problem.maps.push_back({{{0.0, 0.0}, 5.0, 20.0}});
   problem.pairs = {{0, 1, {{along(10.0), 4.5, 0.2}}},  {0, 2, {{along(20.0), 4.4, 0.2}}},
                    {1, 2, {{along(10.0), 4.4, 0.2}}},  {0, 3, {{along(-40.0), 5.0, 0.2}}},
-                   {1, 3, {{along(20.0), 2.0, 0.2}}},  {2, 3, {{along(10.0), 2.0, 0.2}}},
+                   {1, 3, {{along(20.0), 3.0, 0.2}}},  {2, 3, {{along(10.0), 3.0, 0.2}}},
                    {3, 4, {{along(70.0), -6.9, 0.2}}}, {4, 5, {{along(10.0), 11.0, 0.2}}}};
   const ConsistentSet found = find_consistent_set(problem, 0.95);
   ASSERT_EQ(found.groups.size(), 2u);
