@@ -33,13 +33,13 @@ struct OpenJoin {
 /// maps have in common no stronger pair has spoken of; the rest counts less, and not at all where it is asked
 /// whether the groups belong together, rather than how they lie. And of three or more maps there is a third
 /// case beside one place and no relation: two places that look alike. There poses agree as well, so that only
-/// what each pair says by itself counts against it.
+/// what each pair says by itself counts against it, and a pair that doubts counts for it.
 ///
 /// Starting from single maps, and one group of those that are fixed, the two groups that are worth most
 /// together are joined, as long as that is probable enough (`accept_probability`): against lying otherwise,
 /// and against not belonging together. Then every map is taken out and put where it is worth most, which
-/// takes back what was joined too early, until nothing changes. At last a group is cut where its two parts
-/// could not be joined as surely as asked for. Fixed maps are neither moved nor cut apart.
+/// takes back what was joined too early, until nothing gains or has moves left. At last a group is cut where
+/// its two parts could not be joined as surely as asked for. Fixed maps are neither moved nor cut apart.
 ///
 /// Deterministic; the order of maps and pairs plays no part beyond rounding, and which map a group's frame is
 /// that of. Runs in the calling TBB arena. Only groups between which a pair has a candidate are weighed,

@@ -70,7 +70,7 @@ void say(const MatchResult& match, const NodeGroup& group, std::size_t map,
     for (CandidateJoin& candidate : pair.candidates) {
       const SE2 T_member_map = inverse(member->T_group_map) * candidate.T_fixed_moving;
       candidate.T_fixed_moving = is_moving ? T_member_map : inverse(T_member_map);
-      if (other != speaker) candidate.log_odds = -kPoseNats;  // worth nothing, and no loss
+      if (other != speaker) candidate.log_odds = kSaysNothing;
     }
   }
 }

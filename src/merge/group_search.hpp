@@ -8,9 +8,10 @@
 
 namespace gridmerge::internal {
 
-/// All maps in groups, joined and moved about until nothing gains: find_consistent_set() says how. Maps that
-/// no chain of candidates connects have nothing to do with each other, so each connected part of the maps is
-/// arranged by itself; and of two groups only those are weighed between which a pair has a candidate.
+/// All maps in groups, joined and moved about until none gains or has moves left: find_consistent_set() says
+/// how. Maps that no chain of candidates connects have nothing to do with each other, so each connected part
+/// of the maps is arranged by itself; and of two groups only those are weighed between which a pair has a
+/// candidate.
 class GroupSearch {
  public:
   /// Groups are joined from `accept_probability` on. Both must outlive this. Runs in the calling TBB arena.

@@ -41,7 +41,7 @@ double sum_of_dependent(std::vector<double> losses) {
 /// A pair across two groups that speaks for joining them.
 struct Witness {
   double worth;
-  double against_alike;        // the same against two places that look alike: there poses agree, too
+  double against_alike;  // the same against two places that look alike: there poses agree, too. Not negative
   std::vector<Point2> places;  // of which it speaks [m, frame of the first group]
 };
 
@@ -170,7 +170,7 @@ std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t in
 }
 
 JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE2& T_a_b) const {
-  std::vector<double> losses;
+  std::vector<double> losses, doubts;  // against being unrelated, and against two places that look alike
   std::vector<Witness> witnesses;
   std::vector<ManyPointsTransform> poses_b = poses_of(b);  // in the frame of a
   const ManyPointsTransform from_b(T_a_b);
@@ -189,22 +189,27 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
         const double share = know_coverage ? of_a->share_in_common(*of_b, T) : 0.0;
         return -kMissNats * std::clamp((share - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
       };
-      if (agreement && agreement->worth > 0.0) {
-        // What is known beforehand is of this place and no other.
-        double against_alike = agreement->is_known ? agreement->worth : agreement->worth - kPoseNats;
-        if (against_alike < 0.0) against_alike = std::max(against_alike, loss());
-        witnesses.push_back({agreement->worth, against_alike, {}});
+      if (!agreement) {
+        losses.push_back(loss());
+        doubts.push_back(losses.back());
+        continue;
+      }
+      // What is known beforehand is of this place and no other.
+      const double log_odds = agreement->is_known ? agreement->worth : agreement->worth - kPoseNats;
+      if (log_odds < 0.0 && log_odds != kSaysNothing) doubts.push_back(std::max(log_odds, loss()));
+      if (agreement->worth > 0.0) {
+        witnesses.push_back({agreement->worth, std::max(0.0, log_odds), {}});
         if (know_coverage) witnesses.back().places = of_a->places_in_common(*of_b, T, T_a_map);
       } else {
-        losses.push_back(agreement ? std::max(loss(), agreement->worth) : loss());
+        losses.push_back(std::max(loss(), agreement->worth));
       }
     }
   }
   std::stable_sort(witnesses.begin(), witnesses.end(),
                    [](const Witness& x, const Witness& y) { return x.worth > y.worth; });
-  const double lost = sum_of_dependent(std::move(losses));
-  JoinWorth worth{lost - kPoseNats, lost - kPoseNats};
-  double against_alike = lost + kAlikeNats;
+  const double lost = sum_of_dependent(std::move(losses)) - kPoseNats;
+  JoinWorth worth{lost, lost};
+  double against_alike = sum_of_dependent(std::move(doubts)) + kAlikeNats;
   SpokenOf spoken_of;
   double dependence = 1.0;
   for (const Witness& witness : witnesses) {

@@ -20,6 +20,9 @@ using NodeGroups = std::vector<NodeGroup>;
 /// turn, but walls are parallel nearly everywhere, so that about one in 150 agrees by chance.
 inline constexpr double kPoseNats = 5.0;
 
+/// The log odds of a candidate that says nothing: worth nothing, and no loss.
+inline constexpr double kSaysNothing = -kPoseNats;
+
 /// Maps that are not of one place may be of two places that look alike. There their pairs agree as well, and
 /// only what each pair says by itself tells the two from one. So much likelier one place is beforehand
 /// [nats].
