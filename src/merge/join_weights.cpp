@@ -27,6 +27,9 @@ constexpr double kMissNats = 3.3;
 constexpr double kMissFrom = 0.12;
 constexpr double kMissWhole = 0.45;
 
+/// Of a pose with which no candidate of a pair agrees: less than any loss.
+constexpr double kNone = -std::numeric_limits<double>::infinity();
+
 /// What several losses come to: they have causes in common, as the gains do.
 double sum_of_dependent(std::vector<double> losses) {
   std::sort(losses.begin(), losses.end());
@@ -45,7 +48,7 @@ struct Witness {
   std::vector<Point2> places;  // of which it speaks [m, frame of the first group]
 };
 
-/// What speaks for one of three cases, the others of which have this worth against it [nats].
+/// What speaks for a case against two others together, if so much speaks for it against each of them [nats].
 double against_both(double x, double y) {
   return std::min(x, y) - std::log1p(std::exp(-std::abs(x - y)));
 }
@@ -164,7 +167,7 @@ std::optional<JoinWeights::Agreement> JoinWeights::find_agreement(std::size_t in
     const double log_odds = pair.candidates[i].log_odds;
     if (!(off <= tolerance * tolerance) || (best && log_odds <= pair.candidates[best->candidate].log_odds))
       continue;
-    best = Agreement{index, i, std::min(log_odds, kMaxLogOdds) + kPoseNats, pair.candidates[i].is_known};
+    best = Agreement{index, i, std::min(log_odds, kMaxLogOdds) + kPoseNats};
   }
   return best;
 }
@@ -185,23 +188,19 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
       const std::optional<Agreement> agreement = find_agreement(*pair, in_a.map, T);
       const Coverage* of_b = problem_.maps[b[i].map].coverage;
       const bool know_coverage = of_a != nullptr && of_b != nullptr;
-      const auto loss = [&] {  // if no candidate agreed
-        const double share = know_coverage ? of_a->share_in_common(*of_b, T) : 0.0;
-        return -kMissNats * std::clamp((share - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
-      };
-      if (!agreement) {
-        losses.push_back(loss());
-        doubts.push_back(losses.back());
-        continue;
-      }
+      const double worth = agreement ? agreement->worth : kNone;
       // What is known beforehand is of this place and no other.
-      const double log_odds = agreement->is_known ? agreement->worth : agreement->worth - kPoseNats;
-      if (log_odds < 0.0 && log_odds != kSaysNothing) doubts.push_back(std::max(log_odds, loss()));
-      if (agreement->worth > 0.0) {
-        witnesses.push_back({agreement->worth, std::max(0.0, log_odds), {}});
+      const bool is_known = agreement && problem_.pairs[*pair].candidates[agreement->candidate].is_known;
+      const double against_alike = is_known ? worth : worth - kPoseNats;
+      if (against_alike < 0.0) {
+        const double share = know_coverage ? of_a->share_in_common(*of_b, T) : 0.0;
+        const double loss = -kMissNats * std::clamp((share - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
+        if (worth <= 0.0) losses.push_back(std::max(loss, worth));
+        if (against_alike != kSaysNothing) doubts.push_back(std::max(loss, against_alike));
+      }
+      if (worth > 0.0) {
+        witnesses.push_back({worth, std::max(0.0, against_alike), {}});
         if (know_coverage) witnesses.back().places = of_a->places_in_common(*of_b, T, T_a_map);
-      } else {
-        losses.push_back(std::max(loss(), agreement->worth));
       }
     }
   }

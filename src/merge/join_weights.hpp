@@ -100,7 +100,6 @@ class JoinWeights {
     std::size_t pair;
     std::size_t candidate;
     double worth;
-    bool is_known;
   };
 
   /// A candidate made ready for finding out, many times, whether poses agree with it.

@@ -52,7 +52,9 @@ std::vector<double> scales_of(const MergePart& part) {
 class PlanProblem {
  public:
   PlanProblem(const PreparedMap& plan, double scale)
-      : scale_(scale), plan_(scaled(plan.known(), scale)), problem_{{{plan_.extent(), &plan_}}, {}, true} {}
+      : scale_(scale),
+        plan_(scaled(plan.known(), scale)),
+        problem_{.maps = {{plan_.extent(), &plan_}}, .pairs = {}, .is_of_a_plan = true} {}
   PlanProblem(const PlanProblem&) = delete;  // the problem points into it
   PlanProblem& operator=(const PlanProblem&) = delete;
 

@@ -80,7 +80,7 @@ TEST_F(GroupMatchesTest, SpeakOncePerGroup) {
   const std::vector<CandidateJoin>& second = heard.pairs[3].candidates;  // of maps 1 and 2
   ASSERT_FALSE(first.empty());
   ASSERT_EQ(first.size(), second.size());
-  EXPECT_NE(first[0].log_odds == -kPoseNats, second[0].log_odds == -kPoseNats);
+  EXPECT_NE(first[0].log_odds == kSaysNothing, second[0].log_odds == kSaysNothing);
   EXPECT_GT(std::max(first[0].log_odds, second[0].log_odds), 0.0);
 }
 
