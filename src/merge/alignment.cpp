@@ -26,7 +26,7 @@ PoseProblem make_problem(const std::vector<AlignedMap>& maps, const std::vector<
   const bool is_world = fixed != maps.end();
   const SE2 T_frame_group = is_world ? fixed->known_pose->T_world_map * inverse(fixed->T_group_map)
                                      : inverse(maps[held].T_group_map);
-  PoseProblem problem;
+  PoseProblem problem(maps.size() + 1);  // with the world's
   for (std::size_t i = 0; i < maps.size(); ++i) {
     const SE2 pose =
         maps[i].is_fixed() ? maps[i].known_pose->T_world_map : T_frame_group * maps[i].T_group_map;

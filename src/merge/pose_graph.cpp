@@ -19,7 +19,7 @@ RelativePose measured_between(std::size_t fixed, std::size_t moving, const SE2& 
 
 std::vector<SE2> adjust_poses(const std::vector<AdjustablePose>& poses,
                               const std::vector<RelativePose>& measured) {
-  PoseProblem problem;
+  PoseProblem problem(poses.size());
   for (const AdjustablePose& pose : poses) problem.add_pose(pose.pose, pose.middle, pose.held);
   for (const RelativePose& relative : measured) problem.add(relative);
   problem.solve();

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 namespace gridmerge::internal {
@@ -48,6 +49,7 @@ SE2 shift(const Point2& by) {
 }  // namespace
 
 std::size_t PoseProblem::add_pose(const SE2& pose, const Point2& middle, bool held) {
+  if (blocks_.size() == blocks_.capacity()) throw std::length_error("a pose problem has no room for a pose");
   const Point2 place = pose * middle;
   Block& block = blocks_.emplace_back(Block{{place.x, place.y, pose.theta}, middle, held});
   problem_.AddParameterBlock(block.values.data(), 3);

@@ -5,7 +5,7 @@
 
 #include <array>
 #include <cstddef>
-#include <deque>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -20,7 +20,10 @@ namespace gridmerge::internal {
 /// what the frame holds for the point the three hardly depend on each other, however far off the origin is.
 class PoseProblem {
  public:
-  /// Returns the pose's number. A held pose is not changed.
+  /// Of at most so many poses.
+  explicit PoseProblem(std::size_t most_poses) { blocks_.reserve(most_poses); }
+
+  /// Returns the pose's number. A held pose is not changed. Throws std::length_error for one pose too many.
   std::size_t add_pose(const SE2& pose, const Point2& middle, bool held);
 
   /// Adds a measurement between two of the poses.
@@ -43,7 +46,9 @@ class PoseProblem {
     bool held;
   };
 
-  std::deque<Block> blocks_;  // whose elements stay where they are
+  // They stay where they are. Ceres computes in the order of their addresses, which is then that of their
+  // numbers: last digits do not depend on what else the process has allocated.
+  std::vector<Block> blocks_;
   ceres::Problem problem_;
 };
 
