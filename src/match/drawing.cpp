@@ -17,7 +17,12 @@ namespace {
 /// Of the walls' longer side: half of the widest gap that is closed.
 constexpr std::array kClosings{0.0, 0.005, 0.01, 0.02, 0.04};
 constexpr double kEnclosed = 0.5;  // share of the walls' bounding box
-constexpr double kUnknownPaper = 0.01;
+/// Gray lines, and the soft edges of black ones, are at most so many times two cells wide: [cells] from
+/// white.
+constexpr std::uint16_t kSoft = 3;
+constexpr double kWideGray = 0.01;  // share of the cells that may be gray farther from white
+/// So far from black, gray is no soft edge but a line of its own [cells].
+constexpr std::uint16_t kSoftEdge = 2;
 
 using Distances = std::vector<std::uint16_t>;
 constexpr std::uint16_t kFar = 60000;
@@ -51,6 +56,42 @@ void chessboard_distance(Distances& distance, const Raster& raster) {
       for (int dx = -1; dx <= 1; ++dx) nearer(x, y, x + dx, y + 1);
     }
   }
+}
+
+/// Of each cell: the chessboard distance to the nearest of this kind.
+Distances distances_to(const OccupancyGrid& grid, Cell kind) {
+  Distances distance(grid.cells.size(), kFar);
+  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+    if (grid.cells[i] == kind) distance[i] = 0;
+  }
+  chessboard_distance(distance, {grid.width, grid.height});
+  return distance;
+}
+
+/// Whether what is neither black nor white is lines and edges: what nobody has seen is wide.
+bool has_thin_gray_alone(const OccupancyGrid& grid) {
+  const Distances to_white = distances_to(grid, Cell::free);
+  std::size_t wide = 0;
+  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+    if (grid.cells[i] == Cell::unknown && to_white[i] > kSoft) ++wide;
+  }
+  return static_cast<double>(wide) <= kWideGray * static_cast<double>(grid.cells.size());
+}
+
+/// The lines of a drawing; all else is unknown. Of a drawing with white paper gray lines are lines too.
+OccupancyGrid lines_of(const OccupancyGrid& drawing, bool is_on_paper) {
+  OccupancyGrid lines = drawing;
+  lines.probability.clear();
+  const Distances to_black = is_on_paper ? distances_to(drawing, Cell::occupied) : Distances{};
+  for (std::size_t i = 0; i < lines.cells.size(); ++i) {
+    Cell& cell = lines.cells[i];
+    if (is_on_paper && cell == Cell::unknown && to_black[i] > kSoftEdge) {
+      cell = Cell::occupied;
+    } else if (cell == Cell::free) {
+      cell = Cell::unknown;
+    }
+  }
+  return crop_to_known(lines);
 }
 
 /// Of the raster's corner: what a disc of `reach` cells reaches from there without touching a wall, zero, and
@@ -108,25 +149,18 @@ bool is_drawing(const OccupancyGrid& grid) {
   const CellCounts counts = count_cells(grid);
   if (counts.occupied == 0) return false;
   if (counts.free == 0) return true;
-  if (static_cast<double>(counts.unknown) > kUnknownPaper * static_cast<double>(grid.cells.size()))
-    return false;
   for (int column = 0; column < grid.width; ++column) {
     if (grid.at(column, 0) != Cell::free || grid.at(column, grid.height - 1) != Cell::free) return false;
   }
   for (int row = 0; row < grid.height; ++row) {
     if (grid.at(0, row) != Cell::free || grid.at(grid.width - 1, row) != Cell::free) return false;
   }
-  return true;
+  return has_thin_gray_alone(grid);
 }
 
 OccupancyGrid with_enclosed_free(const OccupancyGrid& grid) {
   if (!is_drawing(grid)) return grid;
-  OccupancyGrid walls = grid;
-  walls.probability.clear();
-  for (Cell& cell : walls.cells) {
-    if (cell == Cell::free) cell = Cell::unknown;
-  }
-  walls = crop_to_known(walls);
+  const OccupancyGrid walls = lines_of(grid, count_cells(grid).free > 0);
   const double box = static_cast<double>(walls.cells.size());
   const int longer_side = std::max(walls.width, walls.height);
   OccupancyGrid enclosed;

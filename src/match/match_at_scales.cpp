@@ -28,7 +28,7 @@ constexpr double kFinalReach = 1.04;
 constexpr std::size_t kPosesOfLevel = 4;
 constexpr std::size_t kJudged = 16;  // distinct poses that get all figures at their own scale
 
-constexpr double kCoarsestCell = 0.1;     // [m], unless the maps themselves are coarser
+constexpr double kCoarsestCell = 0.1;     // [m], unless the maps themselves are coarser; two of the fixed map
 constexpr double kDistinctShare = 0.03;   // of the fixed map's longer side: poses nearer than this are one
 constexpr double kMinDistinctCells = 10;  // ...and never less than so many cells
 constexpr double kNearDistinct = 2.0;     // poses nearer than so many times that are near each other
@@ -43,11 +43,14 @@ struct Found {
 class ScaledSearch {
  public:
   ScaledSearch(const PreparedMap& fixed, const PreparedMap& moving, const ScaleRange& scales)
-      : fixed_(fixed), moving_(moving), scales_(scales), levels_(levels_of(scales)) {
-    // One size of cells for all levels as far as can be: what is scored in larger cells scores less.
+      : fixed_(fixed),
+        moving_(moving),
+        scales_(scales),
+        levels_(levels_of(scales, fixed.known().resolution / moving.known().resolution)) {
+    // One size of cells for all levels, and for any range, as far as can be: what is scored in larger cells
+    // scores less.
     const PreparedMap smallest = DrawnWalls::scaled(moving, scales.least);
-    const double coarsest = std::min(kCoarsestCell, scales.most * moving.known().resolution);
-    cell_ = std::max(working_cell(fixed, smallest), coarsest);
+    cell_ = std::max(working_cell(fixed, smallest), std::min(kCoarsestCell, 2.0 * fixed.known().resolution));
     distinct_ = std::max(kMinDistinctCells * cell_, kDistinctShare * longer_side(fixed.known()));
     const LikelihoodField& walls = DrawnWalls::of(smallest, cell_);
     const PoseMetric in_cells = make_pose_metric(walls);
@@ -142,12 +145,14 @@ void check_walls(const PreparedMap& map, const char* which) {
 
 }  // namespace
 
-std::vector<double> levels_of(const ScaleRange& scales) {
-  const double range = std::log(scales.most / scales.least);
-  const int steps = static_cast<int>(std::ceil(range / kLevelStep - 1e-9));
-  std::vector<double> levels{scales.least};
-  for (int i = 1; i < steps; ++i) levels.push_back(scales.least * std::exp(range * i / steps));
-  if (steps > 0) levels.push_back(scales.most);
+std::vector<double> levels_of(const ScaleRange& scales, double unit) {
+  const auto nearest = [&](double scale) { return std::lround(std::log(scale / unit) / kLevelStep); };
+  const auto first = nearest(scales.least), last = nearest(scales.most);
+  if (first == last) return {std::sqrt(scales.least * scales.most)};
+  std::vector<double> levels;
+  for (auto i = first; i <= last; ++i)
+    levels.push_back(
+        std::clamp(unit * std::exp(static_cast<double>(i) * kLevelStep), scales.least, scales.most));
   return levels;
 }
 

@@ -8,9 +8,10 @@
 
 namespace gridmerge::internal {
 
-/// The scales at which a range is looked at: evenly spaced by their logarithms, 3 % apart at most, with both
-/// ends.
-std::vector<double> levels_of(const ScaleRange& scales);
+/// The scales at which a range is looked at: `unit`, and what differs from it by whole steps of 3 %, as far
+/// as they are in the range or nearest to its ends. So a range about the answer finds what a wider one finds.
+/// If one scale is nearest to both ends, it is the middle of the range.
+std::vector<double> levels_of(const ScaleRange& scales, double unit);
 
 /// match() at every scale of options.scales, which is given: every level is looked at as a pair by itself,
 /// the best poses climb to the maximum over their scales too, and all of them are judged at their own scales

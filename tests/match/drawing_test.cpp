@@ -57,12 +57,30 @@ TEST(Drawing, HasPaperAlongItsWholeRim) {
       EXPECT_TRUE(is_drawing(map)) << column << ' ' << row;
     }
   }
-  // A hundredth of it may be unknown: 80 of 8,000 cells.
-  OccupancyGrid map = sheet;
-  for (int column = 1; column <= 80; ++column) map.at(column, 70) = Cell::unknown;
-  EXPECT_TRUE(is_drawing(map));
-  map.at(81, 70) = Cell::unknown;
-  EXPECT_FALSE(is_drawing(map));
+}
+
+TEST(Drawing, HasNoWideGray) {
+  // What lies more than three cells from white may be a hundredth of it: 80 of 8,000 cells.
+  for (const int side : {14, 15}) {
+    OccupancyGrid map = outline(Cell::free, 0);
+    for (int row = 0; row < side; ++row)
+      for (int column = 0; column < 16; ++column) map.at(30 + column, 30 + row) = Cell::unknown;
+    EXPECT_EQ(is_drawing(map), side == 14) << side;  // 10 x 8 cells, or 10 x 9
+  }
+}
+
+// As of any picture that was scaled, or drawn with smooth lines.
+TEST(Drawing, MayHaveGrayLinesAndSoftEdges) {
+  OccupancyGrid sheet = outline(Cell::free, 0);
+  for (int column = 21; column < 80; ++column)
+    sheet.at(column, 19) = sheet.at(column, 21) = sheet.at(column, 22) = Cell::unknown;
+  for (int row = 25; row <= 55; ++row) sheet.at(50, row) = Cell::unknown;  // a gray line of its own
+  ASSERT_TRUE(is_drawing(sheet));
+  const OccupancyGrid map = with_enclosed_free(sheet);
+  EXPECT_EQ(count_cells(map).occupied, count_cells(outline(Cell::free, 0)).occupied + 31U);
+  EXPECT_EQ(at(map, 5.05, 4.05), Cell::occupied);
+  EXPECT_EQ(at(map, 3.05, 2.15), Cell::free);
+  EXPECT_EQ(at(map, 3.05, 1.85), Cell::unknown);
 }
 
 TEST(Drawing, ClosesGapsUpToAShareOfItsLongerSide) {

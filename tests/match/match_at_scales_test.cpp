@@ -65,13 +65,38 @@ double apart(const OccupancyGrid& map, const ScaledPose& a, const ScaledPose& b)
 }
 
 TEST(Levels, CoverTheRangeEvenly) {
-  const std::vector<double> levels = levels_of({0.5, 2.0});
-  ASSERT_EQ(levels.size(), 48U);
-  EXPECT_EQ(levels.front(), 0.5);
-  EXPECT_EQ(levels.back(), 2.0);
-  for (std::size_t i = 1; i < levels.size(); ++i)
-    EXPECT_NEAR(std::log(levels[i] / levels[i - 1]), std::log(4.0) / 47.0, 1e-12);
-  EXPECT_EQ(levels_of({1.3, 1.3}), std::vector{1.3});
+  for (const double unit : {1.0, 0.4, 7.3}) {
+    const std::vector<double> levels = levels_of({0.5, 2.0}, unit);
+    EXPECT_NEAR(std::log(levels.front()), std::log(0.5), 0.0151);
+    EXPECT_NEAR(std::log(levels.back()), std::log(2.0), 0.0151);
+    for (std::size_t i = 2; i + 1 < levels.size(); ++i)
+      EXPECT_NEAR(std::log(levels[i] / levels[i - 1]), 0.03, 1e-12);
+    for (const double level : levels) {
+      EXPECT_GE(level, 0.5);
+      EXPECT_LE(level, 2.0);
+    }
+    EXPECT_EQ(levels_of({1.3, 1.3}, unit), std::vector{1.3});
+  }
+}
+
+TEST(Levels, AreTheSameOfEveryRange) {
+  const std::vector<double> all = levels_of({0.5, 2.0}, 1.2);
+  for (const double level : levels_of({0.71, 1.37}, 1.2)) {
+    const bool is_end = level == 0.71 || level == 1.37;
+    EXPECT_TRUE(is_end || std::find(all.begin(), all.end(), level) != all.end()) << level;
+  }
+}
+
+// A user who knows the scale better must not get a worse answer for it.
+TEST(MatchAtScales, ANarrowerRangeIsNoLessSure) {
+  const PlanAndMap& made = apartment();
+  const OccupancyGrid plan = scaled(made.plan, 1.2);
+  const MatchResult wide = match(plan, made.map, at_scales(0.8, 1.7));
+  for (const auto& [least, most] : {std::pair(0.9, 1.6), {1.0, 1.4}, {1.07, 1.33}, {1.11, 1.3}}) {
+    const MatchResult narrow = match(plan, made.map, at_scales(least, most));
+    EXPECT_NEAR(narrow.scale / wide.scale, 1.0, 0.005) << least;
+    EXPECT_GT(narrow.probability, wide.probability - 0.02) << least;
+  }
 }
 
 TEST(MatchAtScales, FindsAMapOnAPlanOfAnotherScale) {
