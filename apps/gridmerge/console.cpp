@@ -16,6 +16,7 @@
 #include "grid/parallel.hpp"
 #include "gridmerge/bag/bag.hpp"
 #include "gridmerge/grid/execution.hpp"
+#include "io/add_map.hpp"
 #include "io/atomic_file.hpp"
 
 namespace gridmerge::cli {
@@ -137,6 +138,21 @@ void try_output_file(const std::string& path, const std::vector<std::filesystem:
 
 LoadedMap MapReader::read(const std::string& path) {
   return take(path, load_any_map(path, options_));
+}
+
+bool MapReader::lacks_resolution(const std::string& path) const {
+  return options_.resolution == 0.0 && internal::is_bare_image(path);
+}
+
+LoadedMap MapReader::read(const std::string& path, double resolution, const std::string& other) {
+  if (!lacks_resolution(path)) return read(path);
+  console_.warn(
+      fmt::format("{}: no --resolution says how large its pixels are, so the range of scales counts "
+                  "from {} m, as of {}",
+                  path, resolution, other));
+  LoadOptions options = options_;
+  options.resolution = resolution;
+  return take(path, load_any_map(path, options));
 }
 
 std::vector<LoadedMap> MapReader::read_all(const std::vector<std::string>& paths, int threads) {

@@ -70,6 +70,13 @@ class MapReader {
   /// load_any_map().
   LoadedMap read(const std::string& path);
 
+  /// Whether it is an image of which neither a YAML nor an option says the resolution.
+  bool lacks_resolution(const std::string& path) const;
+
+  /// The same of a map whose scale is to be found: if its resolution is lacking, `resolution`, that of
+  /// `other`, takes its place, which is told.
+  LoadedMap read(const std::string& path, double resolution, const std::string& other);
+
   /// The same of several, in their order. Some are read at a time, by up to `threads` threads; 0 = one per
   /// core.
   std::vector<LoadedMap> read_all(const std::vector<std::string>& paths, int threads);

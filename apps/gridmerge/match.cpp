@@ -9,10 +9,12 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
 #include "console.hpp"
+#include "match/drawing.hpp"
 #include "report/json_lines.hpp"
 #include "scale_hint.hpp"
 #include "search_options.hpp"
@@ -52,10 +54,14 @@ std::string describe_verdict(const MatchResult& result, const SearchOptions& sea
              : fmt::format("refused: {} (probability {:.4f})", why, result.probability);
 }
 
-std::string describe(const MatchResult& result, const MatchCommandOptions& options) {
+std::string describe_line(const std::string& name, const std::string& value) {
+  return fmt::format("  {:<14}{}\n", name, value);
+}
+
+std::string describe(const MatchResult& result, const MatchCommandOptions& options, double moving_cell) {
   std::string text = describe_verdict(result, options.search) + "\n";
   const auto line = [&](const std::string& name, const std::string& value) {
-    fmt::format_to(std::back_inserter(text), "  {:<14}{}\n", name, value);
+    text += describe_line(name, value);
   };
   if (result.hypotheses.empty()) {
     line("time", fmt::format(" {:.3f} s", result.seconds));
@@ -63,7 +69,8 @@ std::string describe(const MatchResult& result, const MatchCommandOptions& optio
   }
   line("T_fixed_moving", " " + describe_pose(result.T_fixed_moving));
   if (options.scaled())
-    line("scale", fmt::format(" {:.4f}, by which MOVING is enlarged first", result.scale));
+    line("scale", fmt::format(" {:.4f}, by which MOVING is enlarged first: its cells are {:.4g} m",
+                              result.scale, result.scale * moving_cell));
   line("agreement", fmt::format(" {} cells agree, {} do not (acceptance index {:.3f})", result.agreement,
                                 result.disagreement, result.acceptance_index));
   line("overlap", fmt::format(" {:.1f} % of the smaller map", 100.0 * result.overlap));
@@ -88,17 +95,42 @@ void check_walls(const std::string& name, const OccupancyGrid& map) {
     throw std::runtime_error(name + ": has no walls by which to tell a scale");
 }
 
-/// A match, and what to say beside it.
+/// The fixed one and the moving one. Where the scale is to be found, the resolution of one of them may be
+/// unknown.
+std::pair<LoadedMap, LoadedMap> read_maps(const MatchCommandOptions& options, MapReader& reader) {
+  if (options.scaled() && reader.lacks_resolution(options.fixed)) {
+    LoadedMap moving = reader.read(options.moving);
+    return {reader.read(options.fixed, moving.grid.resolution, options.moving), std::move(moving)};
+  }
+  LoadedMap fixed = reader.read(options.fixed);
+  if (!options.scaled()) return {std::move(fixed), reader.read(options.moving)};
+  LoadedMap moving = reader.read(options.moving, fixed.grid.resolution, options.fixed);
+  return {std::move(fixed), std::move(moving)};
+}
+
 struct Answer {
-  MatchResult result;
-  std::string hint;
+  Verdict verdict;
+  std::string text;
 };
+
+/// Of maps that are drawings, what was made of them.
+std::string describe_drawings(const std::vector<NamedMap>& maps) {
+  std::string text;
+  for (const NamedMap& map : maps) {
+    if (!is_drawing(map.grid)) continue;
+    const CellCounts counts = count_cells(with_enclosed_free(map.grid));
+    const double area = static_cast<double>(counts.free) * map.grid.resolution * map.grid.resolution;
+    text += describe_line(
+        "drawing", fmt::format(" {}: the {:.1f} m2 that its lines enclose, in its own metres, are free",
+                               escape_controls(map.name), area));
+  }
+  return text;
+}
 
 Answer match_files(const MatchCommandOptions& options) {
   Console console(options.common);
   MapReader reader(options.load, console);
-  const LoadedMap fixed = reader.read(options.fixed);
-  const LoadedMap moving = reader.read(options.moving);
+  const auto [fixed, moving] = read_maps(options, reader);
   if (options.scaled()) {
     check_walls(options.fixed, fixed.grid);
     check_walls(options.moving, moving.grid);
@@ -112,25 +144,29 @@ Answer match_files(const MatchCommandOptions& options) {
   PairMatcher matcher(options.common, options.search,
                       [&](double share) { console.progress("matching", share); });
   try {
-    Answer answer{matcher(fixed.grid, moving.grid), {}};
+    const MatchResult result = matcher(fixed.grid, moving.grid);
     matcher.write_trace();
-    const bool may_hint = !options.json && !options.search.random_walk() && !options.scaled();
-    if (may_hint && answer.result.verdict == Verdict::refused) {
+    if (options.json)
+      return {result.verdict, match_json(options.fixed, options.moving, result, options.scaled())};
+    const NamedMap fixed_map{options.fixed, fixed.grid}, moving_map{options.moving, moving.grid};
+    std::string text = describe(result, options, moving.grid.resolution);
+    if (options.scaled()) text += describe_drawings({fixed_map, moving_map});
+    const bool may_hint = !options.scaled() && !options.search.random_walk();
+    if (may_hint && result.verdict == Verdict::refused) {
       console.progress("trying other scales");
-      answer.hint = scale_hint({options.fixed, fixed.grid}, {options.moving, moving.grid},
-                               match_options(options.common, options.search));
+      text += plan_hint({fixed_map, moving_map});
+      text += scale_hint(fixed_map, moving_map, match_options(options.common, options.search));
     }
-    return answer;
+    return {result.verdict, std::move(text)};
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(options.fixed + " and " + options.moving + ": " + error.what());
   }
 }
 
 int run_match(const MatchCommandOptions& options) {
-  const auto [result, hint] = match_files(options);
-  print(options.json ? match_json(options.fixed, options.moving, result, options.scaled())
-                     : describe(result, options) + hint);
-  return result.verdict == Verdict::accepted ? kDone : kRefused;
+  const Answer answer = match_files(options);
+  print(answer.text);
+  return answer.verdict == Verdict::accepted ? kDone : kRefused;
 }
 
 }  // namespace

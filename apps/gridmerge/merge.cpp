@@ -25,6 +25,7 @@
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "known_poses.hpp"
+#include "match/drawing.hpp"
 #include "merge_summary.hpp"
 #include "plan.hpp"
 #include "scale_hint.hpp"
@@ -167,6 +168,11 @@ std::string scale_hints(const MergeCommandOptions& options, const std::vector<Oc
   std::size_t asked = 0;
   for (const LeftOut& one : result.left_out) {
     const std::size_t map = one.map;
+    if (is_drawing(maps[map])) {
+      text += fmt::format("hint: {} looks like a drawing of walls: --plan {} hangs the other maps on it\n",
+                          escape_controls(options.maps[map]), escape_controls(options.maps[map]));
+      continue;
+    }
     if ((!has_merged && map == first) || count_cells(maps[map]).known() == 0 || asked == kMaxHints) continue;
     ++asked;
     console.progress("trying other scales");

@@ -27,7 +27,8 @@ void add_plan_options(CLI::App& command, PlanCommandOptions& options) {
           ->type_name("PLAN");
   command
       .add_option("--plan-scale", options.scales,
-                  "The factors by which the plan may be too small; 0.5:2 if not given")
+                  "The factors by which the plan may be too small; 0.5:2 if not given. They count from "
+                  "--resolution for a plan that is an image, or else from the first map's resolution")
       ->type_name("LO:HI")
       ->check(kScales)
       ->needs(plan);
@@ -35,7 +36,7 @@ void add_plan_options(CLI::App& command, PlanCommandOptions& options) {
 
 Plan::Plan(const PlanCommandOptions& options, const std::vector<std::string>& names,
            const std::vector<OccupancyGrid>& maps, MapReader& reader)
-    : options_(options), plan_(reader.read(options.file)) {
+    : options_(options), plan_(reader.read(options.file, maps.front().resolution, names.front())) {
   for (const std::string& name : names) {
     if (is_same_map(options.file, name))
       throw std::runtime_error(options.file + ": is one of the maps, and cannot be their plan too");
@@ -84,8 +85,12 @@ std::string describe_plan(const std::vector<std::string>& names, const MergeResu
         fmt::format_to(out, "  {}: {}\n", fmt::join(maps, ", "), describe_pose(part.T_plan_first));
       continue;
     }
-    fmt::format_to(out, "off the plan: {}: {} (probability {:.4f})\n", fmt::join(maps, ", "), explain(part),
-                   part.probability);
+    const std::string best = part.probability > 0.0
+                                 ? fmt::format("; the best way: {}, the plan enlarged by {:.4f}",
+                                               describe_pose(part.T_plan_first), part.scale)
+                                 : std::string();
+    fmt::format_to(out, "off the plan: {}: {} (probability {:.4f}{})\n", fmt::join(maps, ", "), explain(part),
+                   part.probability, best);
   }
   return text;
 }

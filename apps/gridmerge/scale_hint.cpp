@@ -6,11 +6,21 @@
 #include <optional>
 
 #include "gridmerge/io/file_error.hpp"
+#include "match/drawing.hpp"
 #include "match/scale.hpp"
 
 namespace gridmerge::cli {
 
 using namespace internal;
+
+std::string plan_hint(const std::vector<NamedMap>& maps) {
+  for (const NamedMap& map : maps) {
+    if (is_drawing(map.grid))
+      return fmt::format("hint: {} looks like a drawing of walls: --scale 0.5:2 finds its scale and place\n",
+                         escape_controls(map.name));
+  }
+  return {};
+}
 
 std::string scale_hint(const NamedMap& fixed, const NamedMap& moving, const MatchOptions& options) {
   const std::optional<ScaleFound> found = find_scale(fixed.grid, moving.grid, options);

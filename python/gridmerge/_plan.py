@@ -23,6 +23,8 @@ class PlanPart:
     """Of these maps."""
     transform: Transform
     """Takes points of the first map's frame to the plan's, in metres of the maps: the best way that there is."""
+    scale: float
+    """By which the plan is too small if they lie so."""
     probability: float
     """That they lie so."""
     on_plan: bool
@@ -68,6 +70,7 @@ def to_plan_placement(plan: _core.PlanPlacement, names: Sequence[str]) -> PlanPl
                 maps=tuple(part.maps),
                 names=tuple(names[i] for i in part.maps),
                 transform=Transform(*part.transform),
+                scale=part.scale,
                 probability=part.probability,
                 on_plan=part.on_plan,
                 reason=None if part.on_plan else cast(Reason, part.reason),

@@ -152,6 +152,7 @@ void write(const PlanPlacement& plan, ByteWriter& writer) {
     writer.whole(part.maps.size());
     for (const std::size_t map : part.maps) writer.whole(map);
     writer.pose(part.T_plan_first);
+    writer.number(part.scale);
     writer.number(part.probability);
     writer.byte(static_cast<std::uint8_t>(part.reason));
   }
@@ -166,6 +167,7 @@ PlanPlacement read_plan(ByteReader& reader) {
     part.maps.resize(reader.count(kNumber));
     for (std::size_t& map : part.maps) map = reader.whole();
     part.T_plan_first = reader.pose();
+    part.scale = reader.number();
     part.probability = reader.number();
     part.reason = static_cast<Reason>(reader.byte());
   }

@@ -44,6 +44,7 @@ void bind_plan(nb::module_& module) {
   nb::class_<PlanPart>(module, "PlanPart")
       .def_ro("maps", &PlanPart::maps)
       .def_prop_ro("transform", [](const PlanPart& part) { return to_pose(part.T_plan_first); })
+      .def_ro("scale", &PlanPart::scale)
       .def_ro("probability", &PlanPart::probability)
       .def_prop_ro("on_plan", &PlanPart::on_plan)
       .def_prop_ro("reason", [](const PlanPart& part) { return name_of(part.reason); })

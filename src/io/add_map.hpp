@@ -18,4 +18,8 @@ GRIDMERGE_INTERNAL_EXPORT void add_map(FileSet& files, const OccupancyGrid& grid
 GRIDMERGE_INTERNAL_EXPORT void add_probability_map(FileSet& files, const OccupancyGrid& grid,
                                                    const std::filesystem::path& yaml_name);
 
+/// Whether a path leads to an image, which has no YAML: a file that can be read again. False if nothing can
+/// be read there.
+GRIDMERGE_INTERNAL_EXPORT bool is_bare_image(const std::filesystem::path& path);
+
 }  // namespace gridmerge::internal

@@ -186,6 +186,17 @@ std::vector<std::filesystem::path> map_files(const std::filesystem::path& path, 
   return {path, image_of(read_yaml(path, file), path)};
 }
 
+bool internal::is_bare_image(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  try {
+    FileReader file(path, NamedBy::file);
+    return looks_like_image(file.read_up_to(kTellingBytes));
+  } catch (const FileError&) {
+    return false;
+  }
+}
+
 void save_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path) {
   save(yaml_path, [&](FileSet& files, const std::filesystem::path& name) { add_map(files, grid, name); });
 }

@@ -177,6 +177,7 @@ MergeResult place_on_plan(const std::vector<OccupancyGrid>& maps, const Occupanc
       for (const Member& member : parts[i].members) told.maps.push_back(member.map);
       if (ways[i]) {
         told.T_plan_first = ways[i]->T_plan_part * parts[i].members.front().T_component_map;
+        told.scale = ways[i]->scale;
         told.probability = ways[i]->probability;
       }
       told.reason =

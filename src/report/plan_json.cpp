@@ -36,6 +36,7 @@ PlanPart read_part(const JsonReader& json, const std::vector<std::string>& names
   if (part.maps.empty()) maps.fail("is empty");
   std::sort(part.maps.begin(), part.maps.end());
   part.T_plan_first = json.at("transform").transform(kFarthest);
+  if (json.has("scale")) part.scale = json.at("scale").number_in(kMinScale, kMaxScale);
   part.probability = read_share(json.at("probability"));
   const JsonReader reason = json.at("reason");
   part.reason = reason.is_null() ? Reason::none : read_reason(reason);
@@ -69,6 +70,7 @@ Json plan_json(const std::vector<std::string>& names, const PlanPlacement& plan,
   for (const PlanPart& part : plan.parts) {
     parts.push_back({{"maps", named(part.maps)},
                      {"transform", transform_json(part.T_plan_first)},
+                     {"scale", number_json(part.scale)},
                      {"probability", number_json(part.probability)},
                      {"reason", reason_json(part.reason)}});
   }

@@ -186,6 +186,36 @@ TEST_F(Match, FindsTheScaleOfAPlan) {
   EXPECT_NE(for_people.out.find("scale"), std::string::npos) << for_people.out;
 }
 
+TEST_F(Match, AnImageWhoseScaleIsSoughtNeedsNoResolution) {
+  const std::string image = directory.file("left.pgm");
+  const std::string warning = "gridmerge: warning: " + image + ": no --resolution says";
+  const Outcome moving = run({"match", right, image, "--scale", "0.9:1.1"});
+  EXPECT_EQ(moving.err.find(warning), 0u) << moving.err;
+  EXPECT_NE(moving.out.find("enlarged first: its cells are 0."), std::string::npos) << moving.out;
+  EXPECT_EQ(moving.exit_code, 0);
+  const Outcome fixed = run({"match", image, right, "--scale", "0.9:1.1"});
+  EXPECT_EQ(fixed.err.find(warning), 0u) << fixed.err;
+  EXPECT_EQ(fixed.exit_code, 0);
+  // Nothing else says how large the pixels are.
+  expect_error(run({"match", image, directory.file("right.pgm"), "--scale", "0.9:1.1"}), "right.pgm",
+               "needs a resolution");
+  expect_error(run({"match", right, image}), image, "needs a resolution");
+}
+
+TEST_F(Match, SaysWhatItMakesOfADrawing) {
+  const std::string drawing = write_map(directory, "drawing", on_white_paper(draw_building(1)));
+  const Outcome outcome = run({"match", left, drawing, "--scale", "0.9:1.1"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_NE(outcome.out.find("\n  drawing        " + drawing + ": the "), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find(left + ": the "), std::string::npos) << outcome.out;
+  const Outcome unscaled =
+      run({"match", other, write_map(directory, "drawing", on_white_paper(draw_building(1)))});
+  EXPECT_EQ(unscaled.exit_code, 3);
+  EXPECT_NE(unscaled.out.find("hint: " + drawing + " looks like a drawing of walls: --scale 0.5:2"),
+            std::string::npos)
+      << unscaled.out;
+}
+
 TEST_F(Match, RefusesStrangersAtEveryScale) {
   const Outcome outcome = run({"match", other, left, "--scale", "0.7:1.4"});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.out;

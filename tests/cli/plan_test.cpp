@@ -48,7 +48,10 @@ TEST_F(MergePlan, JoinsWhatNothingElseJoins) {
   EXPECT_EQ(told.at("component"), "merged.yaml");
   EXPECT_EQ(told.at("maps"), (Json{west, east}));
   ASSERT_EQ(told.at("parts").size(), 2u);
-  for (const Json& part : told.at("parts")) expect_keys(part, {"maps", "transform", "probability", "reason"});
+  for (const Json& part : told.at("parts")) {
+    expect_keys(part, {"maps", "transform", "scale", "probability", "reason"});
+    EXPECT_NEAR(part.at("scale"), 1.25, 0.05);
+  }
   // The page names the plan, and a report that is made again is the same to the byte.
   const std::string page = read_file(output + "/report.html");
   EXPECT_NE(page.find("\"plan\":{\"name\":"), std::string::npos);
@@ -58,12 +61,40 @@ TEST_F(MergePlan, JoinsWhatNothingElseJoins) {
   EXPECT_FALSE(transforms().contains("plan"));
 }
 
+// Its scale is to be found, so nobody has to know its resolution.
+TEST_F(MergePlan, AnImageNeedsNoResolution) {
+  const std::string image = directory.file("plan.pgm");
+  const Outcome outcome =
+      run({"merge", left, right, "--plan", image, "--plan-scale", "0.9:1.1", "-o", output});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(outcome.err, "gridmerge: warning: " + image +
+                             ": no --resolution says how large its pixels are, so the range of scales counts "
+                             "from 0.1 m, as of " +
+                             left + "\n");
+  EXPECT_NEAR(transforms().at("plan").at("scale"), 1.0, 0.02);
+  const Outcome told = run({"merge", left, right, "--plan", image, "--resolution", "0.08", "--plan-scale",
+                            "1.1:1.4", "-o", output});
+  EXPECT_EQ(told.err, "");
+  EXPECT_NEAR(transforms().at("plan").at("scale"), 1.25, 0.02);
+}
+
+TEST_F(MergePlan, ADrawingAmongTheMapsMayBeTheirPlan) {
+  const std::string drawing = write_map(directory, "drawing", on_white_paper(draw_building(2)));
+  const Outcome outcome = run({"merge", left, right, drawing, "-o", output});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.out.find("hint: " + drawing + " looks like a drawing of walls: --plan " + drawing + " "),
+            std::string::npos)
+      << outcome.out;
+}
+
 TEST_F(MergePlan, SaysWhatIsNotOnThePlanAndWhy) {
   const Outcome outcome =
       run({"merge", left, right, other, "--plan", plan, "--plan-scale", "1.1:1.4", "-o", output});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.out << outcome.err;
   EXPECT_NE(outcome.out.find("2 of 3 maps hang on it"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("off the plan: " + other + ": "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("; the best way: x "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(", the plan enlarged by 1."), std::string::npos) << outcome.out;
   EXPECT_NE(transforms().at("plan").at("parts").at(1).at("reason"), nullptr);
 }
 
@@ -120,7 +151,6 @@ TEST_F(MergePlan, APlanThatIsNoneIsAnError) {
       write_map(directory, "copy", map_part(draw_building(1), {5, 0, 18, 13}, {1.0, -7.0, -1.1}));
   expect_error(asked(copy), copy, "the same as map 1");
   expect_error(asked(directory.file("absent.yaml")), "absent.yaml", "");
-  expect_error(asked(directory.file("plan.pgm")), "plan.pgm", "needs a resolution");
   EXPECT_FALSE(std::filesystem::exists(output));
 }
 

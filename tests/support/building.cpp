@@ -104,6 +104,18 @@ OccupancyGrid map_part(const OccupancyGrid& building, const Window& window, cons
   return crop_to_known(transform_grid(part, T_map_building, part.resolution));
 }
 
+OccupancyGrid on_white_paper(const OccupancyGrid& map) {
+  constexpr int kMargin = 10;
+  OccupancyGrid paper =
+      make_grid(map.width + 2 * kMargin, map.height + 2 * kMargin, map.resolution, {}, Cell::free);
+  for (int row = 0; row < map.height; ++row) {
+    for (int column = 0; column < map.width; ++column) {
+      if (map.at(column, row) == Cell::occupied) paper.at(column + kMargin, row + kMargin) = Cell::occupied;
+    }
+  }
+  return paper;
+}
+
 std::string write_map(const TemporaryDirectory& directory, const std::string& name,
                       const OccupancyGrid& map) {
   std::string pgm = "P5\n" + std::to_string(map.width) + " " + std::to_string(map.height) + "\n255\n";

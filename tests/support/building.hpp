@@ -20,6 +20,9 @@ struct Window {
 /// The map of a robot that saw only `window` and whose frame is placed by T_map_building.
 OccupancyGrid map_part(const OccupancyGrid& building, const Window& window, const SE2& T_map_building);
 
+/// The walls of a map, black on white paper with a margin.
+OccupancyGrid on_white_paper(const OccupancyGrid& map);
+
 /// Writes <name>.pgm and <name>.yaml (map_server, trinary) and returns the path of the latter. Apart from the
 /// library's own writer, so that it can be used to test it.
 std::string write_map(const TemporaryDirectory& directory, const std::string& name, const OccupancyGrid& map);

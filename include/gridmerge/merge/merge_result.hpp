@@ -121,6 +121,7 @@ struct PlanPart {
   /// Takes the frame of the first of them to the plan's, in metres of the maps: the best way that there is,
   /// and the identity if there is none.
   SE2 T_plan_first;
+  double scale = 1.0;                          ///< by which the plan is too small if it lies so
   double probability = 0.0;                    ///< that it lies so
   Reason reason = Reason::nothing_to_compare;  ///< why it is not on the plan; none if it is
 
