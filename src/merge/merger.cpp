@@ -193,7 +193,7 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
                               bool& are_all_looked_at) {
     First first = first_ ? *std::exchange(first_, std::nullopt) : *find_first(maps, nullptr);
     are_all_looked_at = !looks_.looks_twice();
-    if (are_all_looked_at) return std::move(first.solution);
+    if (are_all_looked_at) return hear_groups(maps, std::move(first.solution));
     const std::vector<Pair> apart = pairs_for_a_second_look(maps, first);
     std::vector<Pair> due = looks_.due_for_a_second_look(apart);
     are_all_looked_at = due.size() <= most_thorough;

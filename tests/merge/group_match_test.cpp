@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../../src/merge/join_weights.hpp"
+#include "gridmerge/merge/merger.hpp"
 #include "merge/coverage.hpp"
 #include "support/building.hpp"
 
@@ -71,6 +72,32 @@ TEST_F(GroupMatchesTest, PlaceAMapThatFitsTheWholeGroup) {
   ASSERT_EQ(after.groups[0].size(), 3U);
   EXPECT_LT(displacement(problem_.maps[2].extent, after.groups[0][2].T_group_map, between(0, 2)), 0.1);
   EXPECT_EQ(after.groups[1].front().map, 3U);
+}
+
+TEST_F(GroupMatchesTest, PlaceMapsWhateverTheSearch) {
+  for (const SearchMethod search : {SearchMethod::quick, SearchMethod::thorough, SearchMethod::exhaustive}) {
+    MergeOptions options;
+    options.match.search = search;
+    Merger merger(options);
+    for (const auto& piece : pieces_) merger.add(piece->grid);
+    for (std::vector<DueMatch> due = merger.due(); !due.empty(); due = merger.due()) {
+      for (const DueMatch& one : due) {  // only the neighbours are said to fit
+        MatchResult match;
+        if (one.fixed + one.moving == 1) {
+          match.verdict = Verdict::accepted;
+          match.T_fixed_moving = between(one.fixed, one.moving);
+          match.probability = 0.999;
+          match.hypotheses.push_back({match.T_fixed_moving, 1000.0, match.probability});
+        }
+        merger.hand_in(one, match);
+      }
+    }
+    const MergeResult result = merger.solve();
+    ASSERT_EQ(result.components.size(), 1U) << name_of(search);
+    EXPECT_EQ(result.components.front().members.size(), 3U) << name_of(search);
+    ASSERT_EQ(result.left_out.size(), 1U);
+    EXPECT_EQ(result.left_out.front().map, 3U);
+  }
 }
 
 TEST_F(GroupMatchesTest, SpeakOncePerGroup) {
