@@ -2,13 +2,16 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "console.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "page_server.hpp"
 #include "refine_answer.hpp"
+#include "report/bent_maps.hpp"
 #include "report/page.hpp"
 #include "saved_merge.hpp"
 
@@ -33,8 +36,13 @@ int run_view(const ViewCommandOptions& options) {
   auto shared = std::make_shared<const std::string>(std::move(page));
   PageAnswers answers;
   answers.page = [shared] { return shared; };
+  // As the page draws and scores them.
+  std::vector<std::optional<OccupancyGrid>> bent;
+  with_threads(options.common.threads, [&] { bent = bent_maps(merge.maps, merge.result); });
   answers.refine = [&](const std::string& body) {
-    const auto map = [&](std::size_t i) -> const OccupancyGrid& { return merge.maps[i]; };
+    const auto map = [&](std::size_t i) -> const OccupancyGrid& {
+      return bent[i] ? *bent[i] : merge.maps[i];
+    };
     return answer_refine(body, merge.maps.size(), map, options.common.threads);
   };
   PageServer server(options.address, options.port, std::move(answers));

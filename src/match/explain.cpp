@@ -19,7 +19,7 @@ std::string explain_ambiguous(const MatchResult& result, double accept_probabili
            std::to_string(std::lround(180.0 / std::numbers::pi * best.free_direction)) + " degrees";
   if (result.hypotheses.size() > 1 &&
       is_near_rival(result.hypotheses[0].probability, result.hypotheses[1].probability, accept_probability))
-    return "two ways to lay the maps explain them nearly equally well";
+    return "another way to lay the maps explains them too well to be ruled out";
   return "this way to lay the maps hardly stands out from all others";
 }
 

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "grid/parallel.hpp"
-#include "gridmerge/merge/fuse.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/merge_record.hpp"
 #include "gridmerge/version.hpp"
+#include "report/bent_maps.hpp"
 #include "report/deformation_json.hpp"
 #include "report/shown_map.hpp"
 #include "report/told_joins.hpp"
@@ -96,22 +96,6 @@ Json refused_json(const MergeResult& result, const ToldJoins& told) {
                      number_json(T.x), number_json(T.y), number_json(T.theta)}));
   }
   return {{"count", count}, {"rows", std::move(rows)}};
-}
-
-/// The maps that are bent, as they lie; nothing for the others.
-std::vector<std::optional<OccupancyGrid>> bent_maps(const std::vector<OccupancyGrid>& maps,
-                                                    const MergeResult& result) {
-  std::vector<const Member*> members;
-  for (const Component& component : result.components) {
-    for (const Member& member : component.members) {
-      if (!member.deformation.is_identity()) members.push_back(&member);
-    }
-  }
-  std::vector<std::optional<OccupancyGrid>> bent(maps.size());
-  parallel_for(members.size(), [&](std::size_t i) {
-    bent[members[i]->map] = bent_map(maps.at(members[i]->map), members[i]->deformation);
-  });
-  return bent;
 }
 
 /// What takes time is done for several at once. If they take more than `bytes`, the largest are shown

@@ -36,7 +36,7 @@ PlanPart read_part(const JsonReader& json, const std::vector<std::string>& names
   if (part.maps.empty()) maps.fail("is empty");
   std::sort(part.maps.begin(), part.maps.end());
   part.T_plan_first = json.at("transform").transform(kFarthest);
-  if (json.has("scale")) part.scale = json.at("scale").number_in(kMinScale, kMaxScale);
+  part.scale = json.at("scale").number_in(kMinScale, kMaxScale);
   part.probability = read_share(json.at("probability"));
   const JsonReader reason = json.at("reason");
   part.reason = reason.is_null() ? Reason::none : read_reason(reason);

@@ -11,6 +11,7 @@
 #include "g2o_vertices.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/report/merge_record.hpp"
+#include "view.hpp"
 
 namespace gridmerge::test {
 namespace {
@@ -50,6 +51,25 @@ class StretchedMerge : public CliTest {
   const std::string output = directory.file("out");
   std::vector<std::string> maps;
 };
+
+// What `view` refines is what its page shows: the stretched maps.
+TEST_F(StretchedMerge, AMapRefinedWhereItLiesStaysThere) {
+  ASSERT_EQ(run(merge_call({"--transform", "similarity"})).exit_code, 0);
+  RunningProgram server({"view", output});
+  const HttpClient client(port_of(server.read_line()));
+  const Json found = members();
+  for (const std::size_t moving : {0u, 1u, 2u}) {
+    Json question{
+        {"moving", moving}, {"transform", found.at(moving).at("transform")}, {"fixed", Json::array()}};
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (i != moving) question["fixed"].push_back({{"map", i}, {"transform", found.at(i).at("transform")}});
+    }
+    const auto answer = client.post("/refine", question.dump(), kJson);
+    ASSERT_TRUE(answer);
+    ASSERT_EQ(answer->status, 200) << answer->body;
+    EXPECT_LT(Json::parse(answer->body).at("moved").get<double>(), 0.03) << moving;
+  }
+}
 
 TEST_F(StretchedMerge, FindsTheScaleAndTellsIt) {
   const Outcome outcome = run(merge_call({"--transform", "similarity"}));

@@ -12,16 +12,20 @@ namespace gridmerge::test {
 
 inline constexpr const char* kJson = "application/json";
 
+/// Of the line in which `gridmerge view` says where it serves.
+inline int port_of(const std::string& line) {
+  const std::string start = "http://127.0.0.1:";
+  EXPECT_EQ(line.find(start), 0u) << line;
+  return std::stoi(line.substr(start.size()));
+}
+
 /// `gridmerge view` of two maps that were merged, and one that was left out.
 class View : public CliTest {
  protected:
   View() {
     EXPECT_EQ(run({"merge", left, right, other, "-o", output}).exit_code, 3);
     server = std::make_unique<RunningProgram>(std::vector<std::string>{"view", output});
-    const std::string line = server->read_line();
-    const std::string start = "http://127.0.0.1:";
-    EXPECT_EQ(line.find(start), 0u) << line;
-    port = std::stoi(line.substr(start.size()));
+    port = port_of(server->read_line());
     host = "127.0.0.1:" + std::to_string(port);
   }
 

@@ -40,10 +40,10 @@ TEST(Explain, TellsRivalsFromMapsThatSlide) {
   PoseFigures held;
   held.held = held.held_most = 10.0;
   result.hypotheses = {{{}, 10.0, 0.5, held}, {{1.0, 0.0, 0.0}, 9.0, 0.45, held}};
-  EXPECT_EQ(explain(result), "two ways to lay the maps explain them nearly equally well");
+  EXPECT_EQ(explain(result), "another way to lay the maps explains them too well to be ruled out");
   result.hypotheses[1].probability = 0.001;
   EXPECT_EQ(explain(result), "this way to lay the maps hardly stands out from all others");
-  EXPECT_EQ(explain(result, 0.9999), "two ways to lay the maps explain them nearly equally well");
+  EXPECT_EQ(explain(result, 0.9999), "another way to lay the maps explains them too well to be ruled out");
   result.hypotheses[0].figures = {};
   result.hypotheses[0].figures.free_direction = std::numbers::pi / 6.0;
   EXPECT_EQ(explain(result), "the maps are free to slide along 30 degrees");

@@ -157,8 +157,8 @@ TEST(G2o, FixesTheFirstMapOfEachPartOnAPlan) {
   Component& component = fleet.result.components[0];
   component.in_world_frame = true;
   for (Member& member : component.members) member.T_component_map.x += 5.0;
-  fleet.result.plan =
-      PlanPlacement{"plan", 1.0, {{{0, 1}, {}, 0.99, Reason::none}, {{2, 3}, {}, 0.99, Reason::none}}};
+  fleet.result.plan = PlanPlacement{
+      "plan", 1.0, {{{0, 1}, {}, 1.0, 0.99, Reason::none}, {{2, 3}, {}, 1.0, 0.99, Reason::none}}};
   EXPECT_EQ(read_g2o(export_text(ExportFormat::g2o, fleet.named())).fixed, (std::set<std::size_t>{0, 2}));
 }
 

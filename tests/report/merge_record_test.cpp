@@ -53,10 +53,10 @@ MergeResult any_result() {
   result.left_out.back().reason = Reason::contradicts_others;
   result.plan = PlanPlacement{"plan <1>.png",
                               1.0 / 3.0,
-                              {{{0, 2}, {4.0, 0.1, 1.0}, 0.125, Reason::ambiguous},
-                               {{1}, {}, 0.0, Reason::nothing_to_compare},
-                               {{3, 5}, {7.0, 8.0, 3.0}, 0.9375, Reason::none},
-                               {{4}, {1.0, 2.0, -1.0}, 0.5, Reason::several}}};
+                              {{{0, 2}, {4.0, 0.1, 1.0}, 1.5, 0.125, Reason::ambiguous},
+                               {{1}, {}, 1.0, 0.0, Reason::nothing_to_compare},
+                               {{3, 5}, {7.0, 8.0, 3.0}, 1.25, 0.9375, Reason::none},
+                               {{4}, {1.0, 2.0, -1.0}, 0.75, 0.5, Reason::several}}};
   result.open_ways = {{0, 1, {-4.0, 1.0 / 3.0, 2.5}, 0.375}, {1, 3, {}, 0.125}};
   return result;
 }
