@@ -15,6 +15,7 @@ from importlib.metadata import version
 from types import FunctionType
 
 from ._bag import BagTopic, RecordedMap, bag_topics, recorded_maps
+from ._cache import CacheWarning
 from ._core import FileError
 from ._deformation import Deformation
 from ._evaluate import (
@@ -71,6 +72,7 @@ __version__ = version("gridmerge")
 __all__ = [
     "BUILDING_KINDS",
     "BagTopic",
+    "CacheWarning",
     "CellClass",
     "CommonCells",
     "Component",

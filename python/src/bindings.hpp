@@ -63,6 +63,7 @@ inline nb::bytes to_nb_bytes(const std::string& bytes) {
 void set_search(MatchOptions& options, const std::string& search, std::optional<double> accept);
 
 void bind_bag(nb::module_& module);
+void bind_cache(nb::module_& module);
 void bind_errors(nb::module_& module);
 void bind_worker(nb::module_& module);
 void bind_grid(nb::module_& module);

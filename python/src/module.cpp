@@ -14,6 +14,7 @@ NB_MODULE(_core, module) {
   bind_match(module);
   bind_measure(module);
   bind_deformation(module);
+  bind_cache(module);
   bind_merge(module);
   bind_merger(module);
   bind_plan(module);
