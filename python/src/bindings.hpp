@@ -74,6 +74,7 @@ void bind_merge(nb::module_& module);
 void bind_merger(nb::module_& module);
 void bind_plan(nb::module_& module);
 void bind_random_walk(nb::module_& module);
+void bind_record(nb::module_& module);
 void bind_simulate(nb::module_& module);
 void bind_deformation(nb::module_& module);
 void bind_evaluate(nb::module_& module);

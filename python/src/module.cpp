@@ -19,6 +19,7 @@ NB_MODULE(_core, module) {
   bind_merger(module);
   bind_plan(module);
   bind_random_walk(module);
+  bind_record(module);
   bind_simulate(module);
   bind_evaluate(module);
   bind_tasks(module);
