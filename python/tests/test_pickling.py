@@ -4,13 +4,18 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import pickle
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import gridmerge
+import numpy as np
 import pytest
+from gridmerge import _core
 
 
 @pytest.fixture(scope="module")
@@ -49,6 +54,98 @@ def test_parts_of_a_result_by_themselves(result: gridmerge.MergeResult) -> None:
         gridmerge.Transform(1, 2, 3),
     ):
         assert pickle.loads(pickle.dumps(part)) == part
+
+
+def parts_of(value: Any) -> Iterator[Any]:
+    """The value, and all results within it."""
+    yield value
+    if isinstance(value, (tuple, list)):
+        for one in value:
+            yield from parts_of(one)
+    elif dataclasses.is_dataclass(value):
+        for field in dataclasses.fields(value):
+            if not field.name.startswith("_"):
+                yield from parts_of(getattr(value, field.name))
+
+
+def same(one: Any, other: Any) -> bool:
+    """Equal, with arrays and what is no part of a comparison."""
+    if type(one) is not type(other):
+        return False
+    if isinstance(one, np.ndarray):
+        return one.dtype == other.dtype and one.tobytes() == other.tobytes()
+    if isinstance(one, (tuple, list)):
+        return len(one) == len(other) and all(map(same, one, other))
+    if dataclasses.is_dataclass(one):
+        return all(
+            same(getattr(one, field.name), getattr(other, field.name))
+            for field in dataclasses.fields(one)
+            if field.name != "_core"
+        )
+    return bool(one == other)
+
+
+def test_all_results_that_there_are(
+    robots: list[str], team: gridmerge.Simulation, team_folder: Path, tmp_path: Path
+) -> None:
+    pose = gridmerge.match(*robots[:2]).transform
+    heard = gridmerge.Team(quiet=0.0)
+    for i, path in enumerate(robots):
+        heard.hear(f"tb{i}", path)
+    assert heard.wait_until_settled(600.0)
+    plan = gridmerge.merge(robots[:2], plan=team.building)
+    plan.save(tmp_path)
+    unsure = gridmerge.merge([*robots[:2], team.maps[0].grid], accept=0.0, max_false_joins=0.0)
+    values: list[Any] = [
+        *(plan, unsure, team, pose, heard.answer(), heard.take_events()),
+        gridmerge.read_transforms(tmp_path),
+        gridmerge.evaluate(team_folder / "pairs.tsv", sets=team_folder / "sets.tsv"),
+        gridmerge.measure_maps(robots[0], robots[1:2], [pose]),
+        gridmerge.match_by_random_walk(*robots[:2], restarts=1, max_proposals=20, trace="all"),
+        gridmerge.InitialPose((1, 2, 3)),
+        gridmerge.Deformation((1, 2, 3), 2.0, np.arange(32.0).reshape(4, 4, 2) / 100.0),
+        gridmerge.BagTopic("/map", "nav_msgs/msg/OccupancyGrid", 1),
+        gridmerge.RecordedMap(5, team.building, False),
+        gridmerge.PairPose(pose, 0.5, 0.5, 1, 1, 0.5),
+        gridmerge.OpenWay(0, 1, pose, 0.5),
+    ]
+    seen = set()
+    for value in values:
+        assert same(pickle.loads(pickle.dumps(value)), value), value
+        for part in parts_of(value):
+            if type(part) not in seen:
+                seen.add(type(part))
+                assert same(pickle.loads(pickle.dumps(part)), part), part
+    classes = {one for name in gridmerge.__all__ if isinstance(one := getattr(gridmerge, name), type)}
+    errors = {one for one in classes if issubclass(one, BaseException)}
+    assert classes - errors - seen == {gridmerge.Merger, gridmerge.OccupancyGridMessage, gridmerge.Team}
+    for kind in errors:
+        told = pickle.loads(pickle.dumps(kind("x: is wrong")))
+        assert (type(told), str(told)) == (kind, "x: is wrong")
+
+
+def test_a_simulation_writes_the_same(team: gridmerge.Simulation, tmp_path: Path) -> None:
+    again = pickle.loads(pickle.dumps(team))
+    team.save(tmp_path / "one")
+    again.save(tmp_path / "two")
+    assert files_of(tmp_path / "one") == files_of(tmp_path / "two")
+    steps = gridmerge.simulate("apartment", size=(12, 9), robots=1, steps=3, others=0)
+    assert same(copy.deepcopy(steps), steps)
+
+
+def test_a_damaged_simulation_is_refused(team: gridmerge.Simulation) -> None:
+    state = team._core.state()
+    assert len(state) == 2  # the building, and one elsewhere
+    for wrong in (b"", state[0][:-1], state[0] + b"x", b"\xff" * 64):
+        with pytest.raises(ValueError):
+            _core.Dataset.from_state([wrong])
+
+
+def test_an_evaluation_says_the_same(team_folder: Path) -> None:
+    evaluation = gridmerge.evaluate(team_folder / "pairs.tsv")
+    again = pickle.loads(pickle.dumps(evaluation))
+    assert again == evaluation
+    assert (again.to_json(), again.summary()) == (evaluation.to_json(), evaluation.summary())
 
 
 def test_a_merger_goes_on_where_it_was(robots: list[str], elsewhere: str) -> None:
@@ -97,8 +194,6 @@ def test_another_process_reads_them(result: gridmerge.MergeResult, tmp_path: Pat
 
 
 def test_a_damaged_state_is_refused(result: gridmerge.MergeResult) -> None:
-    from gridmerge import _core
-
     state = result._core.state()
     for wrong in (b"", state[:-1], state + b"x", b"\xff" * 64):
         with pytest.raises(ValueError):
