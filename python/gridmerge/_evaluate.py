@@ -193,8 +193,9 @@ def evaluate(
         progress: called now and then, in the calling thread, with the share of the work that is done.
 
     `gridmerge evaluate --help` says what the tables hold; Simulation.save() writes them. Other Python threads run
-    meanwhile, and Ctrl-C ends the work. Raises FileError for a table or map that cannot be read and for a cache that
-    cannot be written to, ExecutorError for an executor that fails, and TypeError or ValueError for other mistakes.
+    meanwhile, and Ctrl-C ends the work. Raises FileError for a table or map that cannot be read, and for a cache that
+    cannot be written to. Raises ExecutorError for an executor that fails, and TypeError or ValueError for other
+    mistakes.
     """
     if pairs is None and negatives is None and sets is None:
         raise ValueError("pairs, negatives, sets: at least one of them is needed")

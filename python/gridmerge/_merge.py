@@ -75,9 +75,9 @@ def merge(
             sent to them. Each task takes one thread, and is tried again when its worker dies. "tree" takes none.
         cache: a directory in which the match of each pair is kept, as `--cache` of the command line does; made if need
             be. A merge that was ended goes on from it, and others may share it. Not for "tree".
-        progress: called now and then, in the calling thread, with the share of the work that is done. It rises: each
-            round of matches takes half of what is left, as nobody knows how many rounds follow, and 1.0 is told when
-            the maps are merged. The plan comes after that.
+        progress: called now and then, in the calling thread, with the share of the work that is done. It never falls:
+            each round of matches takes half of what is left, as nobody knows how many follow. It is 1.0 when the maps
+            are merged; the plan comes after that.
 
     The frame of a component is that of its first member, unless a member is fixed. Other Python threads run meanwhile,
     and Ctrl-C ends the work, also what an executor has not begun. Raises FileError for a file that is no map, or that
