@@ -8,7 +8,6 @@
 #include <string_view>
 #include <utility>
 
-#include "gridmerge/io/file_error.hpp"
 #include "gridmerge/match/stored_match.hpp"
 
 namespace gridmerge::cli {
@@ -90,17 +89,7 @@ MergeResult CachedEngine::merge(const std::vector<OccupancyGrid>& maps, const Me
 MatchResult CachedEngine::match(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                 const MatchOptions& options, const std::function<MatchResult()>& make) {
   if (!cache_) return make();
-  const std::string key = match_key(content_id(fixed), content_id(moving), options);
-  if (std::optional<MatchResult> match = cache_->find(key)) return *std::move(match);
-  MatchResult match = make();
-  try {
-    cache_->keep(key, match);
-  } catch (const FileError& error) {
-    if (keeps_)
-      console_.warn(fmt::format("{}: matches that cannot be kept are made all the same", error.what()));
-    keeps_ = false;
-  }
-  return match;
+  return cache_->find_or_make(match_key(content_id(fixed), content_id(moving), options), make);
 }
 
 std::string CachedEngine::make_shard(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,

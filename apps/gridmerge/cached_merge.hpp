@@ -48,7 +48,6 @@ class CachedEngine {
   CacheOptions options_;
   Console& console_;
   std::unique_ptr<MatchCache> cache_;  // none if none is asked for
-  bool keeps_ = true;
 };
 
 }  // namespace gridmerge::cli

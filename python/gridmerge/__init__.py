@@ -15,6 +15,7 @@ from importlib.metadata import version
 from types import FunctionType
 
 from ._bag import BagTopic, RecordedMap, bag_topics, recorded_maps
+from ._cache import CacheWarning
 from ._core import FileError
 from ._deformation import Deformation
 from ._evaluate import (
@@ -62,6 +63,7 @@ from ._merger import Merger
 from ._message import OccupancyGridMessage
 from ._plan import PlanPart, PlanPlacement
 from ._random_walk import RandomWalkMatch, Trace, Walk, match_by_random_walk, plot_walk
+from ._record import MergeRecord, RecordedComponent, read_transforms
 from ._simulate import BUILDING_KINDS, SimulatedMap, SimulatedPair, Simulation, simulate
 from ._team import RobotState, RobotStatus, Team, TeamAnswer, TeamComponent, TeamEvent, TeamEventKind
 from ._transform import PoseLike, Transform
@@ -71,6 +73,7 @@ __version__ = version("gridmerge")
 __all__ = [
     "BUILDING_KINDS",
     "BagTopic",
+    "CacheWarning",
     "CellClass",
     "CommonCells",
     "Component",
@@ -91,6 +94,7 @@ __all__ = [
     "MatchCase",
     "MatchResult",
     "Member",
+    "MergeRecord",
     "MergeResult",
     "Merger",
     "NegativeCounts",
@@ -106,6 +110,7 @@ __all__ = [
     "PsiTerms",
     "RandomWalkMatch",
     "Reason",
+    "RecordedComponent",
     "RecordedMap",
     "RobotState",
     "RobotStatus",
@@ -138,6 +143,7 @@ __all__ = [
     "merge",
     "plot_walk",
     "poses_between",
+    "read_transforms",
     "recorded_maps",
     "save",
     "simulate",

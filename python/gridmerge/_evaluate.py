@@ -7,10 +7,10 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from typing import TypeAlias, cast
 
-from . import _arguments, _core, _executor, _inputs
+from . import _arguments, _cache, _core, _executor, _inputs
 from ._arguments import Progress
 from ._grid import to_resolution
-from ._match import Reason, Verdict
+from ._match import RANDOM_WALK, Reason, Verdict
 from ._merge import Strategy
 from ._repr import count, probability, shortened
 
@@ -140,7 +140,8 @@ class Evaluation:
     """The pairs, then the negatives, each in the table's order."""
     set_cases: tuple[SetCase, ...]
     """The sets, in the table's order."""
-    _core: _core.Evaluation = field(repr=False, compare=False)
+    _json: str = field(repr=False, compare=False)
+    _summary: str = field(repr=False, compare=False)
 
     def __repr__(self) -> str:
         pairs, negatives, sets = self.pairs, self.negatives, self.sets
@@ -157,11 +158,11 @@ class Evaluation:
 
     def to_json(self) -> str:
         """The text that `gridmerge evaluate --json` writes."""
-        return self._core.to_json()
+        return self._json
 
     def summary(self) -> str:
         """The table that `gridmerge evaluate` prints."""
-        return self._core.summary()
+        return self._summary
 
 
 def evaluate(
@@ -171,10 +172,12 @@ def evaluate(
     *,
     strategy: Strategy = "joint",
     threads: int = 0,
-    accept: float = _core.DEFAULT_ACCEPT,
+    accept: float | None = None,
+    search: str = "exhaustive",
     resolution: float | None = None,
     literal_thresholds: bool = False,
     executor: Executor | None = None,
+    cache: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> Evaluation:
     """Matches and merges maps whose truth is known, and holds the answers against it.
@@ -183,36 +186,58 @@ def evaluate(
         pairs: table (TSV) of pairs of maps with true transforms.
         negatives: table of pairs with no common place.
         sets: table of sets of maps to merge, with true poses. At least one of the three is needed.
-        strategy, threads, accept: as for merge().
+        strategy, threads, accept, search: as for merge().
         resolution, literal_thresholds: how map files are read, as for load(); the resolution is that of bare images.
         executor: makes the matches, as for merge(): workers read the maps under the same paths. Needs "joint".
+        cache: a directory in which matches are kept, as for merge(). Not for the random walk.
         progress: called now and then, in the calling thread, with the share of the work that is done.
 
     `gridmerge evaluate --help` says what the tables hold; Simulation.save() writes them. Other Python threads run
-    meanwhile, and Ctrl-C ends the work. Raises FileError for a table or map that cannot be read, ExecutorError for an
-    executor that fails, and TypeError or ValueError for other mistakes.
+    meanwhile, and Ctrl-C ends the work. Raises FileError for a table or map that cannot be read, and for a cache that
+    cannot be written to. Raises ExecutorError for an executor that fails, and TypeError or ValueError for other
+    mistakes.
     """
     if pairs is None and negatives is None and sets is None:
         raise ValueError("pairs, negatives, sets: at least one of them is needed")
     up_the_tree = _arguments.choice("strategy", strategy, ("joint", "tree")) == "tree"
     if _executor.check(executor) is not None and up_the_tree:
         raise ValueError("executor: needs the strategy 'joint': a tree's matches wait for each other")
+    search = _arguments.choice("search", search, tuple(_core.search_methods()))
+    if search == RANDOM_WALK and not up_the_tree:
+        raise ValueError("search: 'random-walk' needs the strategy 'tree': it has no probability")
+    if search == RANDOM_WALK and cache is not None:
+        raise ValueError("cache: does not go with the search 'random-walk'")
     paths = [
         None if table is None else _arguments.path(name, table)
         for name, table in (("pairs", pairs), ("negatives", negatives), ("sets", sets))
     ]
     threads = _arguments.threads(threads)
-    accept = _arguments.share("accept", accept)
+    checked_accept = None if accept is None else _arguments.share("accept", accept)
     cell = 0.0 if resolution is None else to_resolution("resolution", resolution)
     told = _arguments.progress(progress)
     truth = _core.read_truth(*paths)
+    kept = _cache.to_cache(cache)
     if executor is None:
-        core = _core.evaluate(truth, threads, accept, up_the_tree, cell, bool(literal_thresholds), told)
+        core = _core.evaluate(
+            truth,
+            threads,
+            checked_accept,
+            up_the_tree,
+            search,
+            cell,
+            bool(literal_thresholds),
+            kept,
+            told,
+        )
     else:
-        answers = _Answers(executor, threads, accept, cell, bool(literal_thresholds))
+        accepted_from = _core.DEFAULT_ACCEPT if checked_accept is None else checked_accept
+        answers = _Answers(executor, threads, accepted_from, search, cell, bool(literal_thresholds), kept)
         matches, merges = answers.of(truth, told)
-        core = _core.evaluate_answers(truth, matches, merges, accept, cell, bool(literal_thresholds))
+        core = _core.evaluate_answers(truth, matches, merges, accepted_from, cell, bool(literal_thresholds))
+        if told is not None:
+            told(1.0)
     _inputs.warn(core.warnings)
+    _cache.warn(kept)
     return _to_evaluation(core)
 
 
@@ -226,11 +251,20 @@ class _Answers:
     """What the engine says of maps whose truth is known, by way of an executor."""
 
     def __init__(
-        self, executor: Executor, threads: int, accept: float, resolution: float, literal_thresholds: bool
+        self,
+        executor: Executor,
+        threads: int,
+        accept: float,
+        search: str,
+        resolution: float,
+        literal_thresholds: bool,
+        cache: _core.MatchCache | None,
     ) -> None:
         self._executor = executor
         self._threads = threads
         self._accept = accept
+        self._search = search
+        self._cache = cache
         self._reading = (resolution, literal_thresholds)
         self._shared: dict[bytes, _executor.SharedMap] = {}
 
@@ -245,6 +279,9 @@ class _Answers:
             if progress is not None:
                 progress(done / total)
 
+        def merged_at(done: int, some: int) -> Callable[[float], object]:
+            return lambda share: told(len(pairs) + done + share * some)
+
         matches = self._match(pairs, told)
         merges: list[_core.Merged] = []
         some: list[list[_TruthMap]] = []
@@ -252,13 +289,11 @@ class _Answers:
         for members in sets:
             size = sum(self._share(member).cells for member in members)
             if some and cells + size > _MOST_CELLS:
-                merges += self._merge(some)
-                told(len(pairs) + len(merges))
+                merges += self._merge(some, merged_at(len(merges), len(some)))
                 some, cells = [], 0
             some.append(members)
             cells += size
-        merges += self._merge(some)
-        told(total)
+        merges += self._merge(some, merged_at(len(merges), len(some)))
         return matches, merges
 
     def _match(
@@ -270,14 +305,16 @@ class _Answers:
             return lambda match: matches.__setitem__(place, match)
 
         wanted = [
-            _executor.Wanted(self._share(fixed), self._share(moving), "exhaustive", keep(i))
+            _executor.Wanted(self._share(fixed), self._share(moving), self._search, keep(i))
             for i, (fixed, moving) in enumerate(pairs)
         ]
-        matching = _executor.MatchingExecutor(self._executor, self._accept, _core.DEFAULT_MAX_HYPOTHESES)
+        matching = _executor.MatchingExecutor(
+            self._executor, self._accept, _core.DEFAULT_MAX_HYPOTHESES, self._cache
+        )
         matching.make(wanted, told)
         return matches
 
-    def _merge(self, sets: list[list[_TruthMap]]) -> list[_core.Merged]:
+    def _merge(self, sets: list[list[_TruthMap]], told: Callable[[float], object]) -> list[_core.Merged]:
         mergers: list[tuple[_core.Merger, dict[int, _executor.SharedMap]]] = []
         for members in sets:
             merger = _core.Merger(
@@ -287,14 +324,14 @@ class _Answers:
                 _core.DEFAULT_MAX_MISSED,
                 0.0,
                 "rigid",
-                "exhaustive",
+                self._search,
             )
             shared = {merger.add(self._load(member), None): self._share(member) for member in members}
             mergers.append((merger, shared))
         if mergers:
-            matching = _executor.MatchingExecutor(self._executor, *mergers[0][0].match_options())
-            _executor.match_due(matching, mergers)
-        return [merger.solve(None) for merger, _ in mergers]
+            matching = _executor.MatchingExecutor(self._executor, *mergers[0][0].match_options(), self._cache)
+            _executor.match_due(matching, mergers, told)
+        return [merger.solve(None, None) for merger, _ in mergers]
 
     def _share(self, map: _TruthMap) -> _executor.SharedMap:
         path, _ = map
@@ -325,7 +362,8 @@ def _to_evaluation(core: _core.Evaluation) -> Evaluation:
         set_cases=tuple(
             SetCase(one.name, one.maps, one.correct, one.wrong, one.left_out) for one in core.set_outcomes
         ),
-        _core=core,
+        _json=core.to_json(),
+        _summary=core.summary(),
     )
 
 

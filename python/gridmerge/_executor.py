@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import queue
-from collections import deque
+from collections import defaultdict, deque
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import CancelledError, Executor, Future
 from dataclasses import dataclass, field
@@ -22,7 +22,8 @@ MOST_ATTEMPTS = 3
 _MOST_WAITING = 1024  # tasks that the engine has at a time: it may have hundreds of workers
 _MOST_PAIRS = 500  # of a task
 _MOST_CELLS = 2**24  # of the maps that are sent with a task, unless one pair has more
-_FIRST_GUESS = {"quick": 3e-7, "thorough": 1.5e-6, "exhaustive": 1.5e-6}  # seconds a cell of both maps
+_FIRST_GUESS = {"quick": 3e-7}  # seconds a cell of both maps, by search
+_OTHER_GUESS = 1.5e-6
 
 
 class ExecutorError(RuntimeError):
@@ -95,7 +96,9 @@ class _Task:
 class MatchingExecutor:
     """Makes matches on an executor. What it gives depends neither on the executor nor on its failures."""
 
-    def __init__(self, executor: object, accept: float, hypotheses: int) -> None:
+    def __init__(
+        self, executor: object, accept: float, hypotheses: int, cache: _core.MatchCache | None = None
+    ) -> None:
         submit = getattr(executor, "submit", None)
         if not callable(submit):
             raise TypeError(
@@ -105,12 +108,23 @@ class MatchingExecutor:
         self._name = type(executor).__name__
         self._accept = accept
         self._hypotheses = hypotheses
-        self._rates = dict(_FIRST_GUESS)  # seconds a cell, by search
+        self._cache = cache
+        self._rates = defaultdict(lambda: _OTHER_GUESS, _FIRST_GUESS)
 
     def make(self, wanted: Iterable[Wanted], progress: Callable[[int], object] | None = None) -> None:
-        """Makes all of them; `take` of each is called in this thread, in any order. `progress` is told how many are
-        made. When it ends early, by an error or Ctrl-C, what no worker has begun is cancelled."""
-        waiting = deque(wanted)
+        """Makes all that the cache does not have; `take` of each is called in this thread, in any order. `progress` is
+        told how many are there. When it ends early, by an error or Ctrl-C, what no worker has begun is cancelled."""
+        waiting: deque[Wanted] = deque()
+        found = 0
+        for one in wanted:
+            match = self._find(one)
+            if match is None:
+                waiting.append(one)
+            else:
+                one.take(match)
+                found += 1
+        if progress is not None and found > 0:
+            progress(found)
         total = len(waiting)
         again: deque[_Task] = deque()
         running: dict[Future[_tasks.Answer], _Task] = {}
@@ -149,12 +163,25 @@ class MatchingExecutor:
                     continue
                 for one, match in zip(task.wanted, matches, strict=True):
                     one.take(match)
+                    self._keep(one, match)
                 made += len(matches)
                 if progress is not None:
-                    progress(made)
+                    progress(found + made)
         finally:
             for future in running:
                 future.cancel()
+
+    def _key(self, one: Wanted) -> str:
+        return _core.match_key(
+            one.fixed.content, one.moving.content, one.search, self._accept, self._hypotheses
+        )
+
+    def _find(self, one: Wanted) -> bytes | None:
+        return None if self._cache is None else self._cache.find(self._key(one))
+
+    def _keep(self, one: Wanted, match: bytes) -> None:
+        if self._cache is not None:
+            self._cache.keep(self._key(one), match)
 
     def _next_task(self, number: int, waiting: deque[Wanted]) -> _Task:
         """The next pairs, about TASK_SECONDS of them."""
@@ -245,6 +272,7 @@ def match_due(
     progress: Callable[[float], object] | None = None,
 ) -> None:
     """Hands mergers the matches that are due, round after round, until none is."""
+    rounds = _core.RoundsShare()
     while True:
         wanted = [
             Wanted(maps[fixed], maps[moving], search, _hand_in(merger, fixed, moving, search))
@@ -253,11 +281,13 @@ def match_due(
         ]
         if not wanted:
             return
-        executor.make(wanted, None if progress is None else _share_of(len(wanted), progress))
+        executor.make(wanted, None if progress is None else _share_of(rounds, len(wanted), progress))
 
 
-def _share_of(total: int, progress: Callable[[float], object]) -> Callable[[int], object]:
-    return lambda made: progress(made / total)
+def _share_of(
+    rounds: _core.RoundsShare, total: int, progress: Callable[[float], object]
+) -> Callable[[int], object]:
+    return lambda made: progress(rounds.of(made, total))
 
 
 def _hand_in(merger: _core.Merger, fixed: int, moving: int, search: str) -> Callable[[bytes], object]:

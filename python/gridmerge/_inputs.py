@@ -56,10 +56,10 @@ def to_maps_and_files(name: str, values: object) -> list[tuple[OccupancyGrid, bo
     ]
 
 
-def warn(messages: Iterable[str]) -> None:
+def warn(messages: Iterable[str], category: type[Warning] = MapWarning) -> None:
     level = _level_of_caller()
     for message in messages:
-        warnings.warn(message, MapWarning, stacklevel=level)
+        warnings.warn(message, category, stacklevel=level)
 
 
 def _level_of_caller() -> int:

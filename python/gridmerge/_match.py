@@ -25,6 +25,9 @@ Reason: TypeAlias = Literal[
 """Why a pair was refused: what, were it otherwise, would let the best hypothesis be accepted."""
 
 
+RANDOM_WALK = "random-walk"
+
+
 @dataclass(frozen=True, slots=True)
 class Hypothesis:
     """One way in which the moving map may lie on the fixed one."""
@@ -138,6 +141,13 @@ def match(
         _arguments.progress(progress),
     )
     return to_match_result(result, _core.DEFAULT_ACCEPT if accept is None else accept)
+
+
+def to_joint_search(search: object) -> str:
+    """A search that gives each pose a probability, which is what a joint merge weighs."""
+    return _arguments.choice(
+        "search", search, tuple(one for one in _core.search_methods() if one != RANDOM_WALK)
+    )
 
 
 def pair_pose(core: _core.PairPose) -> dict[str, Any]:

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from typing import Literal, TypeAlias
 
-from . import _arguments, _core, _executor
+from . import _arguments, _cache, _core, _executor
 from ._arguments import Progress
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_maps_and_files
 from ._known_poses import InitialPoses, MapKey, NamedMaps, to_known_poses
+from ._match import RANDOM_WALK
 from ._merge_result import MergeResult, to_merge_result
 from ._plan import choose_plan
 
@@ -35,6 +36,7 @@ def merge(
     plan_scale: tuple[float, float] | None = None,
     search: str = "exhaustive",
     executor: Executor | None = None,
+    cache: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> MergeResult:
     """Merges maps by what all pairs of them say together; a map that does not belong is left out.
@@ -71,13 +73,17 @@ def merge(
         executor: makes the matches: any concurrent.futures.Executor, of processes, threads, Dask or MPI. The result is
             the same, bit by bit. Maps that are given as paths are read by the workers, under the same paths; others are
             sent to them. Each task takes one thread, and is tried again when its worker dies. "tree" takes none.
-        progress: called now and then, in the calling thread, with the share of the pairs that are matched. The plan
-            comes after them.
+        cache: a directory in which the match of each pair is kept, as `--cache` of the command line does; made if need
+            be. A merge that was ended goes on from it, and others may share it. Not for "tree".
+        progress: called now and then, in the calling thread, with the share of the work that is done. It never falls:
+            each round of matches takes half of what is left, as nobody knows how many follow. It is 1.0 when the maps
+            are merged; the plan comes after that.
 
     The frame of a component is that of its first member, unless a member is fixed. Other Python threads run meanwhile,
     and Ctrl-C ends the work, also what an executor has not begun. Raises FileError for a file that is no map, or that
-    changes before a worker reads it; ExecutorError for an executor that fails; and TypeError or ValueError, naming the
-    argument, for other mistakes and for merged maps of more than 2^28 cells.
+    changes before a worker reads it, and for a cache that cannot be written to; ExecutorError for an executor that
+    fails; and TypeError or ValueError, naming the argument, for other mistakes and for merged maps of more than 2^28
+    cells.
     """
     given = to_maps_and_files("maps", maps)
     grids = [grid for grid, _ in given]
@@ -85,7 +91,7 @@ def merge(
     up_the_tree = _arguments.choice("strategy", strategy, ("joint", "tree")) == "tree"
     if up_the_tree and (init is not None or fix is not None):
         raise ValueError("strategy: init and fix need 'joint'")
-    if search == "random-walk" and not up_the_tree:
+    if search == RANDOM_WALK and not up_the_tree:
         raise ValueError(
             "search: 'random-walk' needs the strategy 'tree': it has one pose per pair, no probability"
         )
@@ -94,6 +100,8 @@ def merge(
         raise ValueError(f"strategy: {chosen_transform} needs 'joint'")
     if _executor.check(executor) is not None and up_the_tree:
         raise ValueError("executor: needs the strategy 'joint': a tree's matches wait for each other")
+    if cache is not None and up_the_tree:
+        raise ValueError("cache: needs the strategy 'joint'")
     chosen = choose_plan(grids, plan, plan_scale, up_the_tree, fix is not None, search)
     # The program may go to another directory before it saves.
     more_inputs: tuple[bytes, ...] = (
@@ -106,7 +114,8 @@ def merge(
     resolution = to_output_resolution(output_resolution)
     search = _arguments.choice("search", search, tuple(_core.search_methods()))
     told = _arguments.progress(progress)
-    if executor is None:
+    kept = _cache.to_cache(cache)
+    if executor is None and kept is None:
         merged = _core.merge(
             [grid._core for grid in grids],
             known,
@@ -131,10 +140,14 @@ def merge(
             search,
         )
         ids = [merger.add(grid._core, pose) for grid, pose in zip(grids, known, strict=True)]
-        shared = {i: _executor.of_map(grid, is_file) for i, (grid, is_file) in zip(ids, given, strict=True)}
-        matching = _executor.MatchingExecutor(executor, *merger.match_options())
-        _executor.match_due(matching, [(merger, shared)], told)
-        merged = merger.solve(None)
+        if executor is not None:
+            shared = {
+                i: _executor.of_map(grid, is_file) for i, (grid, is_file) in zip(ids, given, strict=True)
+            }
+            matching = _executor.MatchingExecutor(executor, *merger.match_options(), kept)
+            _executor.match_due(matching, [(merger, shared)], told)
+        merged = merger.solve(None if executor is not None else kept, told)
+        _cache.warn(kept)
     if chosen is not None:
         drawing, scales = chosen
         merged = _core.place_on_plan(

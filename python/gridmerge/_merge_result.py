@@ -255,10 +255,7 @@ def to_merge_result(
     return MergeResult(
         components=tuple(_to_component(merged, i, names) for i in range(merged.component_count)),
         joins=tuple(_to_join(join) for join in merged.joins),
-        left_out=tuple(
-            LeftOut(index, names[index], cast(Reason, reason), explanation)
-            for index, reason, explanation in merged.left_out
-        ),
+        left_out=tuple(to_left_out(one, names) for one in merged.left_out),
         maps=tuple(grids),
         names=tuple(names),
         open_ways=tuple(_to_open_way(way) for way in merged.open_ways),
@@ -272,7 +269,7 @@ def to_merge_result(
 def _to_component(merged: _core.Merged, index: int, names: Sequence[str]) -> Component:
     agreeing, conflicting, omega = merged.counts(index)
     return Component(
-        members=tuple(_to_member(member, names) for member in merged.members(index)),
+        members=tuple(to_member(member, names) for member in merged.members(index)),
         grid=OccupancyGrid._of(merged.grid(index)),
         agreeing=agreeing,
         conflicting=conflicting,
@@ -281,7 +278,7 @@ def _to_component(merged: _core.Merged, index: int, names: Sequence[str]) -> Com
     )
 
 
-def _to_member(member: _core.Member, names: Sequence[str]) -> Member:
+def to_member(member: _core.Member, names: Sequence[str]) -> Member:
     return Member(
         map=member.map,
         name=names[member.map],
@@ -291,6 +288,11 @@ def _to_member(member: _core.Member, names: Sequence[str]) -> Member:
         sd_theta=None if member.sd is None else member.sd.theta,
         deformation=None if member.deformation.is_identity else Deformation._of(member.deformation),
     )
+
+
+def to_left_out(core: tuple[int, str, str], names: Sequence[str]) -> LeftOut:
+    index, reason, explanation = core
+    return LeftOut(index, names[index], cast(Reason, reason), explanation)
 
 
 def _to_open_way(way: _core.OpenWay) -> OpenWay:

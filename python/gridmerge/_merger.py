@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from . import _arguments, _core, _executor
+from . import _arguments, _cache, _core, _executor
 from ._arguments import Progress
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map
 from ._known_poses import CoreKnown, InitialPose, to_core
+from ._match import to_joint_search
 from ._merge import to_output_resolution, to_transform
 from ._merge_result import MergeResult, to_merge_result
 from ._repr import count
@@ -41,6 +42,7 @@ class Merger:
         output_resolution: float | None = None,
         transform: str | None = None,
         elastic: bool = False,
+        search: str = "exhaustive",
     ) -> None:
         self._set_up(
             (
@@ -50,12 +52,13 @@ class Merger:
                 _arguments.share("max_missed", max_missed),
                 to_output_resolution(output_resolution),
                 to_transform(transform, elastic),
+                to_joint_search(search),
             )
         )
 
-    def _set_up(self, options: tuple[int, float, float, float, float, str]) -> None:
+    def _set_up(self, options: tuple[int, float, float, float, float, str, str]) -> None:
         self._options = options
-        self._core = _core.Merger(*options, "exhaustive")
+        self._core = _core.Merger(*options)
         self._maps: dict[int, tuple[OccupancyGrid, str]] = {}
         self._poses: dict[int, CoreKnown] = {}  # that are known, of the engine's maps
         self._posed: set[int] = set()  # of which the user has given one
@@ -153,13 +156,20 @@ class Merger:
         in this order."""
         return tuple(self._maps)
 
-    def solve(self, *, executor: Executor | None = None, progress: Progress | None = None) -> MergeResult:
+    def solve(
+        self,
+        *,
+        executor: Executor | None = None,
+        cache: str | os.PathLike[str] | None = None,
+        progress: Progress | None = None,
+    ) -> MergeResult:
         """Matches the pairs that are new or have changed, and merges: seconds to minutes for many maps.
 
-        An executor makes the matches, as for merge(). Those that it has made when it fails are kept, and the next
-        call goes on with them.
+        An executor makes the matches, and a cache keeps them on disk, as for merge(). Those that the executor has made
+        when it fails are kept by the Merger, too, and the next call goes on with them.
         """
         _executor.check(executor)
+        kept = _cache.to_cache(cache)
         with self._alone():
             told = _arguments.progress(progress)
             if executor is not None:
@@ -167,12 +177,12 @@ class Merger:
                     map_id: _executor.of_map(grid, map_id in self._files)
                     for map_id, (grid, _) in self._maps.items()
                 }
-                matching = _executor.MatchingExecutor(executor, *self._core.match_options())
+                matching = _executor.MatchingExecutor(executor, *self._core.match_options(), kept)
                 _executor.match_due(matching, [(self._core, shared)], told)
-                told = None
-            merged = self._core.solve(told)
+            merged = self._core.solve(None if executor is not None else kept, told)
             grids = [grid for grid, _ in self._maps.values()]
             names = [name for _, name in self._maps.values()]
+        _cache.warn(kept)
         return to_merge_result(merged, grids, names, ())
 
     def __getstate__(self) -> dict[str, Any]:

@@ -5,6 +5,7 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,6 +92,9 @@ class Simulation:
             f"{self.building.height} cells, {count(len(self.pairs), 'pair')}, "
             f"{count(len(self.strangers), 'pair')} of strangers, {len(self.elsewhere)} elsewhere)"
         )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _unpickle, (self._core.state(),)
 
     def save(self, directory: str | os.PathLike[str], *, probabilities: bool = False) -> None:
         """Writes the files that `gridmerge simulate` writes: robot_1.yaml and so on, elsewhere_1.yaml and so on,
@@ -205,6 +209,10 @@ def _two_numbers(name: str, values: object) -> tuple[float, float]:
         raise TypeError(f"{name}: must be two numbers, is {values!r}")
     first, second = values
     return _arguments.number(name, first), _arguments.number(name, second)
+
+
+def _unpickle(state: list[bytes]) -> Simulation:
+    return _to_simulation(_core.Dataset.from_state(state))
 
 
 def _to_simulation(dataset: _core.Dataset) -> Simulation:

@@ -9,7 +9,7 @@ from . import _arguments, _core
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map
 from ._known_poses import InitialPose, to_core
-from ._match import Reason
+from ._match import Reason, to_joint_search
 from ._merge import to_output_resolution
 from ._merge_result import MergeResult, to_merge_result
 from ._repr import count, short_pose
@@ -116,7 +116,7 @@ class Team:
     it lives.
 
     Args:
-        threads, accept, max_false_joins, output_resolution: as of merge().
+        threads, accept, max_false_joins, output_resolution, search: as of merge().
         search_again: a map is searched anew when this share of its known cells differs from when it was searched last;
             a quarter of it is enough for a robot that lies nowhere yet. In between, the pose follows the map once a
             fiftieth of its cells or walls is new. A smaller change is drawn at once where the robot lies.
@@ -134,6 +134,7 @@ class Team:
         accept: float = _core.DEFAULT_ACCEPT,
         max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
         output_resolution: float | None = None,
+        search: str = "exhaustive",
         search_again: float = 0.1,
         confirmations: int = 3,
         quiet: float = 3.0,
@@ -144,6 +145,7 @@ class Team:
         options.accept = _arguments.share("accept", accept)
         options.max_false_joins = _arguments.not_negative("max_false_joins", max_false_joins)
         options.output_resolution = to_output_resolution(output_resolution)
+        options.set_search(to_joint_search(search))
         options.search_again = _arguments.share("search_again", search_again)
         options.confirmations = _arguments.whole("confirmations", confirmations, 1, 1000)
         options.quiet = _arguments.not_negative("quiet", quiet)

@@ -63,6 +63,7 @@ inline nb::bytes to_nb_bytes(const std::string& bytes) {
 void set_search(MatchOptions& options, const std::string& search, std::optional<double> accept);
 
 void bind_bag(nb::module_& module);
+void bind_cache(nb::module_& module);
 void bind_errors(nb::module_& module);
 void bind_worker(nb::module_& module);
 void bind_grid(nb::module_& module);
@@ -73,6 +74,7 @@ void bind_merge(nb::module_& module);
 void bind_merger(nb::module_& module);
 void bind_plan(nb::module_& module);
 void bind_random_walk(nb::module_& module);
+void bind_record(nb::module_& module);
 void bind_simulate(nb::module_& module);
 void bind_deformation(nb::module_& module);
 void bind_evaluate(nb::module_& module);

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "bindings.hpp"
+#include "cache.hpp"
 #include "evaluate/count.hpp"
 #include "evaluate/tables.hpp"
 #include "gridmerge/match/stored_match.hpp"
@@ -27,20 +27,20 @@ std::string path_or_empty(const std::optional<nb::bytes>& path) {
   return path ? to_string(*path) : std::string();
 }
 
-EvaluateOptions make_options(int threads, double accept, bool up_the_tree) {
-  MatchOptions match_options;
-  match_options.threads = threads;
-  match_options.accept_probability = accept;
+EvaluateOptions make_options(const MatchOptions& match_options, bool up_the_tree, MatchCache* cache) {
   EvaluateOptions options;
-  options.matcher = [match_options](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
-    return match(fixed, moving, match_options);
+  options.matcher = [=](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
+    const auto make = [&] { return match(fixed, moving, match_options); };
+    if (cache == nullptr) return make();
+    return cache->find_or_make(match_key(content_id(fixed), content_id(moving), match_options), make);
   };
-  options.merger = [match_options, up_the_tree,
-                    matcher = options.matcher](const std::vector<OccupancyGrid>& maps) {
+  options.merger = [=, matcher = options.matcher](const std::vector<OccupancyGrid>& maps) {
     if (up_the_tree) return merge_up_tree(maps, matcher);
     MergeOptions joint;
     joint.match = match_options;
-    return merge(maps, joint);
+    Merger merger(maps, joint);
+    if (cache != nullptr) match_with_cache(merger, maps, *cache);
+    return merger.solve();
   };
   return options;
 }
@@ -90,10 +90,18 @@ Evaluated evaluate_truth(const Truth& truth, EvaluateOptions options, double acc
   });
 }
 
-Evaluated evaluate_here(const Truth& truth, int threads, double accept, bool up_the_tree, double resolution,
-                        bool literal_thresholds, const nb::object& progress) {
-  return evaluate_truth(truth, make_options(threads, accept, up_the_tree), accept, resolution,
-                        literal_thresholds, progress);
+Evaluated evaluate_here(const Truth& truth, int threads, std::optional<double> accept, bool up_the_tree,
+                        const std::string& search, double resolution, bool literal_thresholds, Cache* cache,
+                        const nb::object& progress) {
+  MatchOptions match_options;
+  match_options.threads = threads;
+  set_search(match_options, search, accept);
+  const double accepted_from = match_options.search == SearchMethod::random_walk
+                                   ? match_options.random_walk.accept_acceptance_index
+                                   : match_options.accept_probability;
+  return evaluate_truth(
+      truth, make_options(match_options, up_the_tree, cache == nullptr ? nullptr : &cache->matches()),
+      accepted_from, resolution, literal_thresholds, progress);
 }
 
 Evaluated evaluate_answers(const Truth& truth, const std::vector<nb::bytes>& matches,
@@ -200,9 +208,9 @@ void bind_evaluate(nb::module_& module) {
       .def("to_json", [](const Evaluated& it) { return to_str(evaluation_json(it.evaluation)); })
       .def("summary", [](const Evaluated& it) { return to_str(summary_table(it.evaluation, it.accept)); });
   bind_truth(module);
-  module.def("evaluate", &evaluate_here, nb::arg("truth"), nb::arg("threads"), nb::arg("accept"),
-             nb::arg("up_the_tree"), nb::arg("resolution"), nb::arg("literal_thresholds"),
-             nb::arg("progress").none());
+  module.def("evaluate", &evaluate_here, nb::arg("truth"), nb::arg("threads"), nb::arg("accept").none(),
+             nb::arg("up_the_tree"), nb::arg("search"), nb::arg("resolution"), nb::arg("literal_thresholds"),
+             nb::arg("cache").none(), nb::arg("progress").none());
   module.def("evaluate_answers", &evaluate_answers, nb::arg("truth"), nb::arg("matches"), nb::arg("merges"),
              nb::arg("accept"), nb::arg("resolution"), nb::arg("literal_thresholds"));
 }

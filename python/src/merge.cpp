@@ -8,6 +8,7 @@
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "merge_bytes.hpp"
+#include "rounds.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
@@ -52,8 +53,8 @@ Merged merge_maps(std::vector<Map> maps, const std::vector<std::optional<Known>>
   options.resolution = output_resolution;
   options.transform = map_transform(transform).value();
   MergeResult result = compute_in_worker(progress, [&](const Report& report) {
-    options.progress = [&report](std::size_t done, std::size_t total) {
-      report(static_cast<double>(done) / static_cast<double>(total));
+    options.progress = [&, rounds = RoundsShare()](std::size_t done, std::size_t total) mutable {
+      report(up_the_tree ? static_cast<double>(done) / static_cast<double>(total) : rounds.of(done, total));
     };
     return merge_grids(grids_of(maps), known_poses, options, up_the_tree);
   });

@@ -4,8 +4,10 @@
 #include <map>
 #include <utility>
 
+#include "cache.hpp"
 #include "gridmerge/match/stored_match.hpp"
 #include "merge.hpp"
+#include "rounds.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
@@ -19,7 +21,7 @@ class MapMerger {
   MapMerger(int threads, double accept, double max_false_joins, double max_missed, double output_resolution,
             const std::string& transform, const std::string& search)
       : merger_(make_options(threads, accept, max_false_joins, max_missed, output_resolution, transform,
-                             search, share_)) {}
+                             search, progress_)) {}
 
   std::size_t add(const Map& map, const std::optional<Known>& known) {
     std::optional<std::size_t> id;
@@ -87,9 +89,13 @@ class MapMerger {
     return {options.accept_probability, options.max_hypotheses};
   }
 
-  Merged solve(const nb::object& progress) {
+  /// With a cache, matches are those that it has, or are kept there.
+  Merged solve(Cache* cache, const nb::object& progress) {
     MergeResult result = compute_in_worker(progress, [&](const Report& report) {
-      *share_ = report;
+      *progress_ = [&report, rounds = RoundsShare()](std::size_t done, std::size_t total) mutable {
+        report(rounds.of(done, total));
+      };
+      if (cache != nullptr) match_with_cache(cache->matches());
       return merger_.solve();
     });
     std::vector<Map> maps;
@@ -99,6 +105,17 @@ class MapMerger {
   }
 
  private:
+  using Progress = std::function<void(std::size_t, std::size_t)>;
+
+  void match_with_cache(MatchCache& cache) {
+    std::vector<OccupancyGrid> grids;
+    grids.reserve(maps_.size());
+    for (const auto& [id, map] : maps_) grids.push_back(*map.grid);
+    MatchWorkOptions work;
+    work.progress = *progress_;
+    gridmerge::match_with_cache(merger_, grids, cache, work);
+  }
+
   void replace(std::size_t id, const Map& map, void (Merger::*put)(Merger::MapId, OccupancyGrid)) {
     bool is_replaced = false;
     try {
@@ -115,7 +132,7 @@ class MapMerger {
 
   static MergeOptions make_options(int threads, double accept, double max_false_joins, double max_missed,
                                    double output_resolution, const std::string& transform,
-                                   const std::string& search, std::shared_ptr<Report> share) {
+                                   const std::string& search, std::shared_ptr<Progress> progress) {
     MergeOptions options;
     options.match.threads = threads;
     set_search(options.match, search, accept);
@@ -123,13 +140,13 @@ class MapMerger {
     options.max_missed = max_missed;
     options.resolution = output_resolution;
     options.transform = map_transform(transform).value();
-    options.progress = [share = std::move(share)](std::size_t done, std::size_t total) {
-      (*share)(static_cast<double>(done) / static_cast<double>(total));
+    options.progress = [progress = std::move(progress)](std::size_t done, std::size_t total) {
+      (*progress)(done, total);
     };
     return options;
   }
 
-  std::shared_ptr<Report> share_ = std::make_shared<Report>();  // of the solve() that is at work
+  std::shared_ptr<Progress> progress_ = std::make_shared<Progress>();  // of the solve() that is at work
   Merger merger_;
   std::map<std::size_t, Map> maps_;
 };
@@ -152,7 +169,7 @@ void bind_merger(nb::module_& module) {
            nb::arg("match"))
       .def("matches", &MapMerger::matches)
       .def("match_options", &MapMerger::match_options)
-      .def("solve", &MapMerger::solve, nb::arg("progress").none());
+      .def("solve", &MapMerger::solve, nb::arg("cache").none(), nb::arg("progress").none());
 }
 
 }  // namespace gridmerge::python

@@ -14,10 +14,12 @@ NB_MODULE(_core, module) {
   bind_match(module);
   bind_measure(module);
   bind_deformation(module);
+  bind_cache(module);
   bind_merge(module);
   bind_merger(module);
   bind_plan(module);
   bind_random_walk(module);
+  bind_record(module);
   bind_simulate(module);
   bind_evaluate(module);
   bind_tasks(module);

@@ -9,6 +9,7 @@
 
 #include "bindings.hpp"
 #include "evaluate/dataset.hpp"
+#include "simulate_bytes.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
@@ -73,6 +74,31 @@ void save(const Dataset& dataset, const nb::bytes& directory, bool probabilities
   elsewhere.reserve(dataset.elsewhere.size());
   for (const auto& other : dataset.elsewhere) elsewhere.push_back(*other);
   write_dataset(path, *dataset.simulation, elsewhere, {probabilities});
+}
+
+/// The building's simulation, then those of other buildings.
+std::vector<nb::bytes> state_of(const Dataset& dataset) {
+  std::vector<std::string> states;
+  {
+    const OthersRun meanwhile;
+    states.push_back(to_bytes(*dataset.simulation));
+    for (const auto& other : dataset.elsewhere) states.push_back(to_bytes(*other));
+  }
+  std::vector<nb::bytes> told;
+  for (const std::string& state : states) told.push_back(to_nb_bytes(state));
+  return told;
+}
+
+/// Of what state_of() gave.
+Dataset from_state(const std::vector<nb::bytes>& told) {
+  std::vector<std::string> states;
+  for (const nb::bytes& state : told) states.push_back(to_string(state));
+  const OthersRun meanwhile;
+  Dataset dataset;
+  dataset.simulation = std::make_shared<const Simulation>(simulation_from_bytes(states.at(0)));
+  for (std::size_t i = 1; i < states.size(); ++i)
+    dataset.elsewhere.push_back(std::make_shared<const Simulation>(simulation_from_bytes(states[i])));
+  return dataset;
 }
 
 void set_kind(SimulateOptions& options, const std::string& name) {
@@ -156,6 +182,8 @@ void bind_results(nb::module_& module) {
       .def_prop_ro("pairs", [](const Dataset& dataset) { return dataset.simulation->pairs; })
       .def_prop_ro("strangers", [](const Dataset& dataset) { return dataset.simulation->strangers; })
       .def_prop_ro("overlap", [](const Dataset& dataset) { return dataset.simulation->overlap; })
+      .def("state", &state_of)
+      .def_static("from_state", &from_state, nb::arg("state"))
       .def("save", &save, nb::arg("directory"), nb::arg("probabilities"));
 }
 

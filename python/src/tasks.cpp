@@ -4,6 +4,7 @@
 #include "gridmerge/bag/bag.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/match/stored_match.hpp"
+#include "rounds.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
@@ -49,6 +50,9 @@ Map load_regular(const nb::bytes& path, double resolution, bool literal_threshol
 
 void bind_tasks(nb::module_& module) {
   [[maybe_unused]] const nb::class_<Prepared> prepared(module, "Prepared");
+  nb::class_<RoundsShare>(module, "RoundsShare")
+      .def(nb::init<>())
+      .def("of", &RoundsShare::of, nb::arg("done"), nb::arg("total"));
   module.def("engine_id", &engine_id);
   module.def(
       "content_id",

@@ -133,6 +133,12 @@ void bind_team(nb::module_& module) {
           [](TeamOptions& options, double seconds) {
             options.quiet = std::chrono::duration_cast<std::chrono::milliseconds>(time_of("quiet", seconds));
           })
+      .def(
+          "set_search",
+          [](TeamOptions& options, const std::string& search) {
+            set_search(options.merge.match, search, std::nullopt);
+          },
+          nb::arg("search"))
       .def_rw("search_again", &TeamOptions::search_again)
       .def_rw("confirmations", &TeamOptions::confirmations)
       .def_rw("max_robots", &TeamOptions::max_robots);

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import gridmerge
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -51,6 +53,62 @@ def team_folder(team: gridmerge.Simulation, tmp_path_factory: pytest.TempPathFac
     folder = tmp_path_factory.mktemp("team")
     team.save(folder)
     return folder
+
+
+@pytest.fixture(scope="session")
+def results(
+    robots: list[str],
+    elsewhere: str,
+    team: gridmerge.Simulation,
+    team_folder: Path,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> list[Any]:
+    """Of each kind that there is."""
+    merger = gridmerge.Merger()
+    merger.add(robots[0])
+    heard = gridmerge.Team(quiet=0.1)
+    for number, path in enumerate(robots[:2]):
+        heard.hear(f"tb{number}", path)
+    assert heard.wait_until_settled(600.0)
+    merged = gridmerge.merge([*robots, elsewhere])
+    saved = tmp_path_factory.mktemp("saved")
+    merged.save(saved)
+    return [
+        gridmerge.match(*robots[:2]),
+        merged,
+        gridmerge.read_transforms(saved),
+        gridmerge.merge(robots[:2], strategy="tree"),
+        team,
+        gridmerge.evaluate(
+            team_folder / "pairs.tsv", team_folder / "negatives.tsv", team_folder / "sets.tsv"
+        ),
+        gridmerge.measure(robots[0], robots[1], (0.0, 0.0, 0.0)),
+        gridmerge.measure_maps(robots[0], robots[1:2], [(0.0, 0.0, 0.0)]),
+        gridmerge.match_by_random_walk(*robots[:2], max_proposals=50, trace="all"),
+        gridmerge.Transform(1.0, 2.0, 3.0),
+        gridmerge.InitialPose((1.0, 2.0, 3.0)),
+        gridmerge.Deformation((1.0, 2.0, 3.0), 0.5, np.zeros((4, 5, 2))),
+        merger,
+        *gridmerge.bag_topics(ROOT / "tests" / "bag" / "data" / "lz4.mcap"),
+        next(gridmerge.recorded_maps(ROOT / "tests" / "bag" / "data" / "lz4.mcap", "/tb1/map")),
+        heard,
+        heard.answer(),
+        gridmerge.merge(robots[:2], plan=elsewhere, plan_scale=(0.95, 1.05)),
+        gridmerge.merge(robots[:2], accept=1.0),  # nothing is sure enough, so a way stays open
+    ]
+
+
+def values_in(value: Any) -> Iterator[Any]:
+    """A result, and all results in it."""
+    if isinstance(value, tuple):
+        for one in value:
+            yield from values_in(one)
+    elif type(value).__module__ == "gridmerge":
+        yield value
+        if dataclasses.is_dataclass(value):
+            for field in dataclasses.fields(value):
+                if not field.name.startswith("_"):
+                    yield from values_in(getattr(value, field.name))
 
 
 def pose_of(transform: gridmerge.Transform) -> dict[str, float]:

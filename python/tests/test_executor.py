@@ -130,8 +130,8 @@ def test_threads_give_the_same_bits(four: list[str], expected: tuple[str, bytes]
     with ThreadPoolExecutor(3) as executor:
         result = gridmerge.merge(four, executor=executor, progress=shares.append)
     assert answer(result, tmp_path) == expected
-    assert shares[-1] == 1.0
-    assert len(shares) == 9  # six pairs, and three of the map that is elsewhere again
+    assert shares == sorted(set(shares)) and shares[-1] == 1.0
+    assert len(shares) == 10  # six pairs, three of the map that is elsewhere again, and the end
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -162,6 +162,13 @@ def test_tasks_are_batched_by_what_they_cost(robots: list[str], monkeypatch: pyt
     for _, _, sent, pairs, _, _ in inline.sent:
         assert len(sent) == 2  # each map once
         assert len(pairs) >= 1
+
+
+def test_a_search_that_is_not_known_takes_its_time_too(robots: list[str]) -> None:
+    maps = [_executor.of_grid(gridmerge.load(path)) for path in robots[:2]]
+    wanted = [_executor.Wanted(maps[0], maps[1], "by-hand", lambda match: None)]
+    with pytest.raises(gridmerge.ExecutorError, match="failed 3 times"):
+        _executor.MatchingExecutor(Inline(lambda number: OSError()), 0.95, 12).make(wanted)
 
 
 def test_tasks_are_pure_and_picklable(robots: list[str]) -> None:
@@ -329,6 +336,9 @@ def test_what_is_no_executor_is_refused(four: list[str], team_folder: Path) -> N
 
 def test_no_maps_and_one_map_need_no_task(robots: list[str]) -> None:
     inline = Inline()
+    shares: list[float] = []
+    gridmerge.merge([], executor=inline, progress=shares.append)
+    assert shares == [1.0]
     assert gridmerge.merge([], executor=inline).components == ()
     assert len(gridmerge.merge(robots[:1], executor=inline).left_out) == 1
     assert inline.sent == []

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from functools import partial
 from pathlib import Path
 
 import gridmerge
@@ -273,6 +274,16 @@ def test_an_exception_of_progress_ends_the_work() -> None:
         gridmerge.merge(
             [gridmerge.simulate("apartment", size=(15, 10), robots=1).maps[0].grid] * 40, progress=stop
         )
+
+
+def test_the_share_never_falls_though_matches_come_in_rounds(robots: list[str], elsewhere: str) -> None:
+    merger = gridmerge.Merger(threads=1)
+    for path in (*robots, elsewhere):
+        merger.add(path)
+    for solve in (merger.solve, partial(gridmerge.merge, [*robots, elsewhere], threads=1)):
+        shares: list[float] = []
+        solve(progress=shares.append)
+        assert shares == sorted(shares) and shares[-1] == 1.0
 
 
 def test_progress_is_called_in_the_calling_thread(robots: list[str]) -> None:

@@ -4,13 +4,18 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import pickle
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import gridmerge
+import numpy as np
 import pytest
+from conftest import values_in
+from gridmerge import _core
 
 
 @pytest.fixture(scope="module")
@@ -49,6 +54,64 @@ def test_parts_of_a_result_by_themselves(result: gridmerge.MergeResult) -> None:
         gridmerge.Transform(1, 2, 3),
     ):
         assert pickle.loads(pickle.dumps(part)) == part
+
+
+def same(one: Any, other: Any) -> bool:
+    """Equal, with arrays and what is no part of a comparison."""
+    if type(one) is not type(other):
+        return False
+    if isinstance(one, np.ndarray):
+        return bool(one.dtype == other.dtype and one.tobytes() == other.tobytes())
+    if isinstance(one, (tuple, list)):
+        return len(one) == len(other) and all(map(same, one, other))
+    if dataclasses.is_dataclass(one):
+        return all(
+            same(getattr(one, field.name), getattr(other, field.name))
+            for field in dataclasses.fields(one)
+            if field.name != "_core"
+        )
+    return bool(one == other)
+
+
+def test_all_results_that_there_are(results: list[Any]) -> None:
+    seen = set()
+    for value in values_in(tuple(results)):
+        if type(value) not in seen and not isinstance(value, (gridmerge.Merger, gridmerge.Team)):
+            seen.add(type(value))
+            assert same(pickle.loads(pickle.dumps(value)), value), value
+    classes = {one for name in gridmerge.__all__ if isinstance(one := getattr(gridmerge, name), type)}
+    errors = {one for one in classes if issubclass(one, BaseException)}
+    assert classes - errors - seen == {
+        *(gridmerge.Merger, gridmerge.Team),
+        *(gridmerge.OccupancyGridMessage, gridmerge.PairPose),
+    }
+    for kind in errors:
+        told = pickle.loads(pickle.dumps(kind("x: is wrong")))
+        assert (type(told), str(told)) == (kind, "x: is wrong")
+
+
+def test_a_simulation_writes_the_same(team: gridmerge.Simulation, tmp_path: Path) -> None:
+    again = pickle.loads(pickle.dumps(team))
+    team.save(tmp_path / "one")
+    again.save(tmp_path / "two")
+    assert files_of(tmp_path / "one") == files_of(tmp_path / "two")
+    steps = gridmerge.simulate("apartment", size=(12, 9), robots=1, steps=3, others=0)
+    assert same(copy.deepcopy(steps), steps)
+
+
+def test_a_damaged_simulation_is_refused(team: gridmerge.Simulation) -> None:
+    state = team._core.state()
+    assert len(state) == 2  # the building, and one elsewhere
+    for wrong in (b"", state[0][:-1], state[0] + b"x", b"\xff" * 64):
+        with pytest.raises(ValueError):
+            _core.Dataset.from_state([wrong])
+
+
+def test_an_evaluation_says_the_same(team_folder: Path) -> None:
+    evaluation = gridmerge.evaluate(team_folder / "pairs.tsv")
+    again = pickle.loads(pickle.dumps(evaluation))
+    assert again == evaluation
+    assert (again.to_json(), again.summary()) == (evaluation.to_json(), evaluation.summary())
 
 
 def test_a_merger_goes_on_where_it_was(robots: list[str], elsewhere: str) -> None:
@@ -97,8 +160,6 @@ def test_another_process_reads_them(result: gridmerge.MergeResult, tmp_path: Pat
 
 
 def test_a_damaged_state_is_refused(result: gridmerge.MergeResult) -> None:
-    from gridmerge import _core
-
     state = result._core.state()
     for wrong in (b"", state[:-1], state + b"x", b"\xff" * 64):
         with pytest.raises(ValueError):

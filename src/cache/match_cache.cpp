@@ -70,6 +70,26 @@ void MatchCache::keep(const std::string& key, const MatchResult& match) const {
   write_file_atomically(file, format_match_file(match, key));
 }
 
+void MatchCache::keep_if_possible(const std::string& key, const MatchResult& match) {
+  try {
+    keep(key, match);
+  } catch (const FileError& error) {
+    warn_not_kept(error);
+  }
+}
+
+MatchResult MatchCache::find_or_make(const std::string& key, const std::function<MatchResult()>& make) {
+  if (std::optional<MatchResult> match = find(key)) return *std::move(match);
+  MatchResult match = make();
+  keep_if_possible(key, match);
+  return match;
+}
+
+void MatchCache::warn_not_kept(const std::exception& why) {
+  if (has_kept_all_) warn(fmt::format("{}: matches that cannot be kept are made all the same", why.what()));
+  has_kept_all_ = false;
+}
+
 void MatchCache::warn(const std::string& message) const {
   if (warn_) warn_(message);
 }

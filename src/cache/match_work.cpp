@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -27,8 +25,8 @@ struct Missing {
 
 class Round {
  public:
-  Round(Merger& merger, MatchCache& cache, const MatchWorkOptions& options, bool& keeps)
-      : merger_(merger), cache_(cache), options_(options), keeps_(keeps) {}
+  Round(Merger& merger, MatchCache& cache, const MatchWorkOptions& options)
+      : merger_(merger), cache_(cache), options_(options) {}
 
   void make(const std::vector<Missing>& missing, std::size_t done, std::size_t total) {
     std::vector<MatchResult> made(missing.size());
@@ -50,16 +48,13 @@ class Round {
     } catch (const FileError& error) {
       if (!options_.goes_on_when_full) throw;
       const std::lock_guard lock(telling);
-      if (keeps_)
-        cache_.warn(fmt::format("{}: matches that cannot be kept are made all the same", error.what()));
-      keeps_ = false;
+      cache_.warn_not_kept(error);
     }
   }
 
   Merger& merger_;
   MatchCache& cache_;
   const MatchWorkOptions& options_;
-  bool& keeps_;
 };
 
 }  // namespace
@@ -72,7 +67,6 @@ MatchWork match_with_cache(Merger& merger, const std::vector<OccupancyGrid>& map
   std::map<Merger::MapId, std::string> contents;
   for (std::size_t i = 0; i < ids.size(); ++i) contents[ids[i]] = content_id(maps[i]);
   MatchWork work;
-  bool keeps = true;
   while (work.missing == 0) {
     const std::vector<DueMatch> due = merger.due();
     if (due.empty()) break;
@@ -92,7 +86,7 @@ MatchWork match_with_cache(Merger& merger, const std::vector<OccupancyGrid>& map
       }
     }
     if (options.progress) options.progress(found, due.size());
-    with_threads(how.threads, [&] { Round(merger, cache, options, keeps).make(missing, found, due.size()); });
+    with_threads(how.threads, [&] { Round(merger, cache, options).make(missing, found, due.size()); });
     work.found += found;
     work.made += missing.size();
   }

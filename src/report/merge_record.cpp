@@ -319,13 +319,17 @@ MergeRecord parse_transforms(const std::filesystem::path& file, std::string_view
   }
 }
 
+MergeRecord read_transforms(const std::filesystem::path& file) {
+  FileReader reader(file, NamedBy::file);
+  return parse_transforms(file, reader.read_all(kMaxBytes));
+}
+
 MergeRecord read_merge_record(const std::filesystem::path& directory) {
   const std::filesystem::path file = directory / "transforms.json";
   std::error_code error;
   if (!std::filesystem::exists(file, error))
     throw FileError(directory, "holds no transforms.json: it is not what 'gridmerge merge' has written to");
-  FileReader reader(file, NamedBy::file);
-  return parse_transforms(file, reader.read_all(kMaxBytes));
+  return read_transforms(file);
 }
 
 std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<OccupancyGrid>& maps,

@@ -108,6 +108,27 @@ TEST_F(MatchCacheTest, NeedsADirectoryThatCanBeWrittenTo) {
   }
 }
 
+TEST_F(MatchCacheTest, MakesWhatIsMissingOnce) {
+  MatchCache cache = open();
+  int made = 0;
+  const auto make = [&] { return some_match(++made); };
+  EXPECT_EQ(cache.find_or_make(key, make).T_fixed_moving.x, 1.0);
+  EXPECT_EQ(cache.find_or_make(key, make).T_fixed_moving.x, 1.0);
+  EXPECT_EQ(open().find_or_make(key, make).T_fixed_moving.x, 1.0);
+  EXPECT_EQ(made, 1);
+}
+
+TEST_F(MatchCacheTest, WhatCannotBeKeptIsToldOnce) {
+  MatchCache cache = open();
+  std::filesystem::remove_all(directory.file("matches"));
+  directory.write("matches", "a file now");
+  cache.keep_if_possible(key, some_match(1.0));
+  EXPECT_EQ(cache.find_or_make(other_key, [] { return some_match(2.0); }).T_fixed_moving.x, 2.0);
+  ASSERT_EQ(warned.size(), 1u);
+  EXPECT_NE(warned[0].find("matches that cannot be kept are made all the same"), std::string::npos)
+      << warned[0];
+}
+
 TEST_F(MatchCacheTest, SeveralMayWriteAtOnce) {
   MatchCache cache = open();
   std::vector<std::thread> writers;

@@ -226,6 +226,9 @@ TEST(MergeRecord, IsReadFromItsFolder) {
                        directory.path().string() + ": holds no transforms.json"));
   directory.write("transforms.json", transforms_json(kNames, any_result()));
   EXPECT_EQ(read_merge_record(directory.path()).names, kNames);
+  EXPECT_EQ(read_transforms(directory.file("transforms.json")).names, kNames);
+  EXPECT_TRUE(
+      contains(message_of<FileError>([&] { read_transforms(directory.file("other.json")); }), "other.json"));
 }
 
 TEST(FuseAgain, GivesTheMergedMaps) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -36,18 +37,26 @@ class GRIDMERGE_EXPORT MatchCache {
   /// Throws FileError; what was kept is as before then. May be called by several threads at once.
   void keep(const std::string& key, const MatchResult& match) const;
 
+  /// As keep(), for who goes on without it: of the first match that cannot be kept it warns.
+  void keep_if_possible(const std::string& key, const MatchResult& match);
+
+  /// The match of this key: the one that is there, or what `make` gives, which is kept if possible.
+  MatchResult find_or_make(const std::string& key, const std::function<MatchResult()>& make);
+
   /// How many damaged files were found.
   std::size_t damaged() const { return damaged_; }
 
-  /// Tells the user something, as the cache does.
-  void warn(const std::string& message) const;
+  /// For who calls keep() and goes on when it throws: warns, the first time.
+  void warn_not_kept(const std::exception& why);
 
  private:
+  void warn(const std::string& message) const;
   std::filesystem::path file_of(const std::string& key) const;
 
   std::filesystem::path directory_;
   Warn warn_;
   std::size_t damaged_ = 0;
+  bool has_kept_all_ = true;
 };
 
 /// A part of the matches of a merge: of each round, in the order in which they are due, every `count`th.

@@ -41,7 +41,10 @@ struct MergeRecord {
 /// "file: joins[2].transform.x is no number". O(bytes).
 GRIDMERGE_EXPORT MergeRecord parse_transforms(const std::filesystem::path& file, std::string_view text);
 
-/// The same of `directory`/transforms.json. Throws FileError also when there is none, or it exceeds 256 MiB.
+/// The same of a file. Throws FileError also when there is none, or it exceeds 256 MiB.
+GRIDMERGE_EXPORT MergeRecord read_transforms(const std::filesystem::path& file);
+
+/// The same of `directory`/transforms.json.
 GRIDMERGE_EXPORT MergeRecord read_merge_record(const std::filesystem::path& directory);
 
 /// Fuses the maps of every component anew, at the resolutions of the merged maps that lie in `directory`,

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cache.hpp"
+
+#include "gridmerge/match/stored_match.hpp"
+#include "worker.hpp"
+
+namespace gridmerge::python {
+
+namespace {
+
+std::optional<nb::bytes> find(Cache& cache, const std::string& key) {
+  const std::optional<MatchResult> match = [&] {
+    const OthersRun meanwhile;
+    return cache.matches().find(key);
+  }();
+  return match ? std::optional(to_nb_bytes(to_bytes(*match))) : std::nullopt;
+}
+
+void keep(Cache& cache, const std::string& key, const nb::bytes& match) {
+  const MatchResult result = match_from_bytes(to_string(match));
+  const OthersRun meanwhile;
+  cache.matches().keep_if_possible(key, result);
+}
+
+// Paths in them are any bytes.
+std::vector<nb::str> take_warnings(Cache& cache) {
+  std::vector<nb::str> warnings;
+  for (const std::string& warning : cache.take_warnings()) warnings.push_back(to_str(warning));
+  return warnings;
+}
+
+std::string key_of(const std::string& fixed, const std::string& moving, const std::string& search,
+                   double accept, std::size_t max_hypotheses) {
+  MatchOptions options;
+  options.max_hypotheses = max_hypotheses;
+  set_search(options, search, accept);
+  return match_key(fixed, moving, options);
+}
+
+}  // namespace
+
+void bind_cache(nb::module_& module) {
+  nb::class_<Cache>(module, "MatchCache")
+      .def(nb::init<const nb::bytes&>(), nb::arg("directory"))
+      .def("find", &find, nb::arg("key"))
+      .def("keep", &keep, nb::arg("key"), nb::arg("match"))
+      .def("take_warnings", &take_warnings);
+  module.def("match_key", &key_of, nb::arg("fixed"), nb::arg("moving"), nb::arg("search"), nb::arg("accept"),
+             nb::arg("max_hypotheses"));
+}
+
+}  // namespace gridmerge::python
