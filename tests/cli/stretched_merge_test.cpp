@@ -52,8 +52,13 @@ class StretchedMerge : public CliTest {
 };
 
 TEST_F(StretchedMerge, FindsTheScaleAndTellsIt) {
-  const Outcome outcome = run(merge_call({"--transform", "similarity"}));
+  const Outcome outcome =
+      run(merge_call({"--transform", "similarity", "--export", "open-rmf", "--export", "g2o"}));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string open_rmf = read_file(output + "/open_rmf.yaml");
+  EXPECT_NE(open_rmf.find("    scale: 0.98"), std::string::npos) << open_rmf;
+  EXPECT_NE(open_rmf.find("    residual: 0.000000\n"), std::string::npos) << open_rmf;
+  EXPECT_NE(read_file(output + "/merged.g2o").find("these are the rigid parts"), std::string::npos);
   EXPECT_NE(outcome.out.find(", scale 0.98"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find(", scale 1.0"), std::string::npos) << outcome.out;
   double sum = 0.0;
