@@ -170,6 +170,9 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
     text += explain_no_change(asked.transform);
   if (result.expected_false_joins && !result.components.empty())
     fmt::format_to(out, "of these joins, {:.3f} are expected to be false\n", *result.expected_false_joins);
+  if (result.not_compared)
+    fmt::format_to(out, "not compared: {} pairs, which may hide {:.1f} more joins (--max-missed)\n",
+                   result.not_compared->pairs, result.not_compared->expected_joins);
   for (const LeftOut& one : result.left_out)
     fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain(result, one));
   text += describe_open_ways(names, result);

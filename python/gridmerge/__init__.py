@@ -56,6 +56,7 @@ from ._merge_result import (
     LeftOut,
     Member,
     MergeResult,
+    NotCompared,
     OpenWay,
 )
 from ._merger import Merger
@@ -94,6 +95,7 @@ __all__ = [
     "MergeResult",
     "Merger",
     "NegativeCounts",
+    "NotCompared",
     "OccupancyGrid",
     "OccupancyGridMessage",
     "OpenWay",

@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import copy
+import json
 import pickle
 import subprocess
 import sys
 from pathlib import Path
 
 import gridmerge
+import numpy as np
 import pytest
 
 
@@ -103,3 +105,21 @@ def test_a_damaged_state_is_refused(result: gridmerge.MergeResult) -> None:
     for wrong in (b"", state[:-1], state + b"x", b"\xff" * 64):
         with pytest.raises(ValueError):
             _core.Merged.from_state([], wrong)
+
+
+def test_a_result_that_leaves_pairs_out(tmp_path: Path) -> None:
+    # A wall of its own length in each of 51 maps, so that none is a copy.
+    maps = []
+    for length in range(1, 52):
+        cells = np.zeros((60, 20), np.int8)
+        cells[:length, 5] = 100
+        maps.append(gridmerge.OccupancyGrid(cells, 0.1))
+    result = gridmerge.merge(maps, search="quick", max_missed=0.9)
+    left = result.not_compared
+    assert left is not None
+    assert left.pairs == 51 * 50 // 2 - len(result.joins) > 0
+    again = pickle.loads(pickle.dumps(result))
+    assert again == result and again.not_compared == left
+    result.save(tmp_path)
+    told = json.loads((tmp_path / "transforms.json").read_text())["not_compared"]
+    assert told == {"pairs": left.pairs, "expected_joins": left.expected_joins}
