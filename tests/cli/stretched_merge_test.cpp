@@ -172,11 +172,12 @@ TEST_F(StretchedMerge, IsTheSameWithACache) {
 
 TEST_F(StretchedMerge, IsTheSameByShards) {
   const std::string cache = directory.file("matches");
+  int last = 3;
   for (const char* shard : {"1/2", "2/2", "1/2"})
-    ASSERT_EQ(run({"merge", maps[0], maps[1], maps[2], "--transform", "similarity", "--shard", shard,
-                   "--cache", cache})
-                  .exit_code,
-              0);
+    last = run({"merge", maps[0], maps[1], maps[2], "--transform", "similarity", "--shard", shard, "--cache",
+                cache})
+               .exit_code;
+  ASSERT_EQ(last, 0);
   const Outcome cached = run(merge_call({"--transform", "similarity", "--cache", cache, "--verbose"}));
   ASSERT_EQ(cached.exit_code, 0) << cached.err;
   EXPECT_NE((cached.out + cached.err).find(", 0 made"), std::string::npos) << cached.out << cached.err;
