@@ -48,6 +48,10 @@ std::string matches(std::size_t count) {
 
 }  // namespace
 
+std::size_t CacheOptions::shards() const {
+  return is_shard() ? to_shard(shard).value().count : 1;
+}
+
 void add_cache_option(CLI::App& command, CacheOptions& options) {
   command
       .add_option(
@@ -62,8 +66,10 @@ void add_cache_option(CLI::App& command, CacheOptions& options) {
 
 void add_shard_option(CLI::App& command, CacheOptions& options) {
   command
-      .add_option("--shard", options.shard,
-                  "Make the I-th of N parts of the matches, keep them in --cache, and merge nothing")
+      .add_option(
+          "--shard", options.shard,
+          "Make the I-th of N parts of the matches, keep them in --cache, and merge nothing. The exit "
+          "code is 3 while matches of the merge are missing")
       ->type_name("I/N")
       ->check(kShard);
 }
@@ -92,8 +98,8 @@ MatchResult CachedEngine::match(const OccupancyGrid& fixed, const OccupancyGrid&
   return cache_->find_or_make(match_key(content_id(fixed), content_id(moving), options), make);
 }
 
-std::string CachedEngine::make_shard(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
-                                     const std::vector<std::optional<KnownPose>>& known_poses) {
+ShardOutcome CachedEngine::make_shard(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
+                                      const std::vector<std::optional<KnownPose>>& known_poses) {
   Merger merger(maps, options, known_poses);
   MatchWorkOptions work;
   work.shard = to_shard(options_.shard).value();
@@ -102,11 +108,13 @@ std::string CachedEngine::make_shard(const std::vector<OccupancyGrid>& maps, con
   const MatchWork done = match_with_cache(merger, maps, *cache_, work);
   std::string text = fmt::format("shard {}: {} made, {} were in the cache\n", options_.shard,
                                  matches(done.made), done.found);
-  if (done.missing == 0) return text + "all pairs are matched: merge with --cache and without --shard\n";
-  return text + fmt::format(
-                    "{} missing, of other shards: run each shard again when all have ended, for the pairs "
-                    "that are looked at twice; or merge with --cache, which makes the rest\n",
-                    done.missing == 1 ? "1 match is" : fmt::format("{} matches are", done.missing));
+  if (done.missing == 0)
+    return {text + "all pairs are matched: merge with --cache and without --shard\n", true};
+  return {text + fmt::format(
+                     "{} missing, of other shards: run each shard again when all have ended, for the pairs "
+                     "that are looked at twice; or merge with --cache, which makes the rest\n",
+                     done.missing == 1 ? "1 match is" : fmt::format("{} matches are", done.missing)),
+          false};
 }
 
 }  // namespace gridmerge::cli

@@ -19,6 +19,15 @@ struct CacheOptions {
   std::string shard;  // as the command line says it
 
   bool is_used() const { return !directory.empty(); }
+  bool is_shard() const { return !shard.empty(); }
+  /// How many shards share the matches; 1 if none is asked for.
+  std::size_t shards() const;
+};
+
+/// What became of a shard.
+struct ShardOutcome {
+  std::string text;          ///< the same in words
+  bool is_all_made = false;  ///< no match of the merge is missing
 };
 
 /// --cache.
@@ -40,9 +49,9 @@ class CachedEngine {
   MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options,
                     const std::function<MatchResult()>& make);
 
-  /// Makes the shard's part of the matches of a merge, and says in words what became of them.
-  std::string make_shard(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
-                         const std::vector<std::optional<KnownPose>>& known_poses);
+  /// Makes the shard's part of the matches of a merge.
+  ShardOutcome make_shard(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
+                          const std::vector<std::optional<KnownPose>>& known_poses);
 
  private:
   CacheOptions options_;

@@ -11,7 +11,7 @@ enum ExitCode {
   kDone = 0,
   kError = 1,  ///< one line on stderr says what and why
   kUsage = 2,
-  kRefused = 3,  ///< done, but maps were refused
+  kRefused = 3,  ///< done, but not all is merged or matched: maps were refused, or a shard misses matches
 };
 
 /// What the command line asks for. Set while it is parsed and called afterwards, so that usage errors and

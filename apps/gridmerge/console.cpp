@@ -81,9 +81,13 @@ Console::~Console() {
 }
 
 void Console::warn(const std::string& message) {
+  tell("warning: " + message);
+}
+
+void Console::tell(const std::string& message) {
   if (quiet_) return;
   clear();
-  print_line_to_stderr("gridmerge: warning: " + message);
+  print_line_to_stderr("gridmerge: " + message);
 }
 
 void Console::remark(const std::string& message) {

@@ -33,6 +33,9 @@ class Console {
   /// What the user should know. Not printed when quiet.
   void warn(const std::string& message);
 
+  /// What is good to know. Not printed when quiet.
+  void tell(const std::string& message);
+
   /// What is going on. Printed when verbose.
   void remark(const std::string& message);
 

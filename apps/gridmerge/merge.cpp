@@ -19,13 +19,12 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "exports.hpp"
-#include "grid/equal_grids.hpp"
-#include "gridmerge/bag/bag.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "known_poses.hpp"
 #include "match/drawing.hpp"
+#include "merge_notices.hpp"
 #include "merge_summary.hpp"
 #include "plan.hpp"
 #include "scale_hint.hpp"
@@ -47,6 +46,7 @@ struct MergeCommandOptions {
   double max_false_joins = MergeOptions{}.max_false_joins;
   std::string transform = name_of(MapTransform::rigid);
   double max_missed = MergeOptions{}.max_missed;
+  bool all_pairs = false;  // asked for by name
   SearchOptions search;
   KnownPoseOptions known;
   CacheOptions cache;
@@ -60,38 +60,6 @@ struct Inputs {
   std::vector<std::filesystem::path> files;  // that all of it was read from
 };
 
-/// A map that is given twice is no second opinion, except up a tree of merges, which takes every one. Says so
-/// once for names and once for copies. Maps of which both have known poses count each, equal or not.
-void tell_of_copies(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
-                    const std::vector<std::optional<KnownPose>>& known_poses, Console& console) {
-  std::vector<std::string> twice;   // named before
-  std::vector<std::string> copies;  // of another file's cells
-  const auto is_copy = [&](std::size_t i, std::size_t j) {
-    return has_equal_cells(maps[i], maps[j]) && !(known_poses[i] && known_poses[j]);
-  };
-  for (std::size_t i = 1; i < maps.size(); ++i) {
-    bool is_twice = false;
-    std::optional<std::size_t> original;
-    for (std::size_t j = 0; j < i; ++j) {
-      is_twice = is_twice || is_same_map(options.maps[i], options.maps[j]);
-      if (!original && is_copy(i, j)) original = j;
-    }
-    if (!(is_twice || original) || count_cells(maps[i]).known() == 0) continue;
-    if (is_twice) {
-      twice.push_back(options.maps[i]);
-    } else {
-      copies.push_back(fmt::format("{} (of {})", options.maps[i], options.maps[*original]));
-    }
-  }
-  const char* const count = options.search.up_the_tree() ? "each time" : "once";
-  if (!twice.empty())
-    console.warn(
-        fmt::format("given twice, and counted {}: {}{}", count, fmt::join(twice, ", "),
-                    options.known.fix.empty() ? "" : ". --fix takes one map: write it again before another"));
-  if (!copies.empty())
-    console.warn(fmt::format("copies, which count {}: {}", count, fmt::join(copies, ", ")));
-}
-
 Inputs load_inputs(const MergeCommandOptions& options, const KnownPoses& known_poses, Console& console) {
   Inputs inputs;
   MapReader reader(options.load, console);
@@ -104,7 +72,8 @@ Inputs load_inputs(const MergeCommandOptions& options, const KnownPoses& known_p
     inputs.files.insert(inputs.files.end(), inputs.plan->files().begin(), inputs.plan->files().end());
   }
   reader.tell_warnings();
-  tell_of_copies(options, inputs.maps, known_poses.poses(), console);
+  tell_of_copies({options.maps, inputs.maps, known_poses.poses()}, options.search, !options.known.fix.empty(),
+                 console);
   return inputs;
 }
 
@@ -137,6 +106,14 @@ MergeOptions merge_options(const MergeCommandOptions& options, Console& console)
   return engine;
 }
 
+/// Before the work begins. Who asks for all pairs by name knows it.
+void tell_of_all_pairs(const MergeCommandOptions& options, std::size_t maps, const MergeOptions& engine,
+                       Console& console) {
+  if (options.search.up_the_tree() || options.all_pairs) return;
+  const std::string text = describe_all_pairs(maps, engine, options.cache.shards());
+  if (!text.empty()) console.tell(text);
+}
+
 MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
                        const std::vector<std::optional<KnownPose>>& known_poses,
                        const MergeCommandOptions& options, PairMatcher& matcher, CachedEngine& cached,
@@ -145,6 +122,7 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
   try {
     if (options.search.up_the_tree())
       return merge_up_tree_named(maps, options, matcher, {engine.resolution, engine.progress});
+    tell_of_all_pairs(options, maps.size(), engine, console);
     return cached.merge(maps, engine, known_poses);
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one
     const std::string what_helps = coarser ? fmt::format("try --output-resolution {:.2g}", *coarser)
@@ -186,11 +164,12 @@ int run_shard(const MergeCommandOptions& options) {
   const KnownPoses known_poses(options.known, options.maps, console);
   CachedEngine cached(options.cache, console);
   const Inputs inputs = load_inputs(options, known_poses, console);
-  const std::string text =
-      cached.make_shard(inputs.maps, merge_options(options, console), known_poses.poses());
+  const MergeOptions engine = merge_options(options, console);
+  tell_of_all_pairs(options, inputs.maps.size(), engine, console);
+  const ShardOutcome outcome = cached.make_shard(inputs.maps, engine, known_poses.poses());
   console.clear();
-  print(text);
-  return kDone;
+  print(outcome.text);
+  return outcome.is_all_made ? kDone : kRefused;
 }
 
 int run_merge(const MergeCommandOptions& options) {
@@ -260,7 +239,8 @@ constexpr const char* kFooter =
     "leaves apart. A shard needs no other for the first round, and all others for the second. So run "
     "every\n"
     "shard, wait for all, and run every shard once more; the merge itself makes what is missing. Of more\n"
-    "than 50 maps there may be more rounds: --max-missed chooses pairs by what was found before:\n"
+    "than 50 maps there may be more rounds: --max-missed chooses pairs by what was found before. A shard's\n"
+    "exit code is 3 while matches of the merge are missing, and 0 when all are there:\n"
     "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (and 2/2 elsewhere)\n"
     "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (when both have ended; and 2/2 "
     "elsewhere)\n"
@@ -321,9 +301,8 @@ CLI::Option* add_choice_of_pairs(CLI::App& command, MergeCommandOptions& options
           ->check(kProbability)
           ->capture_default_str();
   command
-      .add_flag_callback(
-          "--all-pairs", [&options] { options.max_missed = 0.0; },
-          "Match all pairs, however many maps there are: --max-missed 0")
+      .add_flag("--all-pairs", options.all_pairs,
+                "Match all pairs, however many maps there are: --max-missed 0")
       ->excludes(missed);
   return missed;
 }
@@ -358,10 +337,6 @@ void require_joint(const MergeCommandOptions& options) {
   if (!options.plan.file.empty()) throw CLI::ValidationError("--plan", "needs --strategy joint");
 }
 
-bool is_shard(const MergeCommandOptions& options) {
-  return !options.cache.shard.empty();
-}
-
 /// Throws CLI::Error for options that do not go together, and settles what --transform and --elastic say.
 void settle(MergeCommandOptions& options, const Given& given) {
   const bool up_the_tree = options.search.up_the_tree();
@@ -375,12 +350,15 @@ void settle(MergeCommandOptions& options, const Given& given) {
   require_joint(options);
   if (!options.plan.file.empty() && !options.known.fix.empty())
     throw CLI::ValidationError("--plan", "excludes --fix: the merged map has one frame");
-  if (is_shard(options) && !options.plan.file.empty())
+  const bool is_shard = options.cache.is_shard();
+  if (is_shard && !options.plan.file.empty())
     throw CLI::ValidationError("--plan", "excludes --shard, which merges nothing");
-  if (is_shard(options) && !options.cache.is_used()) throw CLI::ValidationError("--shard", "needs --cache");
-  if (is_shard(options) && !options.output.empty())
+  if (is_shard && !options.exports.wanted.empty())
+    throw CLI::ValidationError("--export", "excludes --shard, which merges nothing");
+  if (is_shard && !options.cache.is_used()) throw CLI::ValidationError("--shard", "needs --cache");
+  if (is_shard && !options.output.empty())
     throw CLI::ValidationError("--shard", "merges nothing: leave -o out");
-  if (!is_shard(options) && options.output.empty()) throw CLI::RequiredError("--output");
+  if (!is_shard && options.output.empty()) throw CLI::RequiredError("--output");
 }
 
 }  // namespace
@@ -392,7 +370,7 @@ void add_merge(CLI::App& app, Action& action) {
   command->footer(kFooter);
   command->callback([options, given, &action] {
     settle(*options, given);
-    action = [options] { return is_shard(*options) ? run_shard(*options) : run_merge(*options); };
+    action = [options] { return options->cache.is_shard() ? run_shard(*options) : run_merge(*options); };
   });
 }
 

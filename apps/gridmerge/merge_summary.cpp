@@ -11,6 +11,7 @@
 #include "gridmerge/report/merge_record.hpp"
 #include "merge/doubled_walls.hpp"
 #include "merge/fused_windows.hpp"
+#include "merge/joins.hpp"
 
 namespace gridmerge::cli {
 
@@ -118,14 +119,6 @@ const char* explain_no_change(MapTransform asked) {
                "nearer\n";
 }
 
-/// Whether any map is bent or stretched.
-bool is_changed(const MergeResult& result) {
-  return std::any_of(result.components.begin(), result.components.end(), [](const Component& component) {
-    return std::any_of(component.members.begin(), component.members.end(),
-                       [](const Member& member) { return !member.deformation.is_identity(); });
-  });
-}
-
 }  // namespace
 
 std::string describe_joins(const AskedMerge& asked, const MergeResult& result) {
@@ -173,10 +166,13 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
                      describe_change(maps[member.map], member.deformation));
     }
   }
-  if (asked.transform != MapTransform::rigid && !result.components.empty() && !is_changed(result))
+  if (asked.transform != MapTransform::rigid && !result.components.empty() && !is_any_bent(result))
     text += explain_no_change(asked.transform);
   if (result.expected_false_joins && !result.components.empty())
     fmt::format_to(out, "of these joins, {:.3f} are expected to be false\n", *result.expected_false_joins);
+  if (result.not_compared)
+    fmt::format_to(out, "not compared: {} pairs, which may hide {:.1f} more joins (--max-missed)\n",
+                   result.not_compared->pairs, result.not_compared->expected_joins);
   for (const LeftOut& one : result.left_out)
     fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain(result, one));
   text += describe_open_ways(names, result);

@@ -57,6 +57,7 @@ from ._merge_result import (
     LeftOut,
     Member,
     MergeResult,
+    NotCompared,
     OpenWay,
 )
 from ._merger import Merger
@@ -98,6 +99,7 @@ __all__ = [
     "MergeResult",
     "Merger",
     "NegativeCounts",
+    "NotCompared",
     "OccupancyGrid",
     "OccupancyGridMessage",
     "OpenWay",

@@ -162,6 +162,17 @@ class OpenWay:
 
 
 @dataclass(frozen=True, slots=True)
+class NotCompared:
+    """Pairs of maps that `max_missed` has left out."""
+
+    pairs: int
+    """How many pairs of maps that count: copies of a map do not."""
+    expected_joins: float
+    """How many joins of maps that lie apart these pairs may hide, by the signatures of their maps and by what was found
+    of the pairs that were compared."""
+
+
+@dataclass(frozen=True, slots=True)
 class MergeResult:
     """What became of the maps that were merged."""
 
@@ -179,6 +190,8 @@ class MergeResult:
     """How maps that lie apart may lie together, most probable first. Empty for the strategy "tree"."""
     expected_false_joins: float | None
     """How many of all joins are expected to be false. None for the strategy "tree", which does not know."""
+    not_compared: NotCompared | None
+    """Pairs of which nothing is known; None if all pairs were compared."""
     plan: PlanPlacement | None
     """Which maps hang on the plan, and how; None if none was given."""
     _core: _core.Merged = field(repr=False, compare=False)
@@ -260,6 +273,7 @@ def to_merge_result(
         names=tuple(names),
         open_ways=tuple(_to_open_way(way) for way in merged.open_ways),
         expected_false_joins=merged.expected_false_joins,
+        not_compared=None if merged.not_compared is None else NotCompared(*merged.not_compared),
         plan=None if merged.plan is None else to_plan_placement(merged.plan, names),
         _core=merged,
         _more_inputs=more_inputs,

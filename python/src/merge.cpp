@@ -157,6 +157,11 @@ void bind_results(nb::module_& module) {
       .def_prop_ro("open_ways", [](const Merged& merged) { return merged.result->open_ways; })
       .def_prop_ro("expected_false_joins",
                    [](const Merged& merged) { return merged.result->expected_false_joins; })
+      .def_prop_ro("not_compared",
+                   [](const Merged& merged) {
+                     const std::optional<NotCompared>& left = merged.result->not_compared;
+                     return left ? std::optional(std::pair(left->pairs, left->expected_joins)) : std::nullopt;
+                   })
       .def_prop_ro("plan", [](const Merged& merged) { return merged.result->plan; })
       .def_prop_ro("left_out",
                    [](const Merged& merged) {

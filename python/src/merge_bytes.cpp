@@ -169,6 +169,11 @@ std::string to_bytes(const MergeResult& result) {
     writer.byte(static_cast<std::uint8_t>(refused.reason));
     writer.whole(refused.count);
   }
+  writer.byte(result.not_compared ? 1 : 0);
+  if (result.not_compared) {
+    writer.whole(result.not_compared->pairs);
+    writer.number(result.not_compared->expected_joins);
+  }
   writer.byte(result.plan ? 1 : 0);
   if (result.plan) write(*result.plan, writer);
   return writer.take();
@@ -198,6 +203,11 @@ MergeResult merge_from_bytes(std::string_view bytes) {
   for (RefusedCount& refused : result.refused_more) {
     refused.reason = static_cast<Reason>(reader.byte());
     refused.count = reader.whole();
+  }
+  if (reader.byte() != 0) {
+    result.not_compared.emplace();
+    result.not_compared->pairs = reader.whole();
+    result.not_compared->expected_joins = reader.number();
   }
   if (reader.byte() != 0) result.plan = read_plan(reader);
   if (!reader.is_at_end()) throw std::invalid_argument("holds more than a merge");

@@ -88,6 +88,7 @@ def results(
         gridmerge.Transform(1.0, 2.0, 3.0),
         gridmerge.InitialPose((1.0, 2.0, 3.0)),
         gridmerge.Deformation((1.0, 2.0, 3.0), 0.5, np.zeros((4, 5, 2))),
+        gridmerge.NotCompared(3, 0.5),
         merger,
         *gridmerge.bag_topics(ROOT / "tests" / "bag" / "data" / "lz4.mcap"),
         next(gridmerge.recorded_maps(ROOT / "tests" / "bag" / "data" / "lz4.mcap", "/tb1/map")),

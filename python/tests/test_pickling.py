@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import json
 import pickle
 import subprocess
 import sys
@@ -164,3 +165,26 @@ def test_a_damaged_state_is_refused(result: gridmerge.MergeResult) -> None:
     for wrong in (b"", state[:-1], state + b"x", b"\xff" * 64):
         with pytest.raises(ValueError):
             _core.Merged.from_state([], wrong)
+
+
+def test_a_result_that_leaves_pairs_out(tmp_path: Path) -> None:
+    # Two parts each of 26 floors: more maps than those of which all pairs are matched.
+    maps = []
+    for floor in range(26):
+        random = np.random.default_rng(floor)
+        cells = np.zeros((60, 100), np.int8)
+        cells[[0, -1], :] = cells[:, [0, -1]] = 100
+        for _ in range(8):
+            row, column, length = random.integers(2, 50), random.integers(2, 90), random.integers(8, 30)
+            cells[row, column : column + length] = 100
+            cells[row : row + length, column] = 100
+        maps += [gridmerge.OccupancyGrid(part, 0.2) for part in (cells[:, :75].copy(), cells[:, 25:].copy())]
+    result = gridmerge.merge(maps, search="quick", max_missed=0.9)
+    left = result.not_compared
+    assert left is not None
+    assert left.pairs == 52 * 51 // 2 - len(result.joins) > 0
+    again = pickle.loads(pickle.dumps(result))
+    assert again == result and again.not_compared == left
+    result.save(tmp_path)
+    told = json.loads((tmp_path / "transforms.json").read_text())["not_compared"]
+    assert told == {"pairs": left.pairs, "expected_joins": left.expected_joins}

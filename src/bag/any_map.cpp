@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <sys/stat.h>
 
+#include <cstdint>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -47,14 +50,17 @@ std::filesystem::path format_map_name(const MapName& name) {
   return name.topic.empty() ? name.file : std::filesystem::path(name.file.native() + "#" + name.topic);
 }
 
+std::optional<MapIdentity> map_identity(const std::filesystem::path& name) {
+  const MapName map = parse_map_name(name);
+  struct ::stat status {};
+  if (::stat(map.file.c_str(), &status) != 0) return std::nullopt;
+  return MapIdentity{static_cast<std::uint64_t>(status.st_dev), static_cast<std::uint64_t>(status.st_ino),
+                     map.topic.starts_with('/') ? map.topic.substr(1) : map.topic};
+}
+
 bool is_same_map(const std::filesystem::path& a, const std::filesystem::path& b) {
-  const auto without_slash = [](const std::string& topic) {
-    return topic.starts_with('/') ? topic.substr(1) : topic;
-  };
-  std::error_code absent;
-  const MapName one = parse_map_name(a), other = parse_map_name(b);
-  return without_slash(one.topic) == without_slash(other.topic) &&
-         std::filesystem::equivalent(one.file, other.file, absent);
+  const std::optional<MapIdentity> one = map_identity(a);
+  return one && one == map_identity(b);
 }
 
 bool is_bag(const std::filesystem::path& path) {

@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "grid/cancellation_scope.hpp"
+#include "grid/thread_count.hpp"
 #include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge {
@@ -27,9 +28,7 @@ void with_threads(int threads, const std::function<void()>& work) {
   std::atomic<int> ended{0};
   const std::atomic<bool>* const cancellation = current_cancellation();
   begun.store(1, std::memory_order_release);
-  // It has no more threads than cores, and prints a warning when it is asked for more.
-  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic
-                                     : std::min(threads, tbb::info::default_concurrency()));
+  tbb::task_arena arena(thread_count(threads));
   arena.execute([&] {
     (void)begun.load(std::memory_order_acquire);
     const CancellationScope scope(cancellation);
@@ -40,6 +39,12 @@ void with_threads(int threads, const std::function<void()>& work) {
 }
 
 namespace internal {
+
+int thread_count(int threads) {
+  // An arena has no more threads than cores, and prints a warning when it is asked for more.
+  const int cores = tbb::info::default_concurrency();
+  return threads == 0 ? cores : std::min(threads, cores);
+}
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
   std::atomic<int> begun{0};

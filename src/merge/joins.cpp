@@ -92,6 +92,13 @@ FusedMap fuse_members(const std::vector<Member>& members, const std::vector<std:
   return fuse(maps, merged_resolution(resolution, maps, deformations), deformations);
 }
 
+bool is_any_bent(const MergeResult& result) {
+  return std::any_of(result.components.begin(), result.components.end(), [](const Component& component) {
+    return std::any_of(component.members.begin(), component.members.end(),
+                       [](const Member& member) { return !member.deformation.is_identity(); });
+  });
+}
+
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match) {
   Join join;
   join.fixed = fixed;

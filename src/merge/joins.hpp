@@ -47,6 +47,9 @@ GRIDMERGE_INTERNAL_EXPORT FusedMap fuse_members(const std::vector<Member>& membe
                                                 const std::vector<const OccupancyGrid*>& grids,
                                                 double resolution);
 
+/// Whether a member of any component is bent or stretched. O(members).
+GRIDMERGE_INTERNAL_EXPORT bool is_any_bent(const MergeResult& result);
+
 /// A join that means what its own verdict says.
 Join make_join(std::size_t fixed, std::size_t moving, MatchResult match);
 

@@ -129,6 +129,7 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
       const std::vector<MapId> maps = store_.those_that_count(all, copies);
       const Solution solution = find_best_solution(maps, most_thorough, are_all_looked_at);
       result = make_result(store_, maps, copies, looks_, solution, options_);
+      result.not_compared = not_compared(maps, solution);
     });
     is_complete_ = are_all_looked_at;
     return result;
@@ -203,6 +204,18 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     Solution solution =
         again.empty() ? std::move(first.solution) : find_solution(maps, first.chosen, std::move(again));
     return are_all_looked_at && !apart.empty() ? hear_groups(maps, std::move(solution)) : solution;
+  }
+
+  /// What the choice of pairs has left out. A pair for which a group speaks is compared, too.
+  std::optional<NotCompared> not_compared(const std::vector<MapId>& maps, const Solution& solution) const {
+    if (choice_.takes_all(maps.size())) return std::nullopt;
+    std::set<Pair> compared;
+    for (const PairCandidates& pair : solution.problem.pairs) {
+      const auto [a, b] = std::minmax(pair.fixed, pair.moving);
+      compared.emplace(maps[a], maps[b]);
+    }
+    const NotCompared left = choice_.left(compared, solution.consistent_set);
+    return left.pairs == 0 ? std::nullopt : std::optional(left);
   }
 
   /// Maps that still lie alone are matched with each group, as long as that places more of them.

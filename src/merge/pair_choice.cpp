@@ -10,7 +10,6 @@
 #include "grid/logistic.hpp"
 #include "grid/parallel.hpp"
 #include "merge/prior.hpp"
-#include "preselect/chance.hpp"
 #include "preselect/compare.hpp"
 
 namespace gridmerge::internal {
@@ -66,7 +65,8 @@ double PairChoice::order_by_weight(std::vector<Weighed>& pairs) {
                          [](double sum, const Weighed& one) { return sum + one.weight; });
 }
 
-PairChoice::PairChoice(double max_missed) : max_shown_(std::max(0.0, max_missed - kHiddenShare)) {}
+PairChoice::PairChoice(double max_missed)
+    : max_missed_(max_missed), max_shown_(std::max(0.0, max_missed - kHiddenShare)) {}
 
 void PairChoice::forget(MapId id) {
   signatures_.erase(id);
@@ -132,13 +132,11 @@ bool PairChoice::known_to_meet(const MapStore& store, std::size_t a, std::size_t
          2.0 * (extent_a.radius + extent_b.radius) + kDeviationsOfKnown * sd;
 }
 
-std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore& store,
-                                               const std::set<Pair>& chosen,
-                                               const ConsistentSet& consistent_set) const {
+PairChoice::Rest PairChoice::rest_of(const std::set<Pair>& chosen,
+                                     const ConsistentSet& consistent_set) const {
   std::vector<std::size_t> group_of;
   const std::vector<std::size_t> sizes = group_sizes(consistent_set, group_of);
-  std::vector<Pair> pairs;
-  std::vector<Weighed> open;
+  Rest rest;
   double expected = 0.0;  // of the pairs that were looked at
   std::size_t i = 0;
   for (std::size_t a = 0; a < maps_.size(); ++a) {
@@ -147,21 +145,39 @@ std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore
         expected += logistic(log_odds_[i] + shift_);
         continue;
       }
+      ++rest.pairs;
       if (group_of[a] == group_of[b]) continue;
-      if (round == 0 && known_to_meet(store, a, b)) {
-        pairs.emplace_back(maps_[a], maps_[b]);
-        continue;
-      }
-      open.push_back({logistic(log_odds_[i] + shift_) * damping(sizes[a], sizes[b]),
-                      static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+      rest.apart.push_back({logistic(log_odds_[i] + shift_) * damping(sizes[a], sizes[b]),
+                            static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
     }
   }
-  double rest = order_by_weight(open);
   // Signatures expect too much where all maps look alike, and too little where none do: what was found of the
   // pairs that were looked at tells.
-  const double found = std::clamp((static_cast<double>(consistent_set.used.size()) + 1.0) / (expected + 1.0),
-                                  kLeastFound, kMostFound);
-  rest *= found;
+  rest.found = std::clamp((static_cast<double>(consistent_set.used.size()) + 1.0) / (expected + 1.0),
+                          kLeastFound, kMostFound);
+  return rest;
+}
+
+NotCompared PairChoice::left(const std::set<Pair>& compared, const ConsistentSet& consistent_set) const {
+  Rest rest = rest_of(compared, consistent_set);
+  const double shown = order_by_weight(rest.apart) * rest.found;
+  const double all = static_cast<double>(consistent_set.used.size()) + shown;
+  return {rest.pairs, shown + kHiddenShare * all};
+}
+
+std::vector<PairChoice::Pair> PairChoice::next(std::size_t round, const MapStore& store,
+                                               const std::set<Pair>& chosen,
+                                               const ConsistentSet& consistent_set) const {
+  auto [count, open, found] = rest_of(chosen, consistent_set);
+  std::vector<Pair> pairs;
+  if (round == 0) {
+    std::erase_if(open, [&](const Weighed& one) {
+      if (!known_to_meet(store, one.a, one.b)) return false;
+      pairs.emplace_back(maps_[one.a], maps_[one.b]);
+      return true;
+    });
+  }
+  double rest = order_by_weight(open) * found;
   const double all = static_cast<double>(consistent_set.used.size()) + rest;
   const double share =
       std::max(kForTheFirstLook * max_shown_, kFirstShare * std::pow(kShareStep, static_cast<double>(round)));

@@ -9,12 +9,24 @@
 #include <utility>
 #include <vector>
 
+#include "gridmerge/merge/merge_result.hpp"
 #include "merge/consistent_set.hpp"
 #include "merge/map_store.hpp"
 #include "merge/pair_looks.hpp"
+#include "preselect/chance.hpp"
 #include "preselect/signature.hpp"
 
 namespace gridmerge::internal {
+
+/// Whether all pairs of so many maps are looked at. Signatures alone miss a share of kHiddenShare of all
+/// joins, so that no choice of pairs misses less.
+inline bool takes_all_pairs(std::size_t maps, double max_missed) {
+  return max_missed <= kHiddenShare || maps <= kFewMaps;
+}
+
+/// Core time of a pair if all pairs of many maps are matched: docs/scale.md, "Model", derives them [s].
+inline constexpr double kSecondsOfAPair = 0.19;        // both looks
+inline constexpr double kSecondsOfAQuickLook = 0.032;  // and no other
 
 /// Chooses the pairs of many maps that are looked at, by signatures of the maps: in rounds, the likeliest
 /// first, until those that are left hide at most a given share of all joins. A pair whose maps lie in one
@@ -26,11 +38,10 @@ class PairChoice {
   using MapId = MapStore::MapId;
   using Pair = PairLooks::Pair;
 
-  /// `max_missed`: the share of all joins that may be missed. All pairs are looked at up to kHiddenShare, so
-  /// many are missed whichever pairs are left.
+  /// `max_missed`: the share of all joins that may be missed.
   explicit PairChoice(double max_missed);
 
-  bool takes_all(std::size_t maps) const { return max_shown_ == 0.0 || maps <= kFewMaps; }
+  bool takes_all(std::size_t maps) const { return takes_all_pairs(maps, max_missed_); }
 
   /// The map is another one, or gone.
   void forget(MapId id);
@@ -44,6 +55,9 @@ class PairChoice {
   /// one in `maps`. O(pairs log(pairs)).
   std::vector<Pair> next(std::size_t round, const MapStore& store, const std::set<Pair>& chosen,
                          const ConsistentSet& consistent_set) const;
+
+  /// The pairs that are left, given those that were compared and the solution that they made. O(maps^2).
+  NotCompared left(const std::set<Pair>& compared, const ConsistentSet& consistent_set) const;
 
   /// Of the pairs whose maps the first look leaves apart, those that get a second one.
   std::vector<Pair> worth_a_second_look(const std::vector<Pair>& apart, const PairLooks& looks,
@@ -60,6 +74,14 @@ class PairChoice {
     double weight;
     std::uint32_t a, b;  // places in maps_
   };
+  /// Pairs that were not chosen.
+  struct Rest {
+    std::size_t pairs = 0;
+    std::vector<Weighed> apart;  // those whose maps lie in no common group
+    double found = 1.0;          // joins found by joins expected, of the pairs that were chosen
+  };
+  Rest rest_of(const std::set<Pair>& chosen, const ConsistentSet& consistent_set) const;
+
   /// Largest weight first. Returns the sum of the weights.
   static double order_by_weight(std::vector<Weighed>& pairs);
 
@@ -70,6 +92,7 @@ class PairChoice {
                                        const ConsistentSet& consistent_set) const;
   bool known_to_meet(const MapStore& store, std::size_t a, std::size_t b) const;
 
+  double max_missed_;
   double max_shown_;         // share of all joins that may be missed although signatures show them
   std::vector<MapId> maps_;  // of prepare()
   std::map<MapId, std::unique_ptr<const Signature>> signatures_;

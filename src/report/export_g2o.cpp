@@ -9,6 +9,7 @@
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/report/merge_record.hpp"
 #include "merge/coverage.hpp"
+#include "merge/joins.hpp"
 #include "merge/pose_graph.hpp"
 #include "report/interchange.hpp"
 #include "report/json_values.hpp"
@@ -68,6 +69,8 @@ std::string g2o_text(const NamedMerge& merge) {
   std::string notes =
       "# gridmerge: a vertex for each map that was placed, an edge for each join that was used\n"
       "# metres and radians; a vertex takes a map's frame to its merged map's\n";
+  if (is_any_bent(result))
+    notes += "# of maps that are bent or stretched these are the rigid parts: this format has poses alone\n";
   std::vector<std::optional<std::size_t>> component_of(maps.size());
   std::vector<MapExtent> extents(maps.size());
   for (std::size_t i = 0; i < result.components.size(); ++i) {

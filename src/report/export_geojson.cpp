@@ -58,8 +58,7 @@ std::string geojson_text(const NamedMerge& merge) {
     std::vector<Json> members;
     std::vector<Point2> all;
     for (const Member& member : component.members) {
-      std::vector<Point2> outline = known_outline(merge.maps.at(member.map));
-      for (Point2& corner : outline) corner = member.T_component_map * corner;
+      const std::vector<Point2> outline = known_outline(merge.maps.at(member.map), member);
       all.insert(all.end(), outline.begin(), outline.end());
       members.push_back(member_json(merge, file, member, outline));
     }

@@ -39,16 +39,6 @@ std::uint8_t percentage(Cell cell, float probability) {
                                                           : std::clamp(rounded, 0, 49));
 }
 
-/// Of a component, in the cells of its finest map.
-FusedWindows windows_of(const NamedMerge& merge, std::size_t component) {
-  std::vector<const OccupancyGrid*> grids;
-  for (const OccupancyGrid& map : merge.maps) grids.push_back(&map);
-  PlacedMembers placed = placed_members(merge.result.components[component].members,
-                                        fused_places(merge.result, component, merge.maps), grids);
-  const double resolution = finest_resolution(placed.maps);
-  return FusedWindows(std::move(placed.maps), resolution, std::move(placed.deformations));
-}
-
 void draw(const FusedWindows& windows, TiffPyramid& picture) {
   const Lattice& lattice = windows.lattice();
   int top = lattice.height;
@@ -72,6 +62,15 @@ void draw(const FusedWindows& windows, TiffPyramid& picture) {
 }
 
 }  // namespace
+
+FusedWindows windows_of(const NamedMerge& merge, std::size_t component) {
+  std::vector<const OccupancyGrid*> grids;
+  for (const OccupancyGrid& map : merge.maps) grids.push_back(&map);
+  PlacedMembers placed = placed_members(merge.result.components[component].members,
+                                        fused_places(merge.result, component, merge.maps), grids);
+  const double resolution = finest_resolution(placed.maps);
+  return FusedWindows(std::move(placed.maps), resolution, std::move(placed.deformations));
+}
 
 std::vector<std::filesystem::path> write_geotiff(const std::filesystem::path& file, const NamedMerge& merge) {
   const std::vector<Component>& components = merge.result.components;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gridmerge/report/merge_output.hpp"
+#include "merge/fused_windows.hpp"
 
 namespace gridmerge::internal {
 
@@ -21,6 +22,9 @@ std::string geojson_text(const NamedMerge& merge);
 /// is too large even so; then no file is there that was not. O(cells).
 std::vector<std::filesystem::path> write_geotiff(const std::filesystem::path& file, const NamedMerge& merge);
 
+/// What a component's merged map is fused of, in the cells of its finest map. Refers to `merge`.
+FusedWindows windows_of(const NamedMerge& merge, std::size_t component);
+
 /// Whose frame a component's merged map is in: "the map robot1.yaml".
 std::string frame_owner(const NamedMerge& merge, const Component& component);
 
@@ -32,9 +36,14 @@ std::string quoted(const std::string& text);
 /// counter-clockwise; none if nothing is known. O(cells).
 std::vector<Point2> known_corners(const OccupancyGrid& grid);
 
-/// The corners of the smallest convex shape that holds all known cells, in the map's frame,
-/// counter-clockwise; none if nothing is known. O(cells + h log h) for a grid of h rows.
-std::vector<Point2> known_outline(const OccupancyGrid& grid);
+/// The centres of up to 16 known cells that lie all over a map, in its frame: of each of 4 x 4 parts of what
+/// is known, the one nearest to its middle. O(cells).
+std::vector<Point2> spread_cells(const OccupancyGrid& grid);
+
+/// The corners of the smallest convex shape that holds all known cells where `member` puts them, in the
+/// component's frame, counter-clockwise; none if nothing is known. O(cells + h log h) for a grid of h rows,
+/// or h cells at the rim of what is known if the map is bent or stretched.
+std::vector<Point2> known_outline(const OccupancyGrid& grid, const Member& member = {});
 
 /// The corners of the smallest convex shape that holds all points, counter-clockwise, without those on a
 /// straight line between others (Andrew 1979). O(n log n).

@@ -46,6 +46,11 @@ class RecordReader {
     // Not in what earlier versions wrote, nor where the tree was asked for.
     if (json.has("expected_false_joins") && !json.at("expected_false_joins").is_null())
       record_.result.expected_false_joins = json.at("expected_false_joins").number_in(0.0, kInfinity);
+    if (json.has("not_compared")) {
+      const JsonReader left = json.at("not_compared");
+      record_.result.not_compared = {static_cast<std::size_t>(left.at("pairs").count()),
+                                     left.at("expected_joins").number_in(0.0, kInfinity)};
+    }
     if (json.has("plan")) read_plan(json.at("plan"), record_.names, record_.result);
     for (std::size_t i = 0; i < is_placed_.size(); ++i) {
       if (!is_placed_[i]) throw JsonError("'" + record_.names[i] + "' is in no component and not left out");

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
 
+#include "grid/cell_box.hpp"
 #include "report/interchange.hpp"
 
 namespace gridmerge::internal {
@@ -29,6 +34,38 @@ std::optional<Span> known_in(const OccupancyGrid& grid, int row) {
   return Span{static_cast<int>(first - begin), static_cast<int>(last - begin)};
 }
 
+/// The corners of the known cells at the rim of what is known, in cells. However a map is bent, its outline
+/// runs along these cells.
+std::vector<Point2> rim_corners(const OccupancyGrid& grid) {
+  const auto is_known = [&grid](int column, int row) {
+    return column >= 0 && column < grid.width && row >= 0 && row < grid.height &&
+           grid.at(column, row) != Cell::unknown;
+  };
+  std::vector<Point2> corners;
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      if (!is_known(column, row)) continue;
+      if (is_known(column - 1, row) && is_known(column + 1, row) && is_known(column, row - 1) &&
+          is_known(column, row + 1))
+        continue;
+      for (const int x : {column, column + 1})
+        for (const int y : {row, row + 1})
+          corners.push_back({static_cast<double>(x), static_cast<double>(y)});
+    }
+  }
+  return corners;
+}
+
+/// The smallest upright box that holds all known cells; empty if nothing is known.
+CellBox known_box(const OccupancyGrid& grid) {
+  CellBox box;
+  for (int row = 0; row < grid.height; ++row) {
+    if (const std::optional<Span> known = known_in(grid, row))
+      box = unite(box, {known->first, row, known->last + 1, row + 1});
+  }
+  return box;
+}
+
 std::vector<Point2> in_map_frame(std::vector<Point2> corners, const OccupancyGrid& grid) {
   for (Point2& corner : corners)
     corner = grid.origin * Point2{corner.x * grid.resolution, corner.y * grid.resolution};
@@ -54,8 +91,13 @@ std::vector<Point2> convex_hull(std::vector<Point2> points) {
   return hull;
 }
 
-std::vector<Point2> known_outline(const OccupancyGrid& grid) {
+std::vector<Point2> known_outline(const OccupancyGrid& grid, const Member& member) {
   std::vector<Point2> corners;  // in cells
+  if (!member.deformation.is_identity()) {
+    corners = in_map_frame(rim_corners(grid), grid);
+    for (Point2& corner : corners) corner = member.to_component(corner);
+    return convex_hull(std::move(corners));
+  }
   for (int row = 0; row < grid.height; ++row) {
     const std::optional<Span> known = known_in(grid, row);
     if (!known) continue;
@@ -64,24 +106,47 @@ std::vector<Point2> known_outline(const OccupancyGrid& grid) {
       corners.push_back({static_cast<double>(known->last + 1), static_cast<double>(y)});
     }
   }
-  return in_map_frame(convex_hull(std::move(corners)), grid);
+  corners = in_map_frame(convex_hull(std::move(corners)), grid);
+  for (Point2& corner : corners) corner = member.to_component(corner);
+  return corners;
 }
 
 std::vector<Point2> known_corners(const OccupancyGrid& grid) {
-  std::optional<int> bottom;
-  int top = 0, left = grid.width, right = 0;
-  for (int row = 0; row < grid.height; ++row) {
-    const std::optional<Span> known = known_in(grid, row);
-    if (!known) continue;
-    if (!bottom) bottom = row;
-    top = row + 1;
-    left = std::min(left, known->first);
-    right = std::max(right, known->last + 1);
-  }
-  if (!bottom) return {};
-  const auto l = static_cast<double>(left), r = static_cast<double>(right), t = static_cast<double>(top);
-  const auto b = static_cast<double>(*bottom);
+  const CellBox box = known_box(grid);
+  if (box.empty()) return {};
+  const auto l = static_cast<double>(box.left), r = static_cast<double>(box.right);
+  const auto b = static_cast<double>(box.bottom), t = static_cast<double>(box.top);
   return in_map_frame({{l, b}, {r, b}, {r, t}, {l, t}}, grid);
+}
+
+std::vector<Point2> spread_cells(const OccupancyGrid& grid) {
+  constexpr int kAcross = 4;
+  struct Nearest {
+    double distance = std::numeric_limits<double>::infinity();  // [cells]
+    Point2 centre;
+  };
+  const CellBox box = known_box(grid);
+  std::array<Nearest, kAcross * kAcross> nearest;
+  const auto part_of = [](int place, int length) {
+    return static_cast<int>(std::int64_t{place} * kAcross / length);
+  };
+  for (int row = box.bottom; row < box.top; ++row) {
+    for (int column = box.left; column < box.right; ++column) {
+      if (grid.at(column, row) == Cell::unknown) continue;
+      const int across = part_of(column - box.left, box.width()),
+                up = part_of(row - box.bottom, box.height());
+      const double x = box.left + (across + 0.5) * box.width() / kAcross;
+      const double y = box.bottom + (up + 0.5) * box.height() / kAcross;
+      Nearest& best = nearest[static_cast<std::size_t>(up * kAcross + across)];
+      const double distance = std::hypot(column + 0.5 - x, row + 0.5 - y);
+      if (distance < best.distance) best = {distance, grid.cell_centre(column, row)};
+    }
+  }
+  std::vector<Point2> cells;
+  for (const Nearest& one : nearest) {
+    if (std::isfinite(one.distance)) cells.push_back(one.centre);
+  }
+  return cells;
 }
 
 }  // namespace gridmerge::internal

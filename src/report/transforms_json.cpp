@@ -141,6 +141,9 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
                          {"probability", number_json(way.probability)}});
   add_json("open_ways", open_ways);
   add_json("expected_false_joins", probability_json(result.expected_false_joins));
+  if (result.not_compared)
+    add_json("not_compared", {{"pairs", result.not_compared->pairs},
+                              {"expected_joins", number_json(result.not_compared->expected_joins)}});
   if (result.plan) add_json("plan", plan_json(names, *result.plan, component_on_plan(result)));
   return text + "\n}\n";
 }

@@ -60,6 +60,14 @@ TEST_F(AnyMap, TwoWaysToNameAMapAreOneMap) {
   EXPECT_TRUE(is_same_map(bag + "#/map", other_way + "#map"));
   EXPECT_FALSE(is_same_map(bag + "#/tb1/map", bag + "#/tb2/map"));
   EXPECT_FALSE(is_same_map(bag + "#/map", directory_.file("none") + "#/map"));
+  std::filesystem::create_hard_link(bag, directory_.file("b.mcap"));
+  std::filesystem::create_symlink(bag, directory_.file("c.mcap"));
+  std::filesystem::copy_file(bag, directory_.file("d.mcap"));
+  EXPECT_EQ(map_identity(directory_.file("b.mcap") + "#/map"), map_identity(bag + "#map"));
+  EXPECT_EQ(map_identity(directory_.file("c.mcap")), map_identity(other_way));
+  EXPECT_NE(map_identity(directory_.file("d.mcap")), map_identity(bag));
+  EXPECT_NE(map_identity(bag + "#/map"), map_identity(bag));
+  EXPECT_FALSE(map_identity(directory_.file("none")));
 }
 
 TEST_F(AnyMap, FilesAreReadAsTheyAre) {

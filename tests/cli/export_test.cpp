@@ -50,7 +50,8 @@ TEST_F(Export, IsWrittenBesideTheResultOrWhereItIsTold) {
   EXPECT_NE(g2o.find("\nFIX 0\n"), std::string::npos) << g2o;
   EXPECT_NE(g2o.find("\nEDGE_SE2 0 1 "), std::string::npos) << g2o;
   EXPECT_EQ(g2o.find("no deviation"), std::string::npos) << "a match has one";
-  EXPECT_NE(read_file(elsewhere).find("reference_coordinates:\n      merged:\n        rmf: [["),
+  EXPECT_NE(read_file(elsewhere).find(
+                "    reference_image:\n      reference_coordinates:\n        merged:\n          rmf: [["),
             std::string::npos);
   const Json geojson = Json::parse(read_file(output + "/merged.geojson"));
   EXPECT_EQ(geojson["features"].size(), 3u);

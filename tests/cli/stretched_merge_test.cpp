@@ -72,8 +72,13 @@ TEST_F(StretchedMerge, AMapRefinedWhereItLiesStaysThere) {
 }
 
 TEST_F(StretchedMerge, FindsTheScaleAndTellsIt) {
-  const Outcome outcome = run(merge_call({"--transform", "similarity"}));
+  const Outcome outcome =
+      run(merge_call({"--transform", "similarity", "--export", "open-rmf", "--export", "g2o"}));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string open_rmf = read_file(output + "/open_rmf.yaml");
+  EXPECT_NE(open_rmf.find("    scale: 0.98"), std::string::npos) << open_rmf;
+  EXPECT_NE(open_rmf.find("    residual: 0.000000\n"), std::string::npos) << open_rmf;
+  EXPECT_NE(read_file(output + "/merged.g2o").find("these are the rigid parts"), std::string::npos);
   EXPECT_NE(outcome.out.find(", scale 0.98"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find(", scale 1.0"), std::string::npos) << outcome.out;
   double sum = 0.0;
@@ -187,11 +192,12 @@ TEST_F(StretchedMerge, IsTheSameWithACache) {
 
 TEST_F(StretchedMerge, IsTheSameByShards) {
   const std::string cache = directory.file("matches");
+  int last = 3;
   for (const char* shard : {"1/2", "2/2", "1/2"})
-    ASSERT_EQ(run({"merge", maps[0], maps[1], maps[2], "--transform", "similarity", "--shard", shard,
-                   "--cache", cache})
-                  .exit_code,
-              0);
+    last = run({"merge", maps[0], maps[1], maps[2], "--transform", "similarity", "--shard", shard, "--cache",
+                cache})
+               .exit_code;
+  ASSERT_EQ(last, 0);
   const Outcome cached = run(merge_call({"--transform", "similarity", "--cache", cache, "--verbose"}));
   ASSERT_EQ(cached.exit_code, 0) << cached.err;
   EXPECT_NE((cached.out + cached.err).find(", 0 made"), std::string::npos) << cached.out << cached.err;

@@ -99,6 +99,8 @@ TEST(PairChoice, OfFewMapsAllPairsAreLookedAt) {
   EXPECT_FALSE(some.takes_all(internal::kFewMaps + 1));
   EXPECT_TRUE(none.takes_all(100000));
   EXPECT_TRUE(hidden.takes_all(100000));
+  EXPECT_TRUE(internal::takes_all_pairs(100000, 0.2));
+  EXPECT_FALSE(internal::takes_all_pairs(internal::kFewMaps + 1, 0.21));
 }
 
 TEST(PairChoice, AShareThatMakesNoSenseIsRefused) {
@@ -118,6 +120,14 @@ TEST(PairChoice, FewerPairsMakeTheSameMapsWhateverTheOrderAndTheThreads) {
   EXPECT_EQ(of_all, 60u * 59u / 2u);
   EXPECT_LT(of_some, of_all);
   EXPECT_EQ(result.joins.size(), of_some);
+  EXPECT_FALSE(expected.not_compared);
+  ASSERT_TRUE(result.not_compared);
+  EXPECT_EQ(result.not_compared->pairs, of_all - of_some);
+  // At most the half of all joins that may be missed; the fifth that signatures do not show is among them.
+  const double joins = static_cast<double>(
+      std::count_if(result.joins.begin(), result.joins.end(), [](const Join& join) { return join.used(); }));
+  EXPECT_GE(result.not_compared->expected_joins, 0.2 * joins);
+  EXPECT_LE(result.not_compared->expected_joins, joins);
   EXPECT_EQ(parts_of(expected, order).size(), 30u);
   EXPECT_EQ(parts_of(result, order), parts_of(expected, order));
   expect_same(merge_of(fleet, order, one_thread), result);
@@ -131,6 +141,9 @@ TEST(PairChoice, FewerPairsMakeTheSameMapsWhateverTheOrderAndTheThreads) {
   for (const Join& join : other.joins)
     other_pairs.insert(std::minmax(shuffled[join.fixed], shuffled[join.moving]));
   EXPECT_EQ(other_pairs, pairs);
+  ASSERT_TRUE(other.not_compared);
+  EXPECT_EQ(other.not_compared->pairs, result.not_compared->pairs);
+  EXPECT_EQ(other.not_compared->expected_joins, result.not_compared->expected_joins);
 }
 
 TEST(PairChoice, ManyMapsHaveABudgetOfFalseJoinsForEveryFifty) {

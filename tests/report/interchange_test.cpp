@@ -51,7 +51,8 @@ TEST(OpenRmf, HasPointsByWhichAdaptersFindTheTransform) {
     EXPECT_EQ(one["source"].as<std::string>(), fleet.names[members[i].map]);
     EXPECT_EQ(one["merged_map"].as<std::string>(), "merged.yaml");
     const auto points = [&](const char* key) {
-      return one["reference_coordinates"]["merged"][key].as<std::vector<std::vector<double>>>();
+      return one["cartesian_meters"]["reference_coordinates"]["merged"][key]
+          .as<std::vector<std::vector<double>>>();
     };
     const auto rmf = points("rmf"), robot = points("robot");
     ASSERT_EQ(rmf.size(), 4u);
@@ -59,7 +60,43 @@ TEST(OpenRmf, HasPointsByWhichAdaptersFindTheTransform) {
     const SE2 found = similarity(rmf, robot);
     const SE2 expected = inverse(members[i].T_component_map);
     EXPECT_LT((matrix_of(found) - matrix_of(expected)).norm(), 1e-4);
+    EXPECT_NEAR(one["scale"].as<double>(), 1.0, 1e-6);
+    EXPECT_NEAR(one["residual"].as<double>(), 0.0, 1e-6);
   }
+}
+
+TEST(OpenRmf, PointsOfABuildingOnThePictureAreMeasuredFromItsUpperLeftCorner) {
+  const std::vector<OccupancyGrid> maps(2, map_from({"#..#", ".##.", "...."}, 0.5));
+  MergeResult result = test::merged(maps, {{{0, {}}, {1, {1.25, -3.0, 0.0}}}});
+  const std::vector<std::string> names = test::fleet_names(2);
+  const std::string text = export_text(ExportFormat::open_rmf, {names, maps, result});
+  const YAML::Node yaml = YAML::Load(text);
+  const OccupancyGrid& picture = result.components[0].fused.grid;
+  // The first map's upper left corner is at (0, 1.5), and the second one reaches down to -3 and right
+  // to 3.25.
+  EXPECT_EQ(picture.height, 9);
+  const auto upper_left = yaml["merged_maps"]["merged.yaml"]["upper_left"].as<std::vector<double>>();
+  EXPECT_NEAR(upper_left.at(0), picture.origin.x, 1e-6);
+  EXPECT_NEAR(upper_left.at(1), picture.origin.y + picture.height * picture.resolution, 1e-6);
+  const auto points = [&](std::size_t map, const char* system) {
+    return yaml["maps"][map][system]["reference_coordinates"]["merged"]["rmf"]
+        .as<std::vector<std::vector<double>>>();
+  };
+  for (std::size_t map = 0; map < 2; ++map) {
+    const auto from_corner = points(map, "reference_image"), in_frame = points(map, "cartesian_meters");
+    ASSERT_EQ(from_corner.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(from_corner[i].at(0), in_frame.at(i).at(0) - upper_left[0], 2e-6);
+      EXPECT_NEAR(from_corner[i].at(1), in_frame.at(i).at(1) - upper_left[1], 2e-6);
+    }
+  }
+  // The first map's upper right corner is four columns to the right of the picture's, at its upper edge.
+  EXPECT_NEAR(points(0, "reference_image")[2].at(0), 4 * 0.5, 1e-6);
+  EXPECT_NEAR(points(0, "reference_image")[2].at(1), 0.0, 1e-6);
+  EXPECT_NEAR(points(1, "reference_image")[0].at(1), -9 * 0.5, 1e-6);
+
+  result.components[0].fused = {};  // where merge() would draw it
+  EXPECT_EQ(export_text(ExportFormat::open_rmf, {names, maps, result}), text);
 }
 
 TEST(OpenRmf, HasALevelForEachMergedMap) {
@@ -70,7 +107,9 @@ TEST(OpenRmf, HasALevelForEachMergedMap) {
   EXPECT_FALSE(contains(text, "e-0")) << "YAML 1.1 takes it for a text";
   const YAML::Node yaml = YAML::Load(text);
   EXPECT_EQ(yaml["maps"][2]["merged_map"].as<std::string>(), "merged_2.yaml");
-  EXPECT_TRUE(yaml["maps"][2]["reference_coordinates"]["merged_2"].IsMap());
+  EXPECT_TRUE(yaml["maps"][2]["reference_image"]["reference_coordinates"]["merged_2"].IsMap());
+  EXPECT_TRUE(yaml["maps"][2]["cartesian_meters"]["reference_coordinates"]["merged_2"].IsMap());
+  EXPECT_EQ(yaml["merged_maps"]["merged_2.yaml"]["upper_left"].size(), 2u);
 }
 
 TEST(Exports, TakeNamesForTextAlone) {

@@ -58,6 +58,7 @@ MergeResult any_result() {
                                {{3, 5}, {7.0, 8.0, 3.0}, 1.25, 0.9375, Reason::none},
                                {{4}, {1.0, 2.0, -1.0}, 0.75, 0.5, Reason::several}}};
   result.open_ways = {{0, 1, {-4.0, 1.0 / 3.0, 2.5}, 0.375}, {1, 3, {}, 0.125}};
+  result.not_compared = {9, 1.0 / 3.0};
   return result;
 }
 
@@ -78,6 +79,9 @@ TEST(MergeRecord, HoldsWhatWasWritten) {
   EXPECT_EQ(read.result.components[0].members[1].T_component_map,
             written.components[0].members[1].T_component_map);
   EXPECT_EQ(read.result.joins[2].match.hypotheses[0].T_fixed_moving, (SE2{1e-7, 0.1, 3.0}));
+  ASSERT_TRUE(read.result.not_compared);
+  EXPECT_EQ(read.result.not_compared->pairs, 9u);
+  EXPECT_EQ(read.result.not_compared->expected_joins, 1.0 / 3.0);
   EXPECT_TRUE(read.result.components[0].fused.grid.cells.empty());
 }
 
@@ -119,6 +123,7 @@ TEST(MergeRecord, ReadsWhatEarlierVersionsWrote) {
     join.erase("by_themselves");
   }
   json.erase("open_ways");
+  json.erase("not_compared");
   const MergeRecord read = parse(json.dump());
   EXPECT_EQ(read.result.left_out, any_result().left_out);
   EXPECT_EQ(read.result.joins[4].match.reason, Reason::too_little_overlap);

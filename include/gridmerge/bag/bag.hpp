@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -133,6 +134,19 @@ GRIDMERGE_EXPORT MapName parse_map_name(const std::filesystem::path& name);
 
 /// The name of a topic's map: parse_map_name() takes it apart again.
 GRIDMERGE_EXPORT std::filesystem::path format_map_name(const MapName& name);
+
+/// Which map a name is of, by whichever path it names its file: to find equal ones among many.
+struct MapIdentity {
+  std::uint64_t device = 0;  ///< that holds the file
+  std::uint64_t file = 0;    ///< its number there
+  std::string topic;         ///< without a slash before it; "" = none is named
+
+  /// Whether they are of one map, and an order.
+  friend auto operator<=>(const MapIdentity&, const MapIdentity&) = default;
+};
+
+/// Which map that is; none if its file is not there. Throws nothing.
+GRIDMERGE_EXPORT std::optional<MapIdentity> map_identity(const std::filesystem::path& name);
 
 /// Whether two names are of one map: the same topic, or none, of one file, by whichever path. A file that is
 /// not there is the same as none. Throws nothing.

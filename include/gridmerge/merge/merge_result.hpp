@@ -157,6 +157,14 @@ struct PlanPlacement {
   }
 };
 
+/// Pairs of maps that MergeOptions::max_missed has left out.
+struct NotCompared {
+  std::size_t pairs = 0;  ///< of maps that count: copies of a map do not
+  /// How many joins of maps that lie apart these pairs may hide, by the signatures of their maps and by what
+  /// was found of the pairs that were compared.
+  double expected_joins = 0.0;
+};
+
 /// What a merge made of its maps.
 struct MergeResult {
   std::vector<Component> components;  ///< of two or more maps each, most members first
@@ -168,6 +176,8 @@ struct MergeResult {
   /// Refused comparisons beside `joins`, by reason. A merge has none. A saved merge of many maps keeps no
   /// more than this of most of them.
   std::vector<RefusedCount> refused_more = {};
+  /// Pairs of which nothing is known; none if all pairs were compared.
+  std::optional<NotCompared> not_compared = {};
   /// What place_on_plan() has found; none without a plan. All parts on the plan are one component, whose
   /// frame is the plan's (see Component::in_world_frame), if they are two maps or more.
   std::optional<PlanPlacement> plan = {};

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "internal_export.hpp"
+
+namespace gridmerge::internal {
+
+/// How many threads with_threads() uses when it is asked for so many: 0 = one a core, and there are never
+/// more.
+GRIDMERGE_INTERNAL_EXPORT int thread_count(int threads);
+
+}  // namespace gridmerge::internal
