@@ -212,8 +212,9 @@ int run_merge(const MergeCommandOptions& options) {
   if (inputs.plan)
     result = inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
   console.progress("writing the result");
+  std::vector<std::filesystem::path> removed;
   with_threads(options.common.threads, [&] {
-    write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
+    removed = write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   });
   matcher.write_trace();
   std::string exported;
@@ -232,7 +233,7 @@ int run_merge(const MergeCommandOptions& options) {
   console.clear();
   if (options.common.verbose) print(describe_joins(asked, result));
   print(describe_merge(asked, inputs.maps, result, known_poses.describe_unused(inputs.maps, result)) +
-        describe_plan(options.maps, result) + hints);
+        describe_plan(options.maps, result) + hints + describe_removed(removed));
   const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
   print("look at it: " + escape_controls(page.string()) + "\n");
   if (not_exported) std::rethrow_exception(not_exported);
@@ -245,7 +246,8 @@ int run_merge(const MergeCommandOptions& options) {
 /// What --help says behind the options.
 constexpr const char* kFooter =
     "Writes merged.yaml and merged.pgm for map_server, transforms.json, preview.png and report.html. Maps\n"
-    "that do not fit are left out and the exit code is 3.\n\n"
+    "that do not fit are left out and the exit code is 3. Of an earlier merge into DIR, maps and exports\n"
+    "that this one does not write are removed, and named.\n\n"
     "Every pair is matched, and what all pairs say together decides: a weak pair that agrees with the\n"
     "others is used (rescued), a strong one that contradicts them is not (rejected).\n\n"
     "With --cache a run that was ended goes on where it was. --shard shares the matches among machines "

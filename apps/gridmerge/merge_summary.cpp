@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <system_error>
 
 #include "console.hpp"
 #include "gridmerge/report/merge_record.hpp"
@@ -209,6 +210,16 @@ std::string describe_doubled(const AskedMerge& asked, const std::vector<Occupanc
                    may_help ? "; --elastic bends maps so that they fit better" : "");
   }
   return text;
+}
+
+std::string describe_removed(const std::vector<std::filesystem::path>& removed) {
+  std::string names;
+  for (const std::filesystem::path& file : removed) {
+    std::error_code error;
+    if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) continue;  // exported anew
+    names += (names.empty() ? "" : ", ") + file.filename().string();
+  }
+  return names.empty() ? names : fmt::format("removed: {} (of an earlier merge)\n", names);
 }
 
 }  // namespace gridmerge::cli

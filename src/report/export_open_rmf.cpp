@@ -48,8 +48,8 @@ std::string quoted(const std::string& text) {
 
 std::string open_rmf_text(const NamedMerge& merge) {
   const auto& [names, maps, result] = merge;
-  std::string text =
-      "# Where each robot's map lies, for Open-RMF's fleet adapters: copy the reference_coordinates of a "
+  std::string text(kOpenRmfMark);
+  text +=
       "robot's map to\n"
       "# its fleet's configuration. \"robot\" has the corners of what the map knows, in metres of the map's "
       "own "

@@ -20,6 +20,7 @@
 #include "report/fused_places.hpp"
 #include "report/json_reader.hpp"
 #include "report/json_values.hpp"
+#include "report/output_names.hpp"
 #include "report/plan_json.hpp"
 #include "report/record_values.hpp"
 #include "report/told_joins.hpp"
@@ -30,7 +31,6 @@ using namespace internal;
 
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 constexpr std::size_t kMaxEqual = 100;  // of one name: what is said of them is looked for among all pairs
 constexpr double kInfinity = std::numeric_limits<double>::max();
 
@@ -320,12 +320,12 @@ MergeRecord parse_transforms(const std::filesystem::path& file, std::string_view
 }
 
 MergeRecord read_merge_record(const std::filesystem::path& directory) {
-  const std::filesystem::path file = directory / "transforms.json";
+  const std::filesystem::path file = directory / kTransforms;
   std::error_code error;
   if (!std::filesystem::exists(file, error))
     throw FileError(directory, "holds no transforms.json: it is not what 'gridmerge merge' has written to");
   FileReader reader(file, NamedBy::file);
-  return parse_transforms(file, reader.read_all(kMaxBytes));
+  return parse_transforms(file, reader.read_all(kMaxRecordBytes));
 }
 
 std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<OccupancyGrid>& maps,
