@@ -157,15 +157,17 @@ class RecordReader {
       join.fixed = map_number(row.at(place[0]));
       join.moving = map_number(row.at(place[1]));
       if (join.fixed == join.moving) row.fail("is of a map and itself");
-      join.match.reason = read_reason(row.at(place[2]));
-      if (join.match.reason == Reason::none) row.at(place[2]).fail("is none");
+      const Reason reason = read_reason(row.at(place[2]));
+      if (reason == Reason::none) row.at(place[2]).fail("is none");
+      join.over_budget = reason == Reason::over_budget;
+      join.match.reason = join.over_budget ? Reason::several : reason;
       join.probability = read_share(row.at(place[3]));
       join.T_fixed_moving = {row.at(place[4]).number_in(-kFarthest, kFarthest),
                              row.at(place[5]).number_in(-kFarthest, kFarthest),
                              row.at(place[6]).number_in(-std::numbers::pi, std::numbers::pi)};
       static_cast<PairPose&>(join.match) = join;
       join.match.hypotheses = {{join.T_fixed_moving, 0.0, join.probability}};
-      ++rows[join.match.reason];
+      ++rows[reason];
       record_.result.joins.push_back(std::move(join));
     }
     // In the order in which the merge compared them.
@@ -179,7 +181,7 @@ class RecordReader {
   void read_more_refused(const JsonReader& json, const std::map<Reason, std::size_t>& rows) {
     std::size_t counted = 0, in_rows = 0;
     const JsonReader reasons = json.at("reasons");
-    for (int i = 0; i <= static_cast<int>(Reason::contradicts_others); ++i) {
+    for (int i = 0; i <= static_cast<int>(Reason::over_budget); ++i) {
       const auto reason = static_cast<Reason>(i);
       if (reason == Reason::none || !reasons.has(name_of(reason))) continue;
       const JsonReader count = reasons.at(name_of(reason));
@@ -233,6 +235,7 @@ class RecordReader {
     if (join.used() && json.has("sd")) set_deviation(join, json.at("sd").number_in(0.0, kInfinity));
     const JsonReader reason = json.at("reason");
     const Reason told = reason.is_null() ? Reason::none : read_reason(reason);
+    join.over_budget = told == Reason::over_budget && join.outcome == JoinOutcome::refused;
     if (told != join.reason() && json.has("by_themselves")) reason.fail("does not go with the outcome");
     return join;
   }
