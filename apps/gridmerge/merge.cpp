@@ -226,16 +226,20 @@ int run_merge(const MergeCommandOptions& options) {
   } catch (const FileError&) {
     not_exported = std::current_exception();
   }
-  const AskedMerge asked{options.maps, options.search, map_transform(options.transform).value(),
-                         options.max_false_joins, options.output_resolution != 0.0};
+  const AskedMerge asked{options.maps,
+                         options.search,
+                         known_poses.poses(),
+                         map_transform(options.transform).value(),
+                         options.max_false_joins,
+                         options.output_resolution != 0.0};
   const std::string hints = scale_hints(options, inputs.maps, result, console) +
                             describe_doubled(asked, inputs.maps, result, options.common.verbose);
   console.clear();
   if (options.common.verbose) print(describe_joins(asked, result));
   print(describe_merge(asked, inputs.maps, result, known_poses.describe_unused(inputs.maps, result)) +
         describe_plan(options.maps, result) + hints + describe_removed(removed));
-  const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
-  print("look at it: " + escape_controls(page.string()) + "\n");
+  print("look at it: " + escape_controls((std::filesystem::path(options.output) / "report.html").string()) +
+        "\n");
   if (not_exported) std::rethrow_exception(not_exported);
   print(exported);
   const bool all_on_plan = !result.plan || std::all_of(result.plan->parts.begin(), result.plan->parts.end(),
@@ -330,7 +334,9 @@ Given add_options(CLI::App& command, MergeCommandOptions& options) {
   add_files(command, options);
   add_plan_options(command, options.plan);
   add_known_pose_options(command, options.known);
-  add_search_options(command, options.search);
+  add_search_options(command, options.search,
+                     "a quick look at every pose of each pair, then a thorough one at pairs whose maps that "
+                     "leaves apart");
   add_strategy_option(command, options.search);
   given.max_false_joins = add_budget(command, options);
   given.max_missed = add_choice_of_pairs(command, options);

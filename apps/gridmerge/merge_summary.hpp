@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace gridmerge::cli {
 struct AskedMerge {
   const std::vector<std::string>& names;  ///< of the maps
   const SearchOptions& search;
+  const std::vector<std::optional<KnownPose>>& known_poses;  ///< of the maps
   MapTransform transform = MapTransform::rigid;
   double max_false_joins = MergeOptions{}.max_false_joins;
   bool is_resolution_asked = false;  ///< that of the merged maps
