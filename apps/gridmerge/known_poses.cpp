@@ -35,6 +35,14 @@ std::string in_radians(double degrees) {
                      normalize_angle(degrees * std::numbers::pi / 180.0));
 }
 
+/// How far a pose is from another one: "3.2 m and 40 degrees".
+std::string offset_text(double distance, double angle) {
+  constexpr double kToldFrom = 0.5;  // degrees
+  const double degrees = angle * 180.0 / std::numbers::pi;
+  return fmt::format("{:.3g} m{}", distance,
+                     degrees < kToldFrom ? "" : fmt::format(" and {:.3g} degrees", degrees));
+}
+
 std::map<std::string, GivenPose> read_table(const std::string& table, const MapNamer& name_of,
                                             Console& console) {
   std::map<std::string, GivenPose> given;
@@ -96,6 +104,11 @@ std::map<std::string, GivenPose> read_given_poses(const KnownPoseOptions& option
   std::map<std::string, GivenPose> given;
   if (!options.init.empty()) given = read_table(options.init, name_of, console);
   fix(options, name_of, given);
+  if (given.size() == 1 && !given.begin()->second.pose.fixed)
+    console.warn(
+        fmt::format("{}: one pose alone says nothing about how maps lie: give that of another one too, "
+                    "or --fix {}",
+                    options.init, given.begin()->first));
   return given;
 }
 
@@ -117,14 +130,16 @@ std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps,
                                         const MergeResult& result) const {
   std::string text;
   for (const ContradictedFix& fix : find_contradicted_fixes(maps, poses_, result)) {
-    text += fmt::format(
-        "{}: --fix keeps it {:.3g} m from where it fits {}: the maps contradict the given poses\n",
-        escape_controls(names_[fix.moving]), fix.distance, escape_controls(names_[fix.fixed]));
+    text += fmt::format("{}: --fix keeps it {} from where it fits {}: the maps contradict the given poses\n",
+                        escape_controls(names_[fix.moving]), offset_text(fix.distance, fix.angle),
+                        escape_controls(names_[fix.fixed]));
   }
   for (const LeftOut& one : result.left_out) {
     if (poses_[one.map] && poses_[one.map]->fixed)
-      text +=
-          fmt::format("{}: --fix has no effect, as the map is left out\n", escape_controls(names_[one.map]));
+      text += fmt::format(
+          "{}: --fix has no effect, as the map is left out\n"
+          "try: --init with its pose and that of another map, and --fix both\n",
+          escape_controls(names_[one.map]));
   }
   const std::vector<UnusedPose> all = find_unused_poses(maps, poses_, result);
   std::set<std::pair<std::size_t, std::size_t>> told;  // pairs whose poses are not used
@@ -149,8 +164,8 @@ std::string KnownPoses::describe(const UnusedPose& unused) const {
   const auto remedy = [&] { return fmt::format("--fix {} --fix {} takes them for the truth", other, name); };
   switch (unused.why) {
     case UnusedPose::Why::overruled:
-      return fmt::format("{}: the given pose is not believed: {:.3g} m from where the maps fit", name,
-                         unused.distance);
+      return fmt::format("{}: the given pose is not believed: {} from where the maps fit", name,
+                         offset_text(unused.distance, unused.angle));
     case UnusedPose::Why::not_sure_enough:
       return fmt::format(
           "{}: the given pose is not sure enough to be used alone: beside that of {}\n"
@@ -161,10 +176,10 @@ std::string KnownPoses::describe(const UnusedPose& unused) const {
           unused.sd_allowed / unused.sd, remedy());
     case UnusedPose::Why::against_match:
       return fmt::format(
-          "{0}: the given pose is {1:.3g} m from where the map surely fits {2} without it: one of the two is "
+          "{0}: the given pose is {1} from where the map surely fits {2} without it: one of the two is "
           "wrong\n"
           "try: gridmerge match {2} {0}   (where it fits), or {3}",
-          name, unused.distance, other, remedy());
+          name, offset_text(unused.distance, unused.angle), other, remedy());
     case UnusedPose::Why::contradicted:
       break;
   }

@@ -94,6 +94,8 @@ std::string describe_pair(const PoseMeasure& measure, const MeasureCommandOption
   const auto line = [&](const std::string& name, const std::string& value) {
     fmt::format_to(std::back_inserter(text), "  {:<27}{}\n", name, value);
   };
+  const bool has_common = similarity.agreement + similarity.disagreement > 0;
+  if (!has_common) text += "  no known cell in common: the maps say nothing of this pose\n";
   const auto term = [&](const std::string& name, const DirectedDistance& distance) {
     line("  " + name, distance.defined() ? fmt::format("{:.6g} cells", distance.mean())
                                          : "undefined: a map has no such cell; counts as 0");
@@ -109,7 +111,8 @@ std::string describe_pair(const PoseMeasure& measure, const MeasureCommandOption
                                 measure.common.occupied_occupied, measure.common.free_free));
   line("disagreement", fmt::format("{} cells", similarity.disagreement));
   line("Delta", fmt::format("{:.6g} with c_lock {}", similarity.delta(options.c_lock), options.c_lock));
-  line("acceptance index", fmt::format("{:.4f}", similarity.acceptance_index()));
+  line("acceptance index", has_common ? fmt::format("{:.4f}", similarity.acceptance_index())
+                                      : "undefined: no known cell in common; counts as 0");
   line("the engine says", fmt::format("probability {:.4f}", measure.engine.probability));
   for (const PoseFigure& figure : pose_figures())
     line(std::string("  ") + figure.name,
@@ -255,7 +258,8 @@ void add_measure(CLI::App& app, Action& action) {
   command->footer(
       "The measures of Birk & Carpin (2006) on FIXED's cells, and beside them what the engine says of the\n"
       "pose. omega counts equal cells, of all maps together; the rest is said of each MOVING on FIXED.\n"
-      "A map that lies on none of the others is an error.\n\n"
+      "A map that lies on none of the others is an error. Where maps lie on each other and know no cell in\n"
+      "common, it is told.\n\n"
       "Example:\n  gridmerge measure robot1.yaml robot2.yaml --pose 1.25,-3,0.52 --c-lock 7.5");
   command->callback([options, &action] {
     check_usage(*options);

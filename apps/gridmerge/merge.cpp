@@ -197,8 +197,9 @@ int run_merge(const MergeCommandOptions& options) {
   if (inputs.plan)
     result = inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
   console.progress("writing the result");
+  std::vector<std::filesystem::path> removed;
   with_threads(options.common.threads, [&] {
-    write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
+    removed = write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
   });
   matcher.write_trace();
   std::string exported;
@@ -210,16 +211,20 @@ int run_merge(const MergeCommandOptions& options) {
   } catch (const FileError&) {
     not_exported = std::current_exception();
   }
-  const AskedMerge asked{options.maps, options.search, map_transform(options.transform).value(),
-                         options.max_false_joins, options.output_resolution != 0.0};
+  const AskedMerge asked{options.maps,
+                         options.search,
+                         known_poses.poses(),
+                         map_transform(options.transform).value(),
+                         options.max_false_joins,
+                         options.output_resolution != 0.0};
   const std::string hints = scale_hints(options, inputs.maps, result, console) +
                             describe_doubled(asked, inputs.maps, result, options.common.verbose);
   console.clear();
   if (options.common.verbose) print(describe_joins(asked, result));
   print(describe_merge(asked, inputs.maps, result, known_poses.describe_unused(inputs.maps, result)) +
-        describe_plan(options.maps, result) + hints);
-  const std::filesystem::path page = std::filesystem::path(options.output) / "report.html";
-  print("look at it: " + escape_controls(page.string()) + "\n");
+        describe_plan(options.maps, result) + hints + describe_removed(removed));
+  print("look at it: " + escape_controls((std::filesystem::path(options.output) / "report.html").string()) +
+        "\n");
   if (not_exported) std::rethrow_exception(not_exported);
   print(exported);
   const bool all_on_plan = !result.plan || std::all_of(result.plan->parts.begin(), result.plan->parts.end(),
@@ -230,7 +235,8 @@ int run_merge(const MergeCommandOptions& options) {
 /// What --help says behind the options.
 constexpr const char* kFooter =
     "Writes merged.yaml and merged.pgm for map_server, transforms.json, preview.png and report.html. Maps\n"
-    "that do not fit are left out and the exit code is 3.\n\n"
+    "that do not fit are left out and the exit code is 3. Of an earlier merge into DIR, maps and exports\n"
+    "that this one does not write are removed, and named.\n\n"
     "Every pair is matched, and what all pairs say together decides: a weak pair that agrees with the\n"
     "others is used (rescued), a strong one that contradicts them is not (rejected).\n\n"
     "With --cache a run that was ended goes on where it was. --shard shares the matches among machines "
@@ -313,7 +319,9 @@ Given add_options(CLI::App& command, MergeCommandOptions& options) {
   add_files(command, options);
   add_plan_options(command, options.plan);
   add_known_pose_options(command, options.known);
-  add_search_options(command, options.search);
+  add_search_options(command, options.search,
+                     "a quick look at every pose of each pair, then a thorough one at pairs whose maps that "
+                     "leaves apart");
   add_strategy_option(command, options.search);
   given.max_false_joins = add_budget(command, options);
   given.max_missed = add_choice_of_pairs(command, options);

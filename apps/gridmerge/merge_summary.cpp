@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <system_error>
 
 #include "console.hpp"
 #include "gridmerge/report/merge_record.hpp"
@@ -29,8 +30,30 @@ std::string what_asks_for_less(const AskedMerge& asked, double probability) {
   const bool is_below = probability < asked.search.accept_from();
   const double doubt = 1.0 - probability;
   if (doubt <= asked.max_false_joins) return is_below ? "     a lower --accept asks for less\n" : "";
-  return fmt::format("     {}a higher --max-false-joins asks for less: this join alone is false in {:.3f}\n",
-                     is_below ? "a lower --accept with " : "", doubt);
+  return fmt::format(
+      "     {}a higher --max-false-joins asks for less: this join alone is false with probability {:.3f}\n",
+      is_below ? "a lower --accept with " : "", doubt);
+}
+
+/// Where to look for what keeps two maps apart.
+std::string try_match(const AskedMerge& asked, const Join& join) {
+  return fmt::format("try: gridmerge match {} {}{}   (how these two may lie, and why it is not believed)\n",
+                     escape_controls(asked.names[join.fixed]), escape_controls(asked.names[join.moving]),
+                     asked.search.random_walk() ? " --search random-walk" : "");
+}
+
+/// What to do about maps that a merged map does without: of the first that was compared.
+std::string describe_remedy(const AskedMerge& asked, const MergeResult& result) {
+  std::string text;
+  for (const LeftOut& one : result.left_out) {
+    const Join* const likeliest = likeliest_join(one.map, result.joins);
+    if (likeliest == nullptr || one.reason == Reason::nothing_to_compare) continue;
+    text = try_match(asked, *likeliest);
+    break;
+  }
+  const bool is_over_budget = std::any_of(result.joins.begin(), result.joins.end(),
+                                          [](const Join& join) { return join.over_budget; });
+  return is_over_budget ? text + "     a higher --max-false-joins asks for less\n" : text;
 }
 
 /// The head of a result that holds no merged map. What became of known poses comes first: who gives them
@@ -44,13 +67,10 @@ std::string describe_nothing(const AskedMerge& asked, const MergeResult& result,
       std::max_element(result.joins.begin(), result.joins.end(),
                        [](const Join& a, const Join& b) { return a.probability < b.probability; });
   if (nearest != result.joins.end()) {
-    const std::string fixed = escape_controls(asked.names[nearest->fixed]);
-    const std::string moving = escape_controls(asked.names[nearest->moving]);
-    fmt::format_to(out, "nearest to it: {} and {}, {} {:.4f}\n", fixed, moving, figure_name(asked.search),
+    fmt::format_to(out, "nearest to it: {} and {}, {} {:.4f}\n", escape_controls(asked.names[nearest->fixed]),
+                   escape_controls(asked.names[nearest->moving]), figure_name(asked.search),
                    nearest->probability);
-    fmt::format_to(out,
-                   "try: gridmerge match {} {}{}   (how these two may lie, and why it is not believed)\n",
-                   fixed, moving, asked.search.random_walk() ? " --search random-walk" : "");
+    text += try_match(asked, *nearest);
   }
   if (asked.search.up_the_tree()) return text + "     a lower --accept asks for less\n";
   text += asked.names.size() == 2 && nearest != result.joins.end()
@@ -111,12 +131,24 @@ std::string describe_change(const OccupancyGrid& map, const Deformation& deforma
   return {};
 }
 
+/// Whether --fix holds all maps of a component.
+bool holds_all(const AskedMerge& asked, const Component& component) {
+  return std::all_of(component.members.begin(), component.members.end(), [&](const Member& member) {
+    const std::optional<KnownPose>& known = asked.known_poses[member.map];
+    return known && known->fixed;
+  });
+}
+
 /// Why no map was changed although that was asked for.
-const char* explain_no_change(MapTransform asked) {
-  return asked == MapTransform::elastic
-             ? "no map is bent: by what they say, bending would bring their walls no nearer\n"
-             : "no map is stretched: by what they say, scales of their own would bring their walls no "
-               "nearer\n";
+std::string explain_no_change(const AskedMerge& asked, const MergeResult& result) {
+  const bool is_bending = asked.transform == MapTransform::elastic;
+  if (std::all_of(result.components.begin(), result.components.end(),
+                  [&](const Component& component) { return holds_all(asked, component); }))
+    return fmt::format("no map is {}: --fix holds all of them as they are\n",
+                       is_bending ? "bent" : "stretched");
+  return is_bending ? "no map is bent: by what they say, bending would bring their walls no nearer\n"
+                    : "no map is stretched: by what they say, scales of their own would bring their walls no "
+                      "nearer\n";
 }
 
 }  // namespace
@@ -167,7 +199,7 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
     }
   }
   if (asked.transform != MapTransform::rigid && !result.components.empty() && !is_any_bent(result))
-    text += explain_no_change(asked.transform);
+    text += explain_no_change(asked, result);
   if (result.expected_false_joins && !result.components.empty())
     fmt::format_to(out, "of these joins, {:.3f} are expected to be false\n", *result.expected_false_joins);
   if (result.not_compared)
@@ -175,12 +207,16 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
                    result.not_compared->pairs, result.not_compared->expected_joins);
   for (const LeftOut& one : result.left_out)
     fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain(result, one));
+  if (!result.components.empty()) text += describe_remedy(asked, result);
   text += describe_open_ways(names, result);
   for (const Join& join : result.joins) {
     const std::string pair =
         fmt::format("{} and {}", escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
     if (join.outcome == JoinOutcome::rescued)
       fmt::format_to(out, "rescued: {}, {:.3f} by themselves, but the other maps or known poses agree\n",
+                     pair, join.probability);
+    if (join.over_budget)
+      fmt::format_to(out, "over budget: {}, {:.3f} by themselves, which --max-false-joins has no room for\n",
                      pair, join.probability);
     if (join.outcome == JoinOutcome::rejected)
       fmt::format_to(out, "rejected: {}, {:.3f} by themselves, but other maps or fixed poses contradict\n",
@@ -192,19 +228,39 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
   return text;
 }
 
+namespace {
+
+const char* what_may_help(MapTransform asked) {
+  return asked == MapTransform::rigid ? "; --elastic bends maps so that they fit better, and --transform "
+                                        "similarity mends a false scale"
+                                      : "; --elastic bends maps so that they fit better";
+}
+
+}  // namespace
+
 std::string describe_doubled(const AskedMerge& asked, const std::vector<OccupancyGrid>& maps,
                              const MergeResult& result, bool is_asked_for) {
   if (asked.search.up_the_tree()) return {};
   std::string text;
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     const double share = measure_doubled_walls(maps, result.components[i]).share();
-    const bool may_help = asked.transform != MapTransform::elastic && share >= kManyDoubled;
+    const bool may_help = asked.transform != MapTransform::elastic && share >= kManyDoubled &&
+                          !holds_all(asked, result.components[i]);
     if (!may_help && !is_asked_for) continue;
     fmt::format_to(std::back_inserter(text), "{}: {:.1f} % of the walls that several maps saw lie double{}\n",
-                   component_file(i), 100.0 * share,
-                   may_help ? "; --elastic bends maps so that they fit better" : "");
+                   component_file(i), 100.0 * share, may_help ? what_may_help(asked.transform) : "");
   }
   return text;
+}
+
+std::string describe_removed(const std::vector<std::filesystem::path>& removed) {
+  std::string names;
+  for (const std::filesystem::path& file : removed) {
+    std::error_code error;
+    if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) continue;  // exported anew
+    names += (names.empty() ? "" : ", ") + file.filename().string();
+  }
+  return names.empty() ? names : fmt::format("removed: {} (of an earlier merge)\n", names);
 }
 
 }  // namespace gridmerge::cli

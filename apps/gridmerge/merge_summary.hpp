@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,7 @@ namespace gridmerge::cli {
 struct AskedMerge {
   const std::vector<std::string>& names;  ///< of the maps
   const SearchOptions& search;
+  const std::vector<std::optional<KnownPose>>& known_poses;  ///< of the maps
   MapTransform transform = MapTransform::rigid;
   double max_false_joins = MergeOptions{}.max_false_joins;
   bool is_resolution_asked = false;  ///< that of the merged maps
@@ -29,5 +32,8 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
 /// How many walls lie double, and what may help: where it is asked for, or there are many. O(cells).
 std::string describe_doubled(const AskedMerge& asked, const std::vector<OccupancyGrid>& maps,
                              const MergeResult& result, bool is_asked_for);
+
+/// Names the files of an earlier merge that were removed and are not there again; "" if there are none.
+std::string describe_removed(const std::vector<std::filesystem::path>& removed);
 
 }  // namespace gridmerge::cli

@@ -134,7 +134,8 @@ std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& opt
 /// Throws CLI::ValidationError for what no option sees by itself.
 void check_walk(const SearchOptions& options) {
   if (!options.up_the_tree())
-    throw CLI::ValidationError("--strategy", "joint needs several hypotheses a pair: --search exhaustive");
+    throw CLI::ValidationError(
+        "--strategy", "joint needs several hypotheses a pair: --search exhaustive, quick or thorough");
   if (options.restarts && static_cast<std::size_t>(*options.restarts) < options.walk.c_locks.size())
     throw CLI::ValidationError("--restarts", "is less than the number of --c-lock, which are used in turn");
   if (!options.scales.empty()) throw CLI::ValidationError("--scale", "excludes --search random-walk");
@@ -166,12 +167,14 @@ ScaleRange to_scales(const std::string& text) {
   return parse_scales(text).value();
 }
 
-void add_search_options(CLI::App& command, SearchOptions& options) {
+void add_search_options(CLI::App& command, SearchOptions& options, const char* exhaustive) {
   std::vector<std::string> names;
   std::string methods;
   for (const SearchMethodName& one : search_methods()) {
     names.emplace_back(one.name);
-    methods += fmt::format("{}{}: {}", methods.empty() ? "" : "; ", one.name, one.meaning);
+    const bool is_own = one.method == SearchMethod::exhaustive && exhaustive != nullptr;
+    methods +=
+        fmt::format("{}{}: {}", methods.empty() ? "" : "; ", one.name, is_own ? exhaustive : one.meaning);
   }
   command.add_option("--search", options.method, methods)
       ->type_name("METHOD")

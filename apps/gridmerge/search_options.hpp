@@ -40,8 +40,9 @@ struct SearchOptions {
   bool up_the_tree() const { return strategy ? *strategy == "tree" : random_walk(); }
 };
 
-/// --search and what belongs to it. Options of the random walk without it are a usage error.
-void add_search_options(CLI::App& command, SearchOptions& options);
+/// --search and what belongs to it. Options of the random walk without it are a usage error. `exhaustive`
+/// says what that method does in this command, if that is not what it does to one pair.
+void add_search_options(CLI::App& command, SearchOptions& options, const char* exhaustive = nullptr);
 
 /// --start: needs add_search_options() of the same command.
 void add_start_option(CLI::App& command, SearchOptions& options);

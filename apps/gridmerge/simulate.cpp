@@ -89,8 +89,10 @@ std::string describe(const Simulation& simulation, const std::string& output) {
                    map.grid.width, map.grid.height, area, map.path.size(), map.bend);
   }
   if (simulation.maps.size() > 1) {
-    fmt::format_to(out, "overlap {:.3f}; {} pairs share a place, {} share none\n", simulation.overlap,
-                   simulation.pairs.size(), simulation.strangers.size());
+    fmt::format_to(out,
+                   "overlap {:.3f} of each robot with the one that it shares most with, on average; {} pairs "
+                   "share a place, {} share none\n",
+                   simulation.overlap, simulation.pairs.size(), simulation.strangers.size());
   }
   fmt::format_to(out, "the truth: {}/pairs.tsv, negatives.tsv, sets.tsv\n", output);
   return text;
@@ -140,8 +142,8 @@ void add_world_options(CLI::App& command, SimulateCommandOptions& options) {
   command
       .add_option(
           "--overlap", simulation.overlap,
-          "Wanted share of a robot's area that it has in common with another one, on average; without "
-          "it every robot goes wherever it can")
+          "Wanted overlap of each robot with the one that it shares most with, on average: the share of the "
+          "smaller area that both know. Pairs have less. Without it every robot goes wherever it can")
       ->type_name("SHARE")
       ->check(kProbability);
   command.add_option("--start", options.starts, "Where a robot starts, in metres; once for each")

@@ -21,6 +21,7 @@ Reason: TypeAlias = Literal[
     "too_little_overlap",
     "several",
     "contradicts_others",
+    "over_budget",
 ]
 """Why a pair was refused: what, were it otherwise, would let the best hypothesis be accepted."""
 

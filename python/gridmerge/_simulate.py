@@ -137,7 +137,7 @@ def simulate(
         kind: of building, one of BUILDING_KINDS.
         size: of the building: width and height [m].
         robots: how many.
-        overlap: wanted share of a robot's area that it has in common with another one, on average; None lets every
+        overlap: wanted overlap of each robot with the one that it shares most with, on average; None lets every
             robot go wherever it can.
         starts: where the robots start, (x, y) [m] in the building, one for each; None spreads them.
         headings: which way the robots set off [rad], one for each; a robot goes only to places ahead of its start. None

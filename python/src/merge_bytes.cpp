@@ -100,6 +100,7 @@ void write(const Join& join, ByteWriter& writer) {
   writer.whole(join.fixed);
   writer.whole(join.moving);
   writer.byte(static_cast<std::uint8_t>(join.outcome));
+  writer.byte(join.over_budget ? 1 : 0);
   writer.text(gridmerge::to_bytes(join.match));
 }
 
@@ -109,6 +110,7 @@ Join read_join(ByteReader& reader) {
   join.fixed = reader.whole();
   join.moving = reader.whole();
   join.outcome = static_cast<JoinOutcome>(reader.byte());
+  join.over_budget = reader.byte() != 0;
   join.match = match_from_bytes(reader.text());
   return join;
 }

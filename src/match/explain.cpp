@@ -39,6 +39,7 @@ std::string explain(const MatchResult& result, double accept_probability) {
       return "the maps agree, but on too little to be sure";
     case Reason::several:
     case Reason::contradicts_others:
+    case Reason::over_budget:
     case Reason::none:
       break;
   }

@@ -72,6 +72,8 @@ const char* name_of(Reason reason) {
       return "several";
     case Reason::contradicts_others:
       return "contradicts_others";
+    case Reason::over_budget:
+      return "over_budget";
     case Reason::none:
       break;
   }

@@ -132,6 +132,7 @@ ConsistentSet find_consistent_set_within(const JoinProblem& problem, double acce
   ConsistentSet consistent_set = kept_from(search, accept_probability);
   constexpr double kMinStep = 0.2;    // of the doubt that is still allowed, so that this ends
   constexpr double kMinDoubt = 1e-9;  // from there on nothing is surer
+  const std::vector<UsedCandidate> without_budget = consistent_set.used;
   double keep = accept_probability;
   while (expected_false_joins(consistent_set) > max_false_joins && 1.0 - keep > kMinDoubt) {
     double least = 1.0;
@@ -140,6 +141,12 @@ ConsistentSet find_consistent_set_within(const JoinProblem& problem, double acce
     }
     keep = std::min(1.0, std::max(std::nextafter(least, 2.0), keep + kMinStep * (1.0 - keep)));
     consistent_set = kept_from(search, keep);
+  }
+  const std::vector<UsedCandidate>& used = consistent_set.used;
+  for (const UsedCandidate& one : without_budget) {
+    const auto less = [](const UsedCandidate& a, const UsedCandidate& b) { return a.pair < b.pair; };
+    if (!std::binary_search(used.begin(), used.end(), one, less))
+      consistent_set.over_budget.push_back(one.pair);
   }
   return consistent_set;
 }

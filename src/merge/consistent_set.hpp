@@ -12,6 +12,8 @@ namespace gridmerge::internal {
 struct ConsistentSet {
   std::vector<NodeGroup> groups;    ///< every map is in one; ascending by first map, maps ascending
   std::vector<UsedCandidate> used;  ///< ascending by pair, at most one a pair
+  /// Pairs that a larger budget of false joins would use, ascending.
+  std::vector<std::size_t> over_budget = {};
 };
 
 /// A way to join two groups that was not taken, though it may be the true one.

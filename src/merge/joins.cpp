@@ -113,7 +113,9 @@ Join make_join(std::size_t fixed, std::size_t moving, MatchResult match, const C
   Join join = make_join(fixed, moving, std::move(match));
   const bool is_believed = join.outcome == JoinOutcome::accepted;
   if (company.used == nullptr) {
-    join.outcome = is_believed && company.is_placed ? JoinOutcome::rejected : JoinOutcome::refused;
+    join.over_budget = company.is_over_budget;
+    join.outcome =
+        is_believed && company.is_placed && !join.over_budget ? JoinOutcome::rejected : JoinOutcome::refused;
     return join;
   }
   const SE2& T = company.used->T_fixed_moving;
@@ -159,13 +161,22 @@ std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const
   return ways;
 }
 
-LeftOut left_out(std::size_t map, const std::vector<Join>& joins) {
-  const Join* nearest = nullptr;
+const Join* likeliest_join(std::size_t map, const std::vector<Join>& joins) {
+  const Join* likeliest = nullptr;
   for (const Join& join : joins) {
     if (join.fixed != map && join.moving != map) continue;
-    if (nearest == nullptr || join.match.probability > nearest->match.probability) nearest = &join;
+    if (likeliest == nullptr || join.match.probability > likeliest->match.probability) likeliest = &join;
   }
-  return {map, nearest == nullptr ? Reason::nothing_to_compare : nearest->reason()};
+  return likeliest;
+}
+
+LeftOut left_out(std::size_t map, const std::vector<Join>& joins) {
+  const bool is_over_budget = std::any_of(joins.begin(), joins.end(), [&](const Join& join) {
+    return join.over_budget && (join.fixed == map || join.moving == map);
+  });
+  if (is_over_budget) return {map, Reason::over_budget};
+  const Join* const likeliest = likeliest_join(map, joins);
+  return {map, likeliest == nullptr ? Reason::nothing_to_compare : likeliest->reason()};
 }
 
 }  // namespace gridmerge::internal

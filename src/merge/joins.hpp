@@ -57,6 +57,7 @@ Join make_join(std::size_t fixed, std::size_t moving, MatchResult match);
 struct Company {
   const CandidateJoin* used = nullptr;  ///< the candidate that the consistent set agrees with, if any
   bool is_placed = false;               ///< at least one of the two maps lies together with others
+  bool is_over_budget = false;          ///< a larger budget of false joins would have used a candidate
 };
 
 /// The same when other maps had a say.
@@ -70,7 +71,12 @@ Join inverted(Join join);
 std::vector<OpenWay> make_open_ways(const std::vector<std::size_t>& index, const JoinProblem& problem,
                                     const ConsistentSet& consistent_set);
 
-/// A map that joined nothing, for the reason of the refused join of it that was most probable.
+/// The comparison of a map that is most probable by what the two maps say by themselves; null if there is
+/// none.
+GRIDMERGE_INTERNAL_EXPORT const Join* likeliest_join(std::size_t map, const std::vector<Join>& joins);
+
+/// A map that joined nothing: because the budget of false joins has no room for a join of it, or for the
+/// reason of its likeliest one.
 LeftOut left_out(std::size_t map, const std::vector<Join>& joins);
 
 }  // namespace gridmerge::internal

@@ -15,6 +15,8 @@ const char* explain_left_out(Reason reason) {
       return "it shares too little with the others";
     case Reason::contradicts_others:
       return "what speaks for it contradicts the other maps";
+    case Reason::over_budget:
+      return "its joins are too doubtful for the budget of false joins";
     case Reason::several:
     case Reason::none:
       break;

@@ -39,6 +39,8 @@ const char* explain(const PlanPart& part) {
       return "the plan agrees, but on too little to be sure";
     case Reason::contradicts_others:
       return "what speaks for a place contradicts other maps";
+    case Reason::over_budget:
+      return "its place is too doubtful for the budget of false joins";
     case Reason::several:
     case Reason::none:
       break;

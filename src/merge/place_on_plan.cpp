@@ -138,9 +138,9 @@ Reason reason_of(const MergePart& part, const std::optional<PlanWay>& way, doubl
   if (part.voices.empty()) return Reason::nothing_to_compare;
   const Reason own = part.voices.front().match.reason;
   if (own != Reason::none) return own;
-  // Believed by itself, but not with what its members, or other parts, say; or the budget has no room for it.
+  // Believed by itself, but the budget has no room for it; or not with what its members, or other parts, say.
   const bool is_sure = way && way->probability >= accept_probability;
-  return is_sure ? Reason::several : Reason::contradicts_others;
+  return is_sure ? Reason::over_budget : Reason::contradicts_others;
 }
 
 }  // namespace

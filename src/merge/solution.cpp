@@ -25,6 +25,7 @@ std::vector<Join> make_joins(const MapStore& store, const std::vector<MapId>& ma
   const JoinProblem& problem = solution.problem;
   std::map<std::size_t, std::size_t> used;  // candidate by pair
   for (const UsedCandidate& one : solution.consistent_set.used) used[one.pair] = one.candidate;
+  const std::vector<std::size_t>& over_budget = solution.consistent_set.over_budget;
   std::vector<bool> is_placed(maps.size());
   for (const NodeGroup& group : solution.consistent_set.groups) {
     for (const PlacedNode& node : group) is_placed[node.map] = group.size() > 1;
@@ -39,7 +40,9 @@ std::vector<Join> make_joins(const MapStore& store, const std::vector<MapId>& ma
                                   : MatchResult{};
     const CandidateJoin* candidate = used.contains(i) ? &pair.candidates[used.at(i)] : nullptr;
     const bool is_in_company = is_placed[pair.fixed] || is_placed[pair.moving];
-    Join join = make_join(index[pair.fixed], index[pair.moving], match, {candidate, is_in_company});
+    const bool is_over_budget = std::binary_search(over_budget.begin(), over_budget.end(), i);
+    Join join =
+        make_join(index[pair.fixed], index[pair.moving], match, {candidate, is_in_company, is_over_budget});
     if (join.T_fixed_moving != match.T_fixed_moving || match.hypotheses.empty())
       count_common(store.at(maps[pair.fixed]).prepared, store.at(maps[pair.moving]).prepared, join);
     joins.push_back(join.fixed < join.moving ? std::move(join) : inverted(join));

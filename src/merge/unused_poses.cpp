@@ -2,6 +2,7 @@
 #include "merge/unused_poses.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "gridmerge/grid/resample.hpp"
@@ -32,6 +33,10 @@ KnownMaps known_maps(const std::vector<OccupancyGrid>& maps,
   return known;
 }
 
+double angle_between(const SE2& a, const SE2& b) {
+  return std::abs(normalize_angle(a.theta - b.theta));
+}
+
 /// The members of a component whose poses are not true if that of `anchor` is.
 std::vector<UnusedPose> overruled_by(const Member& anchor, const std::vector<Member>& members,
                                      const KnownMaps& known) {
@@ -40,12 +45,15 @@ std::vector<UnusedPose> overruled_by(const Member& anchor, const std::vector<Mem
   std::vector<UnusedPose> overruled;
   for (const Member& member : members) {
     const KnownMap& one = known.at(member.map);
-    const double distance =
-        displacement(one.extent, member.T_component_map, T_component_world * one.pose.T_world_map);
+    const SE2 T_given = T_component_world * one.pose.T_world_map;
+    const double distance = displacement(one.extent, member.T_component_map, T_given);
     const double believed = agreement_tolerance(first.extent, one.extent) +
                             kDeviationsOfKnown * sd_between(first.pose, one.pose, first.extent, one.extent);
     if (distance > believed)
-      overruled.push_back({member.map, UnusedPose::Why::overruled, distance, 0, 0.0, 0.0});
+      overruled.push_back({.map = member.map,
+                           .why = UnusedPose::Why::overruled,
+                           .distance = distance,
+                           .angle = angle_between(member.T_component_map, T_given)});
   }
   return overruled;
 }
@@ -75,21 +83,27 @@ std::optional<UnusedPose> unused_of(std::size_t map, const KnownMaps& known) {
     const double allowed = agreement_tolerance(one.extent, its.extent);
     if (best && sd / allowed >= best->sd / best->sd_allowed) continue;
     const auto why = sd > allowed ? UnusedPose::Why::not_sure_enough : UnusedPose::Why::contradicted;
-    best = UnusedPose{map, why, 0.0, other, sd, allowed};
+    best = UnusedPose{.map = map, .why = why, .other = other, .sd = sd, .sd_allowed = allowed};
   }
   return best;  // none where no other pose is known: it says nothing then
 }
 
-/// How far the given poses of two maps are from how the maps alone surely lie [m]; none where they agree, or
-/// the maps alone are not sure.
-std::optional<double> distance_from_match(const Join& join, const KnownMap& fixed, const KnownMap& moving) {
+struct Offset {
+  double distance = 0.0;  // [m]
+  double angle = 0.0;     // [rad]
+};
+
+/// How far the given poses of two maps are from how the maps alone surely lie; none where they agree, or the
+/// maps alone are not sure.
+std::optional<Offset> offset_from_match(const Join& join, const KnownMap& fixed, const KnownMap& moving) {
   if (join.match.verdict != Verdict::accepted) return std::nullopt;
   const SE2 T_given = inverse(fixed.pose.T_world_map) * moving.pose.T_world_map;
   const double distance = difference(fixed.extent, moving.extent, T_given, join.match.T_fixed_moving);
   double believed = agreement_tolerance(fixed.extent, moving.extent);
   if (!fixed.pose.fixed || !moving.pose.fixed)
     believed += kDeviationsOfKnown * sd_between(fixed.pose, moving.pose, fixed.extent, moving.extent);
-  return distance > believed ? std::optional(distance) : std::nullopt;
+  if (distance <= believed) return std::nullopt;
+  return Offset{distance, angle_between(T_given, join.match.T_fixed_moving)};
 }
 
 std::optional<UnusedPose> against_match(std::size_t map, const KnownMaps& known, const MergeResult& result) {
@@ -97,10 +111,12 @@ std::optional<UnusedPose> against_match(std::size_t map, const KnownMaps& known,
     if ((join.fixed != map && join.moving != map) || !known.contains(join.fixed) ||
         !known.contains(join.moving))
       continue;
-    if (const auto distance = distance_from_match(join, known.at(join.fixed), known.at(join.moving)))
-      return UnusedPose{map,       UnusedPose::Why::against_match,
-                        *distance, join.fixed == map ? join.moving : join.fixed,
-                        0.0,       0.0};
+    if (const auto offset = offset_from_match(join, known.at(join.fixed), known.at(join.moving)))
+      return UnusedPose{.map = map,
+                        .why = UnusedPose::Why::against_match,
+                        .distance = offset->distance,
+                        .other = join.fixed == map ? join.moving : join.fixed,
+                        .angle = offset->angle};
   }
   return std::nullopt;
 }
@@ -134,8 +150,8 @@ std::vector<ContradictedFix> find_contradicted_fixes(const std::vector<Occupancy
   std::vector<ContradictedFix> contradicted;
   for (const Join& join : result.joins) {
     if (!is_fixed(join.fixed) || !is_fixed(join.moving)) continue;
-    if (const auto distance = distance_from_match(join, known.at(join.fixed), known.at(join.moving)))
-      contradicted.push_back({join.fixed, join.moving, *distance});
+    if (const auto offset = offset_from_match(join, known.at(join.fixed), known.at(join.moving)))
+      contradicted.push_back({join.fixed, join.moving, offset->distance, offset->angle});
   }
   return contradicted;
 }

@@ -30,6 +30,7 @@ struct UnusedPose {
   std::size_t other = 0;
   double sd = 0.0;          ///< how far off the two put the maps (standard deviation [m])
   double sd_allowed = 0.0;  ///< how far off they may for known poses alone to join them [m]
+  double angle = 0.0;       ///< what of `distance` is a turn [rad], 0 or more
 };
 
 /// Which of the poses that were known beforehand merge() did not follow, ascending by map. Of the members of
@@ -46,6 +47,7 @@ struct ContradictedFix {
   std::size_t fixed = 0;   ///< index of an input map
   std::size_t moving = 0;  ///< index of a later one
   double distance = 0.0;   ///< of their fixed poses from how the two fit each other [m, see difference()]
+  double angle = 0.0;      ///< what of it is a turn [rad], 0 or more
 };
 
 /// The fixed poses that merge() followed against what the maps say: of each pair that the maps' own match

@@ -66,9 +66,8 @@ std::string g2o_text(const NamedMerge& merge) {
   // Vertices and edges come first: GTSAM reads no edge behind a line that it does not know, such as a
   // comment.
   std::string text;
-  std::string notes =
-      "# gridmerge: a vertex for each map that was placed, an edge for each join that was used\n"
-      "# metres and radians; a vertex takes a map's frame to its merged map's\n";
+  std::string notes(kG2oMark);
+  notes += "# metres and radians; a vertex takes a map's frame to its merged map's\n";
   if (is_any_bent(result))
     notes += "# of maps that are bent or stretched these are the rigid parts: this format has poses alone\n";
   std::vector<std::optional<std::size_t>> component_of(maps.size());

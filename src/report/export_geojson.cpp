@@ -69,9 +69,7 @@ std::string geojson_text(const NamedMerge& merge) {
   }
   const Json coordinate_frame{{"unit", "metre"},
                               {"axes", "x to the right, y up"},
-                              {"note",
-                               "local coordinates, no longitude and latitude; features of different merged "
-                               "maps are in different frames"},
+                              {"note", kGeoJsonMark},
                               {"frames", std::move(frames)}};
   // A feature is a line.
   std::string text = "{\"type\": \"FeatureCollection\",\n\"coordinate_frame\": ";

@@ -88,8 +88,8 @@ std::vector<std::filesystem::path> write_geotiff(const std::filesystem::path& fi
                   {{lattice.corner.x, lattice.corner.y + lattice.height * lattice.resolution},
                    lattice.resolution,
                    "frame of " + owner,
-                   fmt::format("merged map of {} maps; occupancy in percent, {} where nothing is known",
-                               components[i].members.size(), TiffPyramid::kUnknown)});
+                   fmt::format("merged map of {}{}{} where nothing is known", components[i].members.size(),
+                               kGeoTiffMark, TiffPyramid::kUnknown)});
   }
   for (const auto& one : staged) one->commit();
   return files;

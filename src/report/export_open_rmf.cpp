@@ -16,8 +16,9 @@ namespace gridmerge::internal {
 
 namespace {
 
+/// Behind the mark.
 constexpr const char* kHeader =
-    "# Where each robot's map lies, for Open-RMF's fleet adapters: copy the reference_coordinates of a\n"
+    "copy the reference_coordinates of a\n"
     "# fleet's map to the fleet's configuration, and call the level what the building's map calls it.\n"
     "# A fleet has one reference_coordinates for each level, so all its robots must use one map's frame.\n"
     "# \"robot\" has points in metres of the map's own frame, and \"rmf\" the same points in the "
@@ -123,7 +124,7 @@ std::string quoted(const std::string& text) {
 
 std::string open_rmf_text(const NamedMerge& merge) {
   const auto& [names, maps, result] = merge;
-  std::string text = kHeader;
+  std::string text = std::string(kOpenRmfMark) + kHeader;
   const auto out = std::back_inserter(text);
   text += "merged_maps:\n";
   std::vector<Point2> upper_left;

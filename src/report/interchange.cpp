@@ -22,14 +22,15 @@ struct Format {
   ExportFormat format;
   const char* name;
   const char* file;
+  std::string_view mark;
   std::string (*text)(const NamedMerge&);  // null of one that is no text
 };
 
 constexpr std::array<Format, 4> kFormats{{
-    {ExportFormat::g2o, "g2o", "merged.g2o", &g2o_text},
-    {ExportFormat::open_rmf, "open-rmf", "open_rmf.yaml", &open_rmf_text},
-    {ExportFormat::geojson, "geojson", "merged.geojson", &geojson_text},
-    {ExportFormat::geotiff, "geotiff", "merged.tif", nullptr},
+    {ExportFormat::g2o, "g2o", "merged.g2o", kG2oMark, &g2o_text},
+    {ExportFormat::open_rmf, "open-rmf", "open_rmf.yaml", kOpenRmfMark, &open_rmf_text},
+    {ExportFormat::geojson, "geojson", "merged.geojson", kGeoJsonMark, &geojson_text},
+    {ExportFormat::geotiff, "geotiff", "merged.tif", kGeoTiffMark, nullptr},
 }};
 
 const Format& of(ExportFormat format) {
@@ -83,8 +84,16 @@ const char* export_file(ExportFormat format) {
   return of(format).file;
 }
 
+std::string_view internal::export_mark(ExportFormat format) {
+  return of(format).mark;
+}
+
+bool internal::is_text(ExportFormat format) {
+  return of(format).text != nullptr;
+}
+
 std::string export_text(ExportFormat format, const NamedMerge& merge) {
-  if (of(format).text == nullptr)
+  if (!is_text(format))
     throw std::invalid_argument(std::string(of(format).name) + " is no text: write_export() writes it");
   check_placed(merge);
   return of(format).text(merge);
@@ -93,12 +102,11 @@ std::string export_text(ExportFormat format, const NamedMerge& merge) {
 std::vector<std::filesystem::path> write_export(ExportFormat format, const std::filesystem::path& file,
                                                 const std::vector<std::filesystem::path>& inputs,
                                                 const NamedMerge& merge) {
-  const bool is_text = of(format).text != nullptr;
-  const std::size_t files = is_text ? 1 : std::max<std::size_t>(1, merge.result.components.size());
+  const std::size_t files = is_text(format) ? 1 : std::max<std::size_t>(1, merge.result.components.size());
   for (std::size_t i = 0; i < files; ++i) protect(numbered(file, i), inputs);
   try {
     check_placed(merge);
-    if (!is_text) return write_geotiff(file, merge);
+    if (!is_text(format)) return write_geotiff(file, merge);
     write_file_atomically(file, export_text(format, merge));
   } catch (const std::invalid_argument& error) {
     throw FileError(file, std::string("is not written: ") + error.what());

@@ -12,6 +12,21 @@
 
 namespace gridmerge::internal {
 
+// What every file of a format holds, and no other program's does.
+inline constexpr std::string_view kG2oMark =
+    "# gridmerge: a vertex for each map that was placed, an edge for each join that was used\n";
+inline constexpr std::string_view kOpenRmfMark =
+    "# Where each robot's map lies, for Open-RMF's fleet adapters: ";
+inline constexpr std::string_view kGeoJsonMark =
+    "local coordinates, no longitude and latitude; features of different merged maps are in different frames";
+inline constexpr std::string_view kGeoTiffMark = " maps; occupancy in percent, ";
+
+/// That of a format, by which an export is known again.
+std::string_view export_mark(ExportFormat format);
+
+/// Whether export_text() has the format.
+bool is_text(ExportFormat format);
+
 // The texts of export_text(), one a format that is a text.
 std::string g2o_text(const NamedMerge& merge);
 std::string open_rmf_text(const NamedMerge& merge);

@@ -22,6 +22,7 @@
 #include "io/destination.hpp"
 #include "io/directory_names.hpp"
 #include "io/made_directories.hpp"
+#include "report/earlier_merge.hpp"
 #include "report/output_names.hpp"
 #include "report/page.hpp"
 
@@ -35,7 +36,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPreview = "preview.png";
 constexpr const char* kReport = "report.html";
-constexpr const char* kTransforms = "transforms.json";
 
 // merged.yaml, merged_2.yaml, and so on, and the same as .pgm.
 bool is_merged_map(const fs::path& file) {
@@ -85,23 +85,21 @@ std::vector<fs::path> outputs_in(const fs::path& directory) {
   return outputs;
 }
 
-// Maps and exports of an earlier run that this one has none for. Who asks for an export writes it later.
-void remove_stale(FileSet& files, const fs::path& directory, std::size_t components) {
-  std::error_code error;
-  const bool is_of_a_merge = fs::exists(directory / kTransforms, error);
+// Maps and exports of an earlier merge that this one has none for. Who asks for an export writes it later.
+std::vector<fs::path> remove_stale(FileSet& files, const fs::path& directory, std::size_t components) {
   std::set<fs::path> current;
   for (std::size_t i = 0; i < components; ++i) {
-    const fs::path yaml = directory / component_file(i);
+    const fs::path yaml = component_file(i);
     current.insert(yaml);
     current.insert(fs::path(yaml).replace_extension(".pgm"));
   }
-  for (const fs::path& path : outputs_in(directory)) {
-    const fs::path name = path.filename();
-    const bool is_stale = is_merged_map(name)
-                              ? !current.contains(path) && !fs::is_directory(path, error)
-                              : is_export(name) && is_of_a_merge && fs::is_regular_file(path, error);
-    if (is_stale) files.remove(name.string());
+  std::vector<fs::path> removed;
+  for (const std::string& name : earlier_outputs(directory)) {
+    if (current.contains(name)) continue;
+    files.remove(name);
+    removed.push_back(directory / name);
   }
+  return removed;
 }
 
 // No file that a map was read from may bear the name of an output, whichever way it was named itself.
@@ -166,8 +164,8 @@ void prepare_merge_output(const fs::path& directory, const std::vector<fs::path>
     check_destination(directory / name);
 }
 
-void write_merge_output(const fs::path& directory, const std::vector<fs::path>& inputs,
-                        const NamedMerge& merge) {
+std::vector<fs::path> write_merge_output(const fs::path& directory, const std::vector<fs::path>& inputs,
+                                         const NamedMerge& merge) {
   FileSet files(directory, FileSet::IfMissing::make);
   protect(inputs, directory);
   const std::vector<Component>& components = merge.result.components;
@@ -184,8 +182,9 @@ void write_merge_output(const fs::path& directory, const std::vector<fs::path>& 
   files.add(kPreview, preview);
   files.add(kReport, report);
   files.add(kTransforms, transforms_json(merge.names, merge.result));
-  remove_stale(files, directory, components.size());
+  std::vector<fs::path> removed = remove_stale(files, directory, components.size());
   files.commit();
+  return removed;
 }
 
 void write_report(const fs::path& directory, const std::vector<fs::path>& inputs, const NamedMerge& merge) {

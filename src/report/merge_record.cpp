@@ -20,6 +20,7 @@
 #include "report/fused_places.hpp"
 #include "report/json_reader.hpp"
 #include "report/json_values.hpp"
+#include "report/output_names.hpp"
 #include "report/plan_json.hpp"
 #include "report/record_values.hpp"
 #include "report/told_joins.hpp"
@@ -30,7 +31,6 @@ using namespace internal;
 
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 constexpr std::size_t kMaxEqual = 100;  // of one name: what is said of them is looked for among all pairs
 constexpr double kInfinity = std::numeric_limits<double>::max();
 
@@ -162,15 +162,17 @@ class RecordReader {
       join.fixed = map_number(row.at(place[0]));
       join.moving = map_number(row.at(place[1]));
       if (join.fixed == join.moving) row.fail("is of a map and itself");
-      join.match.reason = read_reason(row.at(place[2]));
-      if (join.match.reason == Reason::none) row.at(place[2]).fail("is none");
+      const Reason reason = read_reason(row.at(place[2]));
+      if (reason == Reason::none) row.at(place[2]).fail("is none");
+      join.over_budget = reason == Reason::over_budget;
+      join.match.reason = join.over_budget ? Reason::several : reason;
       join.probability = read_share(row.at(place[3]));
       join.T_fixed_moving = {row.at(place[4]).number_in(-kFarthest, kFarthest),
                              row.at(place[5]).number_in(-kFarthest, kFarthest),
                              row.at(place[6]).number_in(-std::numbers::pi, std::numbers::pi)};
       static_cast<PairPose&>(join.match) = join;
       join.match.hypotheses = {{join.T_fixed_moving, 0.0, join.probability}};
-      ++rows[join.match.reason];
+      ++rows[reason];
       record_.result.joins.push_back(std::move(join));
     }
     // In the order in which the merge compared them.
@@ -184,7 +186,7 @@ class RecordReader {
   void read_more_refused(const JsonReader& json, const std::map<Reason, std::size_t>& rows) {
     std::size_t counted = 0, in_rows = 0;
     const JsonReader reasons = json.at("reasons");
-    for (int i = 0; i <= static_cast<int>(Reason::contradicts_others); ++i) {
+    for (int i = 0; i <= static_cast<int>(Reason::over_budget); ++i) {
       const auto reason = static_cast<Reason>(i);
       if (reason == Reason::none || !reasons.has(name_of(reason))) continue;
       const JsonReader count = reasons.at(name_of(reason));
@@ -238,6 +240,7 @@ class RecordReader {
     if (join.used() && json.has("sd")) set_deviation(join, json.at("sd").number_in(0.0, kInfinity));
     const JsonReader reason = json.at("reason");
     const Reason told = reason.is_null() ? Reason::none : read_reason(reason);
+    join.over_budget = told == Reason::over_budget && join.outcome == JoinOutcome::refused;
     if (told != join.reason() && json.has("by_themselves")) reason.fail("does not go with the outcome");
     return join;
   }
@@ -326,11 +329,11 @@ MergeRecord parse_transforms(const std::filesystem::path& file, std::string_view
 
 MergeRecord read_transforms(const std::filesystem::path& file) {
   FileReader reader(file, NamedBy::file);
-  return parse_transforms(file, reader.read_all(kMaxBytes));
+  return parse_transforms(file, reader.read_all(kMaxRecordBytes));
 }
 
 MergeRecord read_merge_record(const std::filesystem::path& directory) {
-  const std::filesystem::path file = directory / "transforms.json";
+  const std::filesystem::path file = directory / kTransforms;
   std::error_code error;
   if (!std::filesystem::exists(file, error))
     throw FileError(directory, "holds no transforms.json: it is not what 'gridmerge merge' has written to");

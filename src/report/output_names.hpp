@@ -8,6 +8,9 @@
 
 namespace gridmerge::internal {
 
+inline constexpr const char* kTransforms = "transforms.json";
+inline constexpr std::size_t kMaxRecordBytes = std::size_t{256} << 20;  // of a transforms.json
+
 /// Whether a file of this name in the output directory is a merge's own: written, replaced or removed by it.
 GRIDMERGE_INTERNAL_EXPORT bool is_merge_output(const std::filesystem::path& name);
 

@@ -112,8 +112,9 @@ std::vector<Canvas> legend(const std::vector<std::string>& names, std::span<cons
   if (entries.empty()) return entries;
   using Colours = PreviewColours;
   entries.push_back(legend_entry(Colours::kSharedWall, Colours::kSharedFree, "in two maps or more", width));
-  entries.push_back(legend_entry(Colours::kDisagreement, shared_colour(7, 1),
-                                 "maps disagree: half against half, or one against seven", width));
+  entries.push_back(
+      legend_entry(Colours::kDisagreement, shared_colour(7, 1),
+                   "maps disagree: bright if half say wall and half say free, pale if few differ", width));
   return entries;
 }
 

@@ -9,9 +9,9 @@ double read_share(const JsonReader& json) {
 }
 
 Reason read_reason(const JsonReader& json) {
-  return one_of(json,
-                std::array{Reason::none, Reason::nothing_to_compare, Reason::ambiguous, Reason::contradiction,
-                           Reason::too_little_overlap, Reason::several, Reason::contradicts_others});
+  return one_of(json, std::array{Reason::none, Reason::nothing_to_compare, Reason::ambiguous,
+                                 Reason::contradiction, Reason::too_little_overlap, Reason::several,
+                                 Reason::contradicts_others, Reason::over_budget});
 }
 
 }  // namespace gridmerge::internal

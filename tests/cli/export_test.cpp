@@ -22,20 +22,37 @@ TEST_F(Export, OfAnEarlierMergeIsRemoved) {
   ASSERT_EQ(merge({"--export", "g2o", "--export", "geojson", "--export", "geotiff"}).exit_code, 0);
   ASSERT_TRUE(std::filesystem::exists(output + "/merged.g2o"));
   ASSERT_TRUE(std::filesystem::exists(output + "/merged.tif"));
-  std::ofstream(output + "/merged_2.tif") << "of a second merged map";
+  std::ofstream(output + "/merged_2.tif") << "mine";
   std::ofstream(output + "/merged_x.tif") << "mine";
-  ASSERT_EQ(merge({"--export", "geojson"}).exit_code, 0);
+  std::ofstream(output + "/open_rmf.yaml") << "mine";
+  const Outcome outcome = merge({"--export", "geojson"});
+  ASSERT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.out.find("removed: merged.g2o, merged.tif (of an earlier merge)\n"), std::string::npos)
+      << outcome.out;
   EXPECT_FALSE(std::filesystem::exists(output + "/merged.g2o")) << "it tells of another merge";
   EXPECT_FALSE(std::filesystem::exists(output + "/merged.tif"));
-  EXPECT_FALSE(std::filesystem::exists(output + "/merged_2.tif"));
+  EXPECT_TRUE(std::filesystem::exists(output + "/merged_2.tif"));
+  EXPECT_EQ(read_file(output + "/open_rmf.yaml"), "mine");
   EXPECT_TRUE(std::filesystem::exists(output + "/merged_x.tif"));
   EXPECT_TRUE(std::filesystem::exists(output + "/merged.geojson"));
   // What lies in a folder into which nothing was merged yet is none of an earlier merge.
   const std::string fresh = directory.file("fresh");
   std::filesystem::create_directory(fresh);
   std::ofstream(fresh + "/merged.g2o") << "mine";
-  ASSERT_EQ(run({"merge", left, right, "-o", fresh}).exit_code, 0);
+  const Outcome first = run({"merge", left, right, "-o", fresh});
+  ASSERT_EQ(first.exit_code, 0);
+  EXPECT_EQ(first.out.find("removed"), std::string::npos) << first.out;
   EXPECT_EQ(read_file(fresh + "/merged.g2o"), "mine");
+}
+
+TEST_F(Export, AMergeOfNothingNamesWhatItRemoves) {
+  ASSERT_EQ(merge({"--export", "g2o"}).exit_code, 0);
+  const Outcome outcome = run({"merge", left, other, "-o", output});
+  ASSERT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.out.find("removed: merged.yaml, merged.pgm, merged.g2o (of an earlier merge)\n"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_FALSE(std::filesystem::exists(output + "/merged.yaml"));
 }
 
 TEST_F(Export, IsWrittenBesideTheResultOrWhereItIsTold) {

@@ -54,7 +54,8 @@ TEST_F(KnownPoses, AFixedMapThatIsLeftOutIsNamed) {
   const std::string blank = write_map(directory, "blank", make_grid(40, 30, 0.1));
   const Outcome outcome = run({"merge", left, right, blank, "--fix", blank, "-o", output});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
-  EXPECT_NE(outcome.out.find(blank + ": --fix has no effect, as the map is left out\n"), std::string::npos)
+  EXPECT_NE(outcome.out.find(blank + ": --fix has no effect, as the map is left out\ntry: --init "),
+            std::string::npos)
       << outcome.out;
 }
 
@@ -70,6 +71,38 @@ TEST_F(KnownPoses, FixedMapsMakeTheFrame) {
   expect_near(members.at(1).at("transform"), {100.0, -50.0, 1.5}, 1e-12, 1e-12);
   EXPECT_TRUE(
       Json::parse(read_file(output + "/transforms.json")).at("components").at(0).at("frame").is_null());
+}
+
+TEST_F(KnownPoses, OnePoseAloneIsToldToSayNothing) {
+  const std::string poses = directory.write("poses.tsv", "map\tx\ty\ttheta\nright.yaml\t100\t-50\t1.5\n");
+  const std::vector<std::string> words{"merge", left, right, "-o", output, "--init", poses};
+  const Outcome outcome = run(words);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.err.find(poses + ": one pose alone says nothing about how maps lie"), std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.err.find("--fix " + right), std::string::npos) << outcome.err;
+  std::vector<std::string> fixed = words;
+  fixed.insert(fixed.end(), {"--fix", right});
+  EXPECT_EQ(run(fixed).err, "");
+}
+
+TEST_F(KnownPoses, NothingBendsMapsThatAreFixed) {
+  // Half a metre off, so that walls lie double.
+  const std::string poses = directory.write("poses.tsv", "map\tx\ty\ttheta\n" + left + "\t0\t0\t0\n" + right +
+                                                             "\t" + std::to_string(T_left_right.x + 0.4) +
+                                                             "\t" + std::to_string(T_left_right.y) + "\t" +
+                                                             std::to_string(T_left_right.theta) + "\n");
+  const std::vector<std::string> words{"merge", left,    right, "-o",    output, "--init",
+                                       poses,   "--fix", left,  "--fix", right};
+  std::vector<std::string> verbose = words, elastic = words;
+  verbose.emplace_back("--verbose");
+  const std::string told = run(verbose).out;
+  EXPECT_NE(told.find("% of the walls that several maps saw lie double\n"), std::string::npos) << told;
+  EXPECT_EQ(told.find("--elastic"), std::string::npos) << told;
+  elastic.emplace_back("--elastic");
+  const Outcome bent = run(elastic);
+  EXPECT_NE(bent.out.find("no map is bent: --fix holds all of them as they are\n"), std::string::npos)
+      << bent.out;
 }
 
 TEST_F(KnownPoses, InitialPosesJoinWhatTheMapsAloneDoNot) {
@@ -145,6 +178,8 @@ TEST_F(KnownPoses, APoseThatIsNotBelievedIsNamedWithTheDistance) {
   const Outcome turned = run({"merge", left, right, "--init", table(T_left_right, degrees), "-o", output});
   EXPECT_NE(turned.err.find("more than a turn: it must be in radians"), std::string::npos) << turned.err;
   EXPECT_NE(turned.out.find("the given pose is not believed"), std::string::npos) << turned.out;
+  EXPECT_NE(turned.out.find(" degrees from where the maps fit"), std::string::npos) << turned.out;
+  EXPECT_EQ(far.out.find(" degrees from where"), std::string::npos) << far.out;
   EXPECT_NE(turned.out.find("look like degrees"), std::string::npos) << turned.out;
 }
 

@@ -124,6 +124,17 @@ TEST_F(Measure, ATermWithoutCellsIsNull) {
   EXPECT_EQ(run({"measure", blank, blank, "--pose", "0,0,0", "--json"}).exit_code, 0);
 }
 
+TEST_F(Measure, TellsThatNoKnownCellIsInCommon) {
+  const std::string blank = write_map(directory, "blank", make_grid(30, 30, 0.1));
+  const Outcome outcome = run({"measure", left, blank, "--pose", "-3,3,0"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("\n  no known cell in common: the maps say nothing of this pose\n"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(outcome.out.find("0.0000\n  the engine"), std::string::npos) << outcome.out;
+  EXPECT_EQ(run({"measure", left, right, "--pose", truth}).out.find("in common:"), std::string::npos);
+}
+
 TEST_F(Measure, PosesThatPutTheMapsApartAreAnError) {
   for (const char* pose : {"100,0,0", "1e5,0,0", "1e300,0,0"})
     expect_error(run({"measure", left, right, "--pose", pose}), right, "puts the maps apart");

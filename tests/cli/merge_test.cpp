@@ -192,9 +192,45 @@ TEST_F(Merge, NamesTheOptionsByWhichTwoMapsWouldBeJoined) {
       run({"merge", left, right, "--accept", "0.5", "--max-false-joins", "0", "-o", output});
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_NE(
-      outcome.out.find("\n     a higher --max-false-joins asks for less: this join alone is false in 0.0"),
+      outcome.out.find(
+          "\n     a higher --max-false-joins asks for less: this join alone is false with probability 0.0"),
       std::string::npos)
       << outcome.out;
+}
+
+TEST_F(Merge, SaysWhereTheBudgetIsWhatLeavesAMapOut) {
+  const auto merge_within = [&](const std::string& budget) {
+    return run({"merge", left, right, other, "--accept", "0.5", "--max-false-joins", budget, "-o", output})
+        .out;
+  };
+  const std::string pair = left + " and " + right;
+  const std::string none = merge_within("0");
+  EXPECT_NE(none.find("left out: " + left + ": its joins are too doubtful for the budget of false joins\n"),
+            std::string::npos)
+      << none;
+  EXPECT_NE(none.find("over budget: " + pair), std::string::npos) << none;
+  EXPECT_EQ(none.find("contradict"), std::string::npos) << none;
+  const Json join = Json::parse(read_file(output + "/transforms.json")).at("joins").at(0);
+  EXPECT_EQ(join.at("outcome"), "refused");
+  EXPECT_EQ(join.at("reason"), "over_budget");
+  EXPECT_EQ(run({"report", output}).err.find("reason"), std::string::npos);
+  const std::string enough = merge_within("1");
+  EXPECT_EQ(enough.find("budget"), std::string::npos) << enough;
+}
+
+TEST_F(Merge, NamesWhatToAskOfAMapThatIsLeftOut) {
+  const std::string out = run({"merge", left, right, other, "-o", output}).out;
+  const std::size_t at = out.find("\ntry: gridmerge match ");
+  ASSERT_NE(at, std::string::npos) << out;
+  EXPECT_NE(out.substr(at, out.find('\n', at + 1) - at).find(other), std::string::npos) << out;
+}
+
+TEST_F(Merge, HelpSaysWhatTheThoroughLookIsFor) {
+  const std::string help = run({"merge", "--help"}).out;
+  EXPECT_EQ(help.find("decides nothing"), std::string::npos) << help;
+  EXPECT_NE(run({"merge", left, right, "-o", output, "--search", "random-walk", "--strategy", "joint"})
+                .err.find("--search exhaustive, quick or thorough"),
+            std::string::npos);
 }
 
 TEST_F(Merge, LeavesOutMapsWithNothingToGoBy) {

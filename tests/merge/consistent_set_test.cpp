@@ -394,6 +394,12 @@ TEST(ConsistentSetWithin, MakesAsManyJoinsAsTheBudgetOfFalseOnesAllows) {
   EXPECT_EQ(joins(0.1), 2U);
   EXPECT_EQ(joins(0.03), 1U);
   EXPECT_EQ(joins(0.0), 0U);
+  const auto over_budget = [&](double budget) {
+    return find_consistent_set_within(problem, 0.8, budget).over_budget.size();
+  };
+  EXPECT_EQ(over_budget(1.0), 0U);
+  EXPECT_EQ(over_budget(0.1), 1U);
+  EXPECT_EQ(over_budget(0.0), 3U);
   for (const double budget : {1.0, 0.1, 0.03, 0.001, 0.0})
     EXPECT_LE(expected_false_joins(find_consistent_set_within(problem, 0.8, budget)), budget);
 }

@@ -77,23 +77,52 @@ TEST(MergeOutput, MakesTheDirectory) {
 
 TEST(MergeOutput, RemovesTheMapsOfAnEarlierRunAndNothingElse) {
   const TemporaryDirectory directory;
-  const Names others{"merged_x.yaml", "merged.yaml.old", "merged_.pgm",
-                     "merged.txt",    "my_merged.yaml",  "notes",
-                     "merged_1.pgm",  "merged_02.pgm",   "merged_20240512.pgm"};
+  const Names others{"merged_x.yaml",       "merged.yaml.old", "merged_.pgm",  "merged.txt",
+                     "my_merged.yaml",      "notes",           "merged_1.pgm", "merged_02.pgm",
+                     "merged_20240512.pgm", "merged_3.yaml",   "merged_3.pgm", "merged_2.tif",
+                     "merged.tif",          "open_rmf.yaml",   "merged.g2o"};
   for (const std::string& name : others) directory.write(name, "mine");
-  directory.write("merged_17.yaml", "of an earlier run");
   directory.write("merged_18.yaml/notes", "mine");
   write_merge_output(directory.path(), kInputs, {kNames, kMaps, two_components()});
-  write_merge_output(directory.path(), kInputs, {kNames, kMaps, one_component()});
+  EXPECT_EQ(write_merge_output(directory.path(), kInputs, {kNames, kMaps, one_component()}),
+            (Paths{directory.file("merged_2.yaml"), directory.file("merged_2.pgm")}));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged_2.yaml")));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged_2.pgm")));
-  EXPECT_FALSE(std::filesystem::exists(directory.file("merged_17.yaml")));
   EXPECT_TRUE(std::filesystem::exists(directory.file("merged.yaml")));
-  write_merge_output(directory.path(), kInputs, {kNames, kMaps, test::merged(kMaps, {})});
+  EXPECT_EQ(write_merge_output(directory.path(), kInputs, {kNames, kMaps, test::merged(kMaps, {})}),
+            (Paths{directory.file("merged.yaml"), directory.file("merged.pgm")}));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged.yaml")));
   EXPECT_FALSE(std::filesystem::exists(directory.file("merged.pgm")));
   EXPECT_EQ(read_file(directory.file("merged_18.yaml/notes")), "mine");
   for (const std::string& name : others) EXPECT_EQ(read_file(directory.file(name)), "mine") << name;
+}
+
+TEST(MergeOutput, RemovesNothingWhereNothingWasMerged) {
+  for (const std::string transforms :
+       {"", "{\"frames\": []}", "no JSON", "[]",
+        "{\"components\": [{\"map\": \"../x\"}], \"joins\": [], \"left_out\": []}"}) {
+    const TemporaryDirectory directory;
+    const Names mine{"merged_2.pgm", "merged_2.yaml", "merged.tif"};
+    for (const std::string& name : mine) directory.write(name, "mine");
+    if (!transforms.empty()) directory.write("transforms.json", transforms);
+    EXPECT_EQ(write_merge_output(directory.path(), kInputs, {kNames, kMaps, one_component()}), Paths{});
+    for (const std::string& name : mine) EXPECT_EQ(read_file(directory.file(name)), "mine") << name;
+  }
+}
+
+TEST(MergeOutput, RemovesTheExportsOfAnEarlierMerge) {
+  const TemporaryDirectory directory;
+  const MergeResult result = two_components();
+  write_merge_output(directory.path(), kInputs, {kNames, kMaps, result});
+  Paths exports;
+  for (const ExportFormat format : export_formats()) {
+    const Paths files =
+        write_export(format, directory.file(export_file(format)), kInputs, {kNames, kMaps, result});
+    exports.insert(exports.end(), files.begin(), files.end());
+  }
+  ASSERT_EQ(exports.size(), 5u);
+  EXPECT_EQ(write_merge_output(directory.path(), kInputs, {kNames, kMaps, result}), exports);
+  for (const std::filesystem::path& file : exports) EXPECT_FALSE(std::filesystem::exists(file)) << file;
 }
 
 TEST(MergeOutput, NeverReplacesAnInput) {

@@ -113,6 +113,20 @@ TEST(MergeRecord, KeepsOfARefusedJoinOnlyWhatMayBeTrue) {
   EXPECT_EQ(read.result.joins[3].match.hypotheses.size(), 2u) << "of a join that was used all are kept";
 }
 
+TEST(MergeRecord, KeepsThatTheBudgetRefusesAJoin) {
+  MergeResult result = any_result();
+  Join& refused = result.joins[2];
+  ASSERT_EQ(refused.outcome, JoinOutcome::refused);
+  refused.over_budget = true;
+  refused.match.verdict = Verdict::accepted;
+  refused.match.reason = Reason::none;
+  const std::string text = transforms_json(kNames, result);
+  EXPECT_TRUE(contains(text, "\"reason\":\"over_budget\"")) << text;
+  const MergeRecord read = parse(text);
+  EXPECT_EQ(read.result.joins[2].reason(), Reason::over_budget);
+  EXPECT_EQ(transforms_json(read.names, read.result), text);
+}
+
 TEST(MergeRecord, ReadsWhatEarlierVersionsWrote) {
   Json json = any_json();
   json["left_out_reasons"] = Json::array();

@@ -28,7 +28,11 @@ test("transforms are copied to the bit", async () => {
   await page.locator("tr.more").nth(1).locator("button").nth(2).click();
   const { x, y, theta } = expected[1];
   assert.equal(await lastCopied(page), "ros2 run tf2_ros static_transform_publisher " +
-    `--x ${x} --y ${y} --yaw ${theta} --frame-id merged --child-frame-id robot_2\n`);
+    `--x ${x} --y ${y} --yaw ${theta} --frame-id map --child-frame-id robot_2\n`);
+  await page.fill("#tf-parent", "site");
+  await page.fill("#tf-child", "{name}/map");
+  await page.locator("tr.more").nth(1).locator("button").nth(2).click();
+  assert.ok((await lastCopied(page)).endsWith(" --frame-id site --child-frame-id robot_2/map\n"));
   await page.waitForSelector("#panel-transforms button:text-is('Copied')");
   await tab.screenshot("transforms");
   await tab.close();

@@ -34,6 +34,23 @@ export function asStaticTransforms(parent: string, poses: NamedPose[], children:
   }).join("");
 }
 
+/**
+ * What the maps' frames are called below `parent`, for a name that holds {name} where each map's own id is to stand. Without it
+ * several maps get theirs in front.
+ */
+export function childFrames(name: string, ids: string[], parent: string): string[] {
+  const isEach = name.includes("{name}") || ids.length === 1;
+  return ids.map((id) => {
+    const child = frameName(isEach ? name.split("{name}").join(id) : `${id}/${name}`);
+    return child === parent ? `${id}/${child}` : child;
+  });
+}
+
+/** What TF, and a shell, can take of a frame's name that somebody typed. */
+export function frameName(text: string): string {
+  return text.replace(/[^A-Za-z0-9_./-]+/g, "_").replace(/^[/-]+|\/+$/g, "") || "map";
+}
+
 /** Names for TF frames, all different: file names without folder and ending where that tells maps apart. */
 export function frameIds(names: string[]): string[] {
   const clean = (text: string) => text.replace(/[^A-Za-z0-9]+/g, "_").replace(/^_+|_+$/g, "") || "map";

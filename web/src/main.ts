@@ -270,7 +270,7 @@ function build(report: Report): void {
   // What a new page would end: a map in hand, a pointer that is down, a field that is filled in, a dialogue. And a join, which may
   // have another place in the next answer.
   const isBusy = () => state.handled !== null || state.scene.id.kind === "join" || stage.canvas.classList.contains("grabbing") ||
-    document.querySelector("dialog[open], input[type=number]:focus, input[type=search]:focus, select:focus") !== null;
+    document.querySelector("dialog[open], input[type=number]:focus, input[type=text]:focus, input[type=search]:focus, select:focus") !== null;
   const following = report.answer === undefined ? null : follow(report.answer, { isBusy, keepView: () => shared.keep() });
   replace(document.getElementById("app")!,
     h("header", {},

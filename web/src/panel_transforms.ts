@@ -3,7 +3,7 @@ import { mapLabel } from "./badge";
 import { copyButton } from "./clipboard";
 import type { Shape } from "./deformation";
 import { h, replace } from "./dom";
-import { type NamedPose, asJson, asStaticTransforms, asYaml, frameIds } from "./formats";
+import { type NamedPose, asJson, asStaticTransforms, asYaml, childFrames, frameIds, frameName } from "./formats";
 import { degrees, fixed, probability } from "./numbers";
 import { type Member, isLarge } from "./report";
 import { moreNote, mostRows, searchBox } from "./search";
@@ -30,6 +30,9 @@ export class TransformsPanel {
   /** Apart from the search, which keeps the focus while what it found changes. */
   private readonly content: HTMLElement;
   private pending = 0;
+  /** How frames are called in TF: that of the scene as map servers do, and each map's. */
+  private readonly parent = h("input", { type: "text", id: "tf-parent", value: "map", spellcheck: "false" });
+  private readonly child = h("input", { type: "text", id: "tf-child", value: "{name}", spellcheck: "false" });
 
   constructor(state: State) {
     this.state = state;
@@ -66,7 +69,9 @@ export class TransformsPanel {
           ...["x [m]", "y [m]", "θ [rad]"].map((head) => h("th", { class: "number", scope: "col" }, head)))),
         h("tbody", {}, ...rows))),
       moreNote(large ? maps.length : 0, "map"),
-      h("div", { class: "buttons" }, h("span", {}, "Copy all:"), ...this.buttons("all transforms", () => state.placed().map(({ map }) => map))));
+      h("div", { class: "buttons" }, h("span", {}, "Copy all:"), ...this.buttons("all transforms", () => state.placed().map(({ map }) => map))),
+      h("div", { class: "pose-inputs", title: "The frames of TF commands. {name} is the map's file without its ending" },
+        h("label", {}, "TF from ", this.parent), h("label", {}, "to ", this.child)));
   }
 
   /** One with the pose, one with how sure it is. */
@@ -104,13 +109,16 @@ export class TransformsPanel {
     const { report, scene } = this.state;
     const poses = (): NamedPose[] => maps().map((map) => ({ name: report.maps[map].name, transform: this.state.poseOf(map)! }));
     const frame = scene.frame === null ? report.plan?.name ?? "world" : report.maps[scene.frame].name;
-    // The frame that all are in is one more, whatever maps are called.
-    const [parent, ...ids] = frameIds([scene.component === null ? "scene" : scene.title, ...report.maps.map((map) => map.name)]);
-    const children = () => maps().map((map) => ids[map]);
+    const staticTransforms = (): string => {
+      const parent = frameName(this.parent.value);
+      // The frame that all are in is one more, whatever maps are called.
+      const [, ...ids] = frameIds([parent, ...report.maps.map((map) => map.name)]);
+      return asStaticTransforms(parent, poses(), childFrames(this.child.value, maps().map((map) => ids[map]), parent));
+    };
     return [
       copyButton("YAML", () => asYaml(frame, poses()), `Copy ${whose} as YAML`),
       copyButton("JSON", () => asJson(frame, poses()), `Copy ${whose} as JSON`),
-      copyButton("TF", () => asStaticTransforms(parent, poses(), children()), `Copy ${whose} for static_transform_publisher`),
+      copyButton("TF", staticTransforms, `Copy ${whose} for static_transform_publisher`),
     ];
   }
 }

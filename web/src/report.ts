@@ -59,6 +59,7 @@ export const reasons: Record<string, string> = {
   several: "several things speak against it",
   nothing_to_compare: "nothing to compare",
   contradicts_others: "contradicts the other maps",
+  over_budget: "too doubtful for the budget of false joins (--max-false-joins)",
 };
 
 export interface Hypothesis {

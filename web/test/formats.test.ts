@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { test } from "node:test";
-import { asInitialPoses, asJson, asStaticTransforms, asYaml, frameIds, mergeCommand } from "../src/formats";
+import { asInitialPoses, asJson, asStaticTransforms, asYaml, childFrames, frameIds, frameName, mergeCommand } from "../src/formats";
 
 const hostileNames = [
   "$(touch /tmp/owned)", "`id`; rm -rf ~", "a b'c\"d", "</script><script>alert(1)</script>", "-o", "two\nlines", "tab\there",
@@ -54,6 +54,18 @@ test("frames are named after files, with the folder where that tells maps apart"
   assert.deepEqual(frameIds(["a/map.yaml", "b/map.yaml"]), ["a_map", "b_map"]);
   assert.deepEqual(frameIds(["a-b.yaml", "a b.yaml"]), ["a_b", "a_b_2"]);
   assert.deepEqual(frameIds(["merged.yaml", "m/merged.yaml"]), ["merged", "m_merged"]);
+});
+
+test("frames are called as somebody asks", () => {
+  const ids = ["robot_1", "robot_2"];
+  assert.deepEqual(childFrames("{name}", ids, "map"), ids);
+  assert.deepEqual(childFrames("{name}/map", ids, "map"), ["robot_1/map", "robot_2/map"]);
+  assert.deepEqual(childFrames("tb1/map", ["robot_1"], "map"), ["tb1/map"]);
+  assert.deepEqual(childFrames("map", ids, "map"), ["robot_1/map", "robot_2/map"], "no two frames have one name");
+  assert.deepEqual(childFrames("map", ["robot_1"], "map"), ["robot_1/map"]);
+  assert.equal(frameName(""), "map");
+  assert.equal(frameName("/tb1/map"), "tb1/map");
+  for (const name of hostileNames) assert.match(frameName(name), /^[A-Za-z0-9_.][A-Za-z0-9_./-]*$/);
 });
 
 test("a shell reads back every name that the merge command holds", () => {

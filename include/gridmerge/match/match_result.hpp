@@ -28,6 +28,8 @@ enum class Reason {
   too_little_overlap,  ///< they agree, but on too little
   several,             ///< more than one of these
   contradicts_others,  ///< of a merge: believed by itself, but not with what the other maps say
+  over_budget,  ///< of a merge: the join is likely enough, but MergeOptions::max_false_joins has no room for
+                ///< it
 };
 
 /// As outputs spell it: "ambiguous", "too_little_overlap", ...; "none" for an accepted pair.

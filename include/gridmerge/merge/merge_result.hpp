@@ -34,6 +34,8 @@ struct Join : PairPose {
   std::size_t moving = 0;  ///< index of the input map
   MatchResult match;       ///< what the two say by themselves, between the frames of these two input maps
   JoinOutcome outcome = JoinOutcome::refused;  ///< what became of it
+  /// Refused, and used if MergeOptions::max_false_joins were large enough.
+  bool over_budget = false;
 
   /// Whether the maps lie so in the result.
   bool used() const { return outcome != JoinOutcome::refused && outcome != JoinOutcome::rejected; }
@@ -42,6 +44,7 @@ struct Join : PairPose {
   /// Why it was not used; none if it was.
   Reason reason() const {
     if (used()) return Reason::none;
+    if (over_budget) return Reason::over_budget;
     if (outcome == JoinOutcome::rejected) return Reason::contradicts_others;
     // Believed by itself, but so is another way to lie.
     return match.verdict == Verdict::accepted ? Reason::ambiguous : match.reason;

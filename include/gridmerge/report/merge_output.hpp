@@ -46,15 +46,16 @@ GRIDMERGE_EXPORT std::optional<double> check_merged_size(const std::vector<std::
 /// `merged.pgm` for the first component, `merged_2.yaml` and so on for further ones, `preview.png`,
 /// `report.html` and `transforms.json`. `inputs` as in prepare_merge_output(), which is called first.
 ///
-/// Every other `merged.yaml`, `merged_2.yaml` and so on and `.pgm` in the directory is removed, and so are
-/// the exports of an earlier run (export_file()), so that nothing of it looks like this run's; without a
-/// component there is no `merged.yaml`. At every point of time who opens files by name finds all of an
-/// earlier run's or all of this one's, whether the program is killed, the disk is full or another merge
-/// writes there too; what a killed one has left is put in order first. Other files of the directory stay.
-/// Throws FileError: then the directory is as it was, or is not made.
-GRIDMERGE_EXPORT void write_merge_output(const std::filesystem::path& directory,
-                                         const std::vector<std::filesystem::path>& inputs,
-                                         const NamedMerge& merge);
+/// Merged maps of an earlier merge, which its `transforms.json` in the directory names, are removed where
+/// this one has none of the name, and so are exports (export_file()) that gridmerge wrote of them: nothing of
+/// that merge looks like this one's. Returns the files that it removed. Other files of the directory stay.
+///
+/// At every point of time who opens files by name finds all of an earlier run's or all of this one's, whether
+/// the program is killed, the disk is full or another merge writes there too; what a killed one has left is
+/// put in order first. Throws FileError: then the directory is as it was, or is not made.
+GRIDMERGE_EXPORT std::vector<std::filesystem::path> write_merge_output(
+    const std::filesystem::path& directory, const std::vector<std::filesystem::path>& inputs,
+    const NamedMerge& merge);
 
 /// Writes `report.html` alone to `directory`, which is there. Arguments as of write_merge_output(). Throws
 /// FileError, also when one of the inputs would be replaced.
