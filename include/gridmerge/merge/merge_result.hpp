@@ -96,8 +96,8 @@ struct OpenWay {
   double probability = 0.0;  ///< with all that the other maps say, kMinOpenProbability or more
 };
 
-/// Ways that are less probable are not told. One of this probability is what keeps another from 0.95, which is
-/// usually asked for.
+/// Ways that are less probable are not told. One of this probability is what keeps another from 0.95, which
+/// is usually asked for.
 inline constexpr double kMinOpenProbability = 0.05;
 
 /// A map that joined nothing.
