@@ -60,9 +60,9 @@ TEST(FileSet, WithoutCommitNothingHasHappened) {
 
 TEST(FileSet, RemovesStagedFilesOfKilledProgramsAlone) {
   const TemporaryDirectory directory;
+  const StagedFile other(directory.file("other"), "of a program that still runs");
   directory.write(".gridmerge-1-0.tmp", "of a program that was killed: nobody has it locked");
   directory.write(".gridmerge-notes.tmp", "of the user");
-  const StagedFile other(directory.file("other"), "of a program that still runs");
   const std::size_t staged = 1;
   FileSet files(directory.path());
   files.add("a", "new");
