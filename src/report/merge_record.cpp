@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -21,6 +22,7 @@
 #include "report/json_reader.hpp"
 #include "report/json_values.hpp"
 #include "report/plan_json.hpp"
+#include "report/record_file.hpp"
 #include "report/record_values.hpp"
 #include "report/told_joins.hpp"
 
@@ -30,6 +32,7 @@ using namespace internal;
 
 namespace {
 
+constexpr const char* kRecord = "transforms.json";
 constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 constexpr std::size_t kMaxEqual = 100;  // of one name: what is said of them is looked for among all pairs
 constexpr double kInfinity = std::numeric_limits<double>::max();
@@ -308,24 +311,34 @@ class RecordReader {
   std::vector<bool> is_placed_;
 };
 
+std::uint64_t fingerprint_of(std::string_view text) {
+  return std::hash<std::string_view>()(text);
+}
+
 }  // namespace
 
 MergeRecord parse_transforms(const std::filesystem::path& file, std::string_view text) {
   try {
     const nlohmann::json json = parse_json(text);
-    return RecordReader().read(JsonReader(json));
+    MergeRecord record = RecordReader().read(JsonReader(json));
+    record.fingerprint = fingerprint_of(text);
+    return record;
   } catch (const JsonError& error) {
     throw FileError(file, error.what());
   }
 }
 
 MergeRecord read_merge_record(const std::filesystem::path& directory) {
-  const std::filesystem::path file = directory / "transforms.json";
+  const std::filesystem::path file = directory / kRecord;
   std::error_code error;
   if (!std::filesystem::exists(file, error))
     throw FileError(directory, "holds no transforms.json: it is not what 'gridmerge merge' has written to");
   FileReader reader(file, NamedBy::file);
   return parse_transforms(file, reader.read_all(kMaxBytes));
+}
+
+std::uint64_t internal::read_fingerprint(const std::filesystem::path& directory) {
+  return fingerprint_of(FileReader(directory / kRecord, NamedBy::file).read_all(kMaxBytes));
 }
 
 std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<OccupancyGrid>& maps,
