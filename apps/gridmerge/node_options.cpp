@@ -59,23 +59,28 @@ std::optional<std::string> played_on(const RosNodeOptions& node, const std::stri
   return is_heard(node, own) ? std::optional(own) : std::nullopt;
 }
 
-/// The maps of a bag's topic, one after the other. Those that cannot be read are told of and passed over.
+/// The maps of a bag's topic, one after the other. Those that cannot be read are told of and passed over. The
+/// first is read at once: while the node is made, no signal ends a search for it.
 std::function<std::optional<PlayedMap>()> maps_of(const Bag& bag, const std::string& topic,
                                                   Console& console) {
   const auto maps = std::make_shared<BagMaps>(bag, topic);
-  return [maps, &console, first = std::optional<std::int64_t>()]() mutable -> std::optional<PlayedMap> {
+  const auto read_next = [maps, &console]() -> std::optional<BagMap> {
     for (;;) {
       try {
-        std::optional<BagMap> map = maps->next();
-        if (!map) return std::nullopt;
-        if (!first) first = map->time;
-        constexpr double kNanosecond = 1e-9;
-        return PlayedMap{static_cast<double>(map->time - *first) * kNanosecond, std::move(map->frame_id),
-                         std::move(map->grid)};
+        return maps->next();
       } catch (const FileError& error) {
         console.warn(error.what());
       }
     }
+  };
+  const auto first = std::make_shared<std::optional<BagMap>>(read_next());
+  const std::int64_t begin = *first ? (*first)->time : 0;
+  return [read_next, first, begin]() -> std::optional<PlayedMap> {
+    std::optional<BagMap> map = *first ? std::exchange(*first, std::nullopt) : read_next();
+    if (!map) return std::nullopt;
+    constexpr double kNanosecond = 1e-9;
+    return PlayedMap{static_cast<double>(map->time - begin) * kNanosecond, std::move(map->frame_id),
+                     std::move(map->grid)};
   };
 }
 

@@ -24,7 +24,12 @@ void add_plan_options(CLI::App& command, PlanCommandOptions& options) {
                       "Hang the maps on this architect's plan, whose scale is unknown: a line drawing or a "
                       "map, as MAP. Maps that nothing else joins are joined by it. The merged map has the "
                       "plan's frame, in the maps' metres, and holds the maps alone")
-          ->type_name("PLAN");
+          ->type_name("PLAN")
+          ->check(CLI::Validator(
+              [](const std::string& name) {
+                return name.empty() ? std::string("the name of the plan is empty") : std::string();
+              },
+              ""));
   command
       .add_option("--plan-scale", options.scales,
                   "The factors by which the plan may be too small; 0.5:2 if not given. They count from "

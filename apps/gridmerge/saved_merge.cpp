@@ -50,6 +50,7 @@ SavedMerge load_saved_merge(const SavedMergeOptions& options, Console& console) 
     console.warn((std::filesystem::path(options.directory) / component_file(component)).string() +
                  ": is not what the maps give: it or they have been changed since");
   }
+  merge.fingerprint = record.fingerprint;
   merge.names = std::move(record.names);
   merge.result = std::move(record.result);
   return merge;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@ struct SavedMerge {
   std::vector<OccupancyGrid> maps;
   std::vector<std::filesystem::path> files;  // that the maps were read from
   MergeResult result;
+  std::uint64_t fingerprint = 0;  // MergeRecord::fingerprint
 
   NamedMerge named() const { return {names, maps, result}; }
 };

@@ -101,6 +101,7 @@ std::string describe(const Simulation& simulation, const std::string& output) {
 int run_simulate(const SimulateCommandOptions& options) {
   Console console(options.common);
   SimulateOptions simulation_options = make_options(options);
+  prepare_dataset(options.output);
   // Each building takes about as long as another.
   const auto show = [&](int done, double share) {
     console.progress("simulating", (done + share) / (1.0 + options.others));

@@ -71,6 +71,7 @@ bool is_bag(const std::filesystem::path& path) {
 }
 
 LoadedMap load_any_map(const std::filesystem::path& name, const LoadOptions& options) {
+  if (name.empty()) throw FileError(name, "is no name of a map: it is empty");
   const auto [file, topic] = parse_map_name(name);
   if (is_bag(file) || kind_of_file(file) == FileKind::ros1_bag) {
     const Bag bag(file, options);

@@ -110,6 +110,9 @@ std::vector<BagContent::Message> BagContent::find(const std::vector<BagTopic>& t
     for (const StoredMessage& stored : storages_[file]->find(topics)) messages.push_back({file, stored});
   }
   std::ranges::stable_sort(messages, {}, [](const Message& message) { return message.stored.time; });
+  std::vector<std::vector<StoredMessage>> orders(storages_.size());
+  for (const Message& message : messages) orders[message.file].push_back(message.stored);
+  for (std::size_t file = 0; file < storages_.size(); ++file) storages_[file]->expect(orders[file]);
   return messages;
 }
 

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <new>
+#include <optional>
 #include <utility>
 
 #include "bag/bag_content.hpp"
@@ -86,6 +88,34 @@ struct BagMaps::State {
     }
   }
 
+  // The place of the last whole map that has cells; `map` is that one then. Messages are read forwards, as
+  // chunks are unpacked, in blocks of 1, 2, 4 whole maps and so on from the end.
+  std::optional<std::size_t> find_last_whole(GrowingMap& map) const {
+    std::vector<std::size_t> whole;
+    for (std::size_t i = 0; i < messages.size(); ++i) {
+      if (messages[i].stored.topic == kMap) whole.push_back(i);
+    }
+    std::size_t end = whole.size();
+    for (std::size_t size = 1; end > 0; size *= 2) {
+      const std::size_t begin = end - std::min(size, end);
+      std::optional<std::size_t> last;
+      std::exception_ptr damage;  // of what may be the last one
+      for (std::size_t i = begin; i < end; ++i) {
+        try {
+          if (!take(map, messages[whole[i]])) continue;
+          last = whole[i];
+          damage = nullptr;
+        } catch (const FileError&) {
+          damage = std::current_exception();
+        }
+      }
+      if (damage) std::rethrow_exception(damage);
+      if (last) return last;
+      end = begin;
+    }
+    return std::nullopt;
+  }
+
   BagMap describe(const GrowingMap& grown, const BagContent::Message& message) const {
     BagMap map{grown.grid(), grown.frame_id(), message.stored.time, message.stored.topic != kMap,
                content->warnings()};
@@ -135,17 +165,13 @@ std::optional<BagMap> BagMaps::next() {
 BagMap BagMaps::last() {
   const State& state = *state_;
   GrowingMap map(state.content->max_cells());
-  std::size_t begin = state.messages.size();
-  while (begin > 0 && !map.is_there()) {
-    --begin;
-    if (state.messages[begin].stored.topic == kMap) state.take(map, state.messages[begin]);
-  }
-  if (!map.is_there())
+  const std::optional<std::size_t> begin = state.find_last_whole(map);
+  if (!begin)
     throw EmptyTopic(state.content->path(), state.messages.empty()
                                                 ? fmt::format("has no message on {}", state.topic)
                                                 : fmt::format("has no map with cells on {}", state.topic));
-  std::size_t newest = begin;
-  for (std::size_t i = begin + 1; i < state.messages.size(); ++i) {
+  std::size_t newest = *begin;
+  for (std::size_t i = *begin + 1; i < state.messages.size(); ++i) {
     if (state.messages[i].stored.topic != kMap && state.take(map, state.messages[i])) newest = i;
   }
   return state.describe(map, state.messages[newest]);

@@ -34,7 +34,10 @@ class BagStorage {
   /// them).
   virtual std::vector<StoredMessage> find(const std::vector<BagTopic>& topics) = 0;
 
-  /// The bytes of a message that find() found. Cheap for messages in the order of find().
+  /// Tells in which order messages that find() found are going to be read, so that none is costly.
+  virtual void expect(const std::vector<StoredMessage>& /*order*/) {}
+
+  /// The bytes of a message that find() found. Cheap in the order of find() and in one that is expected.
   virtual std::string read(const StoredMessage& message) = 0;
 
   /// What is odd about the file.

@@ -88,7 +88,7 @@ bool looks_like_mcap(std::string_view bytes) {
 
 McapFile::McapFile(const std::filesystem::path& path, const std::filesystem::path& shown,
                    std::size_t max_message_bytes)
-    : file_(path, shown), max_message_bytes_(max_message_bytes) {
+    : file_(path, shown), max_message_bytes_(max_message_bytes), scattered_(file_.path()) {
   blaming(file_.path(), [&] { open(); });
 }
 
@@ -169,8 +169,8 @@ void McapFile::scan() {
         learn(head.kind, content(offset, head));
         break;
       case McapRecord::message:
-        count(file_.read(offset,
-                         static_cast<std::size_t>(std::min<std::uint64_t>(head.bytes, kMessageHeadBytes))));
+        count(records_.read(
+            offset, static_cast<std::size_t>(std::min<std::uint64_t>(head.bytes, kMessageHeadBytes))));
         break;
       case McapRecord::chunk: {
         const auto chunk = open_chunk(offset, head.bytes);
@@ -198,7 +198,7 @@ void McapFile::for_each_record(std::uint64_t begin, const Use& use) {
   std::uint64_t at = begin;
   while (at < end_) {
     const bool has_head = end_ - at >= kRecordHeadBytes;
-    const RecordHead head = has_head ? parse_record_head(file_.read(at, kRecordHeadBytes)) : RecordHead{};
+    const RecordHead head = has_head ? parse_record_head(records_.read(at, kRecordHeadBytes)) : RecordHead{};
     if (!has_head || head.bytes > end_ - at - kRecordHeadBytes) {
       if (is_cut_off_) return;
       throw ParseError(fmt::format("the record at byte {} reaches beyond the file", at));
@@ -208,10 +208,11 @@ void McapFile::for_each_record(std::uint64_t begin, const Use& use) {
   }
 }
 
-// Of a record that names things: what is long in it comes last, and is not of use.
-std::string McapFile::content(std::uint64_t offset, const RecordHead& head) const {
+// Of a record that names things: what is long in it comes last, and is not of use. It is there until the next
+// record is read.
+std::string_view McapFile::content(std::uint64_t offset, const RecordHead& head) {
   constexpr std::uint64_t kMax = std::uint64_t{1} << 20;  // statistics of 2^16 channels take 0.7 MB
-  return file_.read(offset, static_cast<std::size_t>(std::min(head.bytes, kMax)));
+  return records_.read(offset, static_cast<std::size_t>(std::min(head.bytes, kMax)));
 }
 
 // The same schema or channel may stand in a file many times.
@@ -325,7 +326,7 @@ std::vector<StoredMessage> McapFile::find(const std::vector<BagTopic>& topics) {
       finish_pending();
       if (head.kind == McapRecord::chunk) pending = Pending{offset, head.bytes, false, false};
       if (head.kind == McapRecord::message)
-        add(file_.read(offset, head_of(head.bytes)), head.bytes, 0, offset + kMessageHeadBytes);
+        add(records_.read(offset, head_of(head.bytes)), head.bytes, 0, offset + kMessageHeadBytes);
       return head.kind != McapRecord::data_end;
     });
     // Of the last chunk of a file that is cut off, indexes may be missing.
@@ -335,25 +336,33 @@ std::vector<StoredMessage> McapFile::find(const std::vector<BagTopic>& topics) {
   return messages;
 }
 
+void McapFile::expect(const std::vector<StoredMessage>& order) {
+  scattered_.expect(order, max_message_bytes_);
+}
+
 std::string McapFile::read(const StoredMessage& message) {
   return blaming(file_.path(), [&] {
     if (message.bytes > max_message_bytes_)
       throw ParseError(
           fmt::format("a message of {} bytes exceeds the limit of {}", message.bytes, max_message_bytes_));
-    const auto bytes = static_cast<std::size_t>(message.bytes);
-    if (message.place == 0) return file_.read(message.offset, bytes);
-    std::unique_ptr<Chunk> chunk = std::move(chunk_);  // gone when it cannot be read on
-    if (!chunk || chunk_place_ != message.place || chunk->position() > message.offset) {
-      const RecordHead head =
-          parse_record_head(file_.read(message.place - kRecordHeadBytes, kRecordHeadBytes));
-      chunk = open_chunk(message.place, head.bytes);
-      chunk_place_ = message.place;
-    }
-    chunk->skip_to(message.offset);
-    std::string found = chunk->read(bytes);
-    chunk_ = std::move(chunk);
-    return found;
+    if (message.place == 0) return file_.read(message.offset, static_cast<std::size_t>(message.bytes));
+    const auto kept = scattered_.read(message, [&](const StoredMessage& one) { return unpack(one); });
+    return kept ? *kept : unpack(message);
   });
+}
+
+// Of a message in a chunk.
+std::string McapFile::unpack(const StoredMessage& message) {
+  std::unique_ptr<Chunk> chunk = std::move(chunk_);  // gone when it cannot be read on
+  if (!chunk || chunk_place_ != message.place || chunk->position() > message.offset) {
+    const RecordHead head = parse_record_head(file_.read(message.place - kRecordHeadBytes, kRecordHeadBytes));
+    chunk = open_chunk(message.place, head.bytes);
+    chunk_place_ = message.place;
+  }
+  chunk->skip_to(message.offset);
+  std::string found = chunk->read(static_cast<std::size_t>(message.bytes));
+  chunk_ = std::move(chunk);
+  return found;
 }
 
 std::vector<MapWarning> McapFile::warnings() const {

@@ -15,6 +15,7 @@
 #include "bag/byte_source.hpp"
 #include "bag/mcap_records.hpp"
 #include "bag/random_access_file.hpp"
+#include "bag/scattered_chunks.hpp"
 
 namespace gridmerge::internal {
 
@@ -36,6 +37,7 @@ class McapFile : public BagStorage {
 
   const std::vector<BagTopic>& topics() const override { return topics_; }
   std::vector<StoredMessage> find(const std::vector<BagTopic>& topics) override;
+  void expect(const std::vector<StoredMessage>& order) override;
   std::string read(const StoredMessage& message) override;
   std::vector<MapWarning> warnings() const override;
 
@@ -52,13 +54,15 @@ class McapFile : public BagStorage {
   void check_summary(const McapFooter& footer) const;
   void scan();
   void for_each_record(std::uint64_t begin, const Use& use);
-  std::string content(std::uint64_t offset, const RecordHead& head) const;
+  std::string_view content(std::uint64_t offset, const RecordHead& head);
   void learn(McapRecord kind, std::string_view content);
   void make_topics();
   std::string_view type_of(const McapChannel& channel) const;
   std::unique_ptr<Chunk> open_chunk(std::uint64_t offset, std::uint64_t bytes) const;
+  std::string unpack(const StoredMessage& message);
 
   RandomAccessFile file_;
+  BufferedReader records_{file_};  ///< heads of records, and what is short
   std::size_t max_message_bytes_;
   std::uint64_t end_ = 0;  ///< of the records before the footer
   bool is_cut_off_ = false;
@@ -68,6 +72,7 @@ class McapFile : public BagStorage {
   std::vector<BagTopic> topics_;
   std::unique_ptr<Chunk> chunk_;  ///< that was read from last
   std::uint64_t chunk_place_ = 0;
+  ScatteredChunks scattered_;
 };
 
 }  // namespace gridmerge::internal

@@ -23,6 +23,22 @@ namespace {
 
 }  // namespace
 
+std::size_t read_at(int descriptor, std::uint64_t offset, char* to, std::size_t count,
+                    const std::filesystem::path& shown) {
+  constexpr std::size_t kStep = std::size_t{1} << 20;
+  std::size_t held = 0;
+  while (held < count) {
+    throw_if_cancelled();
+    const ssize_t got =
+        ::pread(descriptor, to + held, std::min(count - held, kStep), static_cast<off_t>(offset + held));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw_errno(shown, errno);
+    if (got == 0) break;
+    held += static_cast<std::size_t>(got);
+  }
+  return held;
+}
+
 RandomAccessFile::RandomAccessFile(const std::filesystem::path& path, const std::filesystem::path& shown)
     // A pipe without a writer is not waited for.
     : path_(shown.empty() ? path : shown),
@@ -44,18 +60,9 @@ RandomAccessFile::~RandomAccessFile() {
 }
 
 std::size_t RandomAccessFile::read(std::uint64_t offset, char* to, std::size_t count) const {
-  constexpr std::size_t kStep = std::size_t{1} << 20;
-  std::size_t held = 0;
-  while (held < count && offset + held < size_) {
-    throw_if_cancelled();
-    const ssize_t got =
-        ::pread(descriptor_, to + held, std::min(count - held, kStep), static_cast<off_t>(offset + held));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw_errno(path_, errno);
-    if (got == 0) break;
-    held += static_cast<std::size_t>(got);
-  }
-  return held;
+  if (offset >= size_) return 0;
+  return read_at(descriptor_, offset, to,
+                 static_cast<std::size_t>(std::min<std::uint64_t>(count, size_ - offset)), path_);
 }
 
 std::string RandomAccessFile::read(std::uint64_t offset, std::size_t count) const {
@@ -63,6 +70,20 @@ std::string RandomAccessFile::read(std::uint64_t offset, std::size_t count) cons
   std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(count, left)), '\0');
   bytes.resize(read(offset, bytes.data(), bytes.size()));
   return bytes;
+}
+
+std::string_view BufferedReader::read(std::uint64_t offset, std::size_t count) {
+  const bool is_held =
+      offset >= begin_ && offset <= begin_ + held_.size() && count <= begin_ + held_.size() - offset;
+  if (!is_held) {
+    // Behind what was passed over, as much may be passed over again.
+    constexpr std::size_t kFar = std::size_t{1} << 16, kAhead = std::size_t{1} << 16,
+                          kFirst = std::size_t{1} << 10;
+    const bool is_near = offset >= begin_ && offset - begin_ < held_.size() + kFar;
+    held_ = file_.read(offset, std::max(count, is_near ? kAhead : kFirst));
+    begin_ = offset;
+  }
+  return std::string_view(held_).substr(static_cast<std::size_t>(offset - begin_), count);
 }
 
 }  // namespace gridmerge::internal

@@ -5,8 +5,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace gridmerge::internal {
+
+/// Reads up to `count` bytes of an open file at `offset`; fewer only where the file ends. Throws FileError,
+/// of the file `shown`, and Cancelled.
+std::size_t read_at(int descriptor, std::uint64_t offset, char* to, std::size_t count,
+                    const std::filesystem::path& shown);
 
 /// A regular file of which any part can be read. It is read by calls, not mapped: a mapped file that somebody
 /// cuts short ends the program.
@@ -35,6 +41,21 @@ class RandomAccessFile {
   std::filesystem::path path_;
   int descriptor_;
   std::uint64_t size_ = 0;
+};
+
+/// Reads small parts of a file, about in the order in which they stand, by few calls of the system.
+class BufferedReader {
+ public:
+  /// The file must outlive it.
+  explicit BufferedReader(const RandomAccessFile& file) : file_(file) {}
+
+  /// As RandomAccessFile::read(). The bytes are there until the next call.
+  std::string_view read(std::uint64_t offset, std::size_t count);
+
+ private:
+  const RandomAccessFile& file_;
+  std::uint64_t begin_ = 0;  // of what is held
+  std::string held_;
 };
 
 }  // namespace gridmerge::internal

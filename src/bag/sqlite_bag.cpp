@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "bag/sqlite_reading.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "io/blaming.hpp"
 
@@ -105,8 +106,10 @@ void SqliteBag::open(const std::filesystem::path& path) {
   sqlite3* database = nullptr;
   const std::filesystem::path file = without_links(path);
   log_ = log_of(file);
-  const int code = sqlite3_open_v2(uri_of(file, log_.empty()).c_str(), &database,
-                                   SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr);
+  const bool is_at_rest = log_.empty();
+  const int code = sqlite3_open_v2(uri_of(file, is_at_rest).c_str(), &database,
+                                   SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX,
+                                   is_at_rest ? sqlite_reading() : nullptr);
   database_.reset(database);
   if (!database_) throw std::bad_alloc();
   if (code != SQLITE_OK) throw_error();

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "bag/scratch_file.hpp"
+
 namespace gridmerge::internal {
 
-/// What a file packed with Zstandard unpacks to, as a temporary file. Its name is gone with the object, its
-/// bytes when nobody has it open any more. Why a file: bags are large, and SQLite wants one with a name.
+/// What a file packed with Zstandard unpacks to, in a file without a name. Its bytes are gone when nobody has
+/// it open any more. Why a file: bags are large, and SQLite wants one.
 class UnpackedFile {
  public:
   /// Larger bags are to be unpacked by their user: whoever sent it might want the disk full.
@@ -15,15 +17,12 @@ class UnpackedFile {
 
   /// Unpacks all of `packed`. Throws FileError when it does not unpack, or to more than `max_bytes`.
   explicit UnpackedFile(const std::filesystem::path& packed, std::uint64_t max_bytes = kMaxBytes);
-  ~UnpackedFile();
-  UnpackedFile(const UnpackedFile&) = delete;
-  UnpackedFile& operator=(const UnpackedFile&) = delete;
 
-  /// Where it is as long as the object lives.
-  const std::filesystem::path& path() const { return path_; }
+  /// What opens it, as long as the object lives.
+  std::filesystem::path path() const { return file_.path(); }
 
  private:
-  std::filesystem::path path_;
+  ScratchFile file_;
 };
 
 }  // namespace gridmerge::internal

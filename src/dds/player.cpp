@@ -10,6 +10,7 @@
 
 #include "dds/names.hpp"
 #include "dds/samples.hpp"
+#include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge::internal {
 
@@ -43,6 +44,7 @@ Player::Player(const Participant& participant, std::vector<PlayedTopic> topics, 
 
 void Player::advance(Topic& topic, double seconds) const {
   while (topic.next && topic.next->seconds - topic.begin <= seconds * rate_) {
+    throw_if_cancelled();
     topic.due = std::move(topic.next);
     topic.next = topic.played.next();
   }

@@ -24,7 +24,7 @@ class Player {
 
   /// Publishes what is due `seconds` after the beginning. Of several maps of a topic that are due, only the
   /// newest is published. What a subscriber holds back is tried again by the next call. Throws what
-  /// PlayedTopic::next does.
+  /// PlayedTopic::next does, and Cancelled.
   void play(double seconds);
 
   /// Whether all maps of all topics were published.

@@ -22,6 +22,7 @@
 #include "dds/publisher.hpp"
 #include "dds/selection.hpp"
 #include "dds/status.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge {
@@ -136,6 +137,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
  private:
   MapListener::Callbacks callbacks();
   void take_map(const std::string& robot, HeardMap map, bool restarted);
+  bool play();
   void hear_ages();
   void wait();
   void tell_changes();
@@ -220,7 +222,7 @@ RosNode::End RosNode::State::run() {
       environment_.enclave_files.empty() ? "" : fmt::format(", secure as {}", environment_.enclave),
       options_.output));
   while (!stopped_) {
-    player_.play(seconds());
+    if (!play()) break;
     wait();
     if (!enough_) listener_.hear();
     hear_ages();
@@ -233,6 +235,16 @@ RosNode::End RosNode::State::run() {
     }
   }
   return End::stopped;
+}
+
+/// False where it was stopped meanwhile: a recording may be long, or made to be.
+bool RosNode::State::play() {
+  try {
+    with_cancellation(stopped_, [this] { player_.play(seconds()); });
+    return true;
+  } catch (const Cancelled&) {
+    return false;
+  }
 }
 
 void RosNode::State::hear_ages() {

@@ -48,6 +48,6 @@ std::string shorten(std::string text) {
 FileError::FileError(std::string_view message) : std::runtime_error(shorten(escape_controls(message))) {}
 
 FileError::FileError(const std::filesystem::path& file, std::string_view cause)
-    : FileError(fmt::format("{}: {}", file.string(), cause)) {}
+    : FileError(fmt::format("{}: {}", file.empty() ? "''" : file.string(), cause)) {}
 
 }  // namespace gridmerge

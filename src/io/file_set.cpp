@@ -16,6 +16,7 @@
 #include "io/destination.hpp"
 #include "io/directory_names.hpp"
 #include "io/durable.hpp"
+#include "io/temporary_file.hpp"
 
 namespace gridmerge::internal {
 
@@ -90,6 +91,7 @@ bool has_no_links(int error) {
 FileSet::FileSet(fs::path directory, IfMissing if_missing)
     : directory_(directory.empty() ? "." : std::move(directory)), lock_(directory_, if_missing) {
   settle(directory_);
+  remove_abandoned(directory_);
   const fs::path work = directory_ / kWork;
   check(::mkdir(work.c_str(), 0777), directory_);
   if (::mkdir((work / kNew).c_str(), 0777) == 0) return;

@@ -22,7 +22,8 @@ namespace gridmerge::internal {
 ///
 /// commit() puts such links in the place of the old files, which are in `old` as well by then, turns
 /// `current`, and puts the new files in the place of the links. No step but the turn changes what a name
-/// shows. A set that a killed program has left so is put in order by the next one in the same directory.
+/// shows. A set that a killed program has left so is put in order by the next one in the same directory, and
+/// staged files of killed programs are removed.
 /// Where the file system has no symbolic links (FAT), files are renamed one after the other, in the order of
 /// add().
 ///

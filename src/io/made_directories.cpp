@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <system_error>
 
 #include "gridmerge/io/file_error.hpp"
@@ -28,6 +29,11 @@ MadeDirectories::~MadeDirectories() {
 
 void MadeDirectories::remove_empty() const {
   for (const fs::path& part : made_) ::rmdir(part.c_str());
+}
+
+void check_directory(const fs::path& directory) {
+  if (::access(directory.c_str(), W_OK | X_OK) != 0)
+    throw FileError(directory, "cannot be written to: " + std::generic_category().message(errno));
 }
 
 }  // namespace gridmerge::internal

@@ -24,4 +24,7 @@ class GRIDMERGE_INTERNAL_EXPORT MadeDirectories {
   std::vector<std::filesystem::path> made_;  // the innermost first
 };
 
+/// Throws FileError unless files can be made in a directory, which is there.
+GRIDMERGE_INTERNAL_EXPORT void check_directory(const std::filesystem::path& directory);
+
 }  // namespace gridmerge::internal

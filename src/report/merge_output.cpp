@@ -2,10 +2,8 @@
 #include "gridmerge/report/merge_output.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -25,6 +23,7 @@
 #include "report/earlier_merge.hpp"
 #include "report/output_names.hpp"
 #include "report/page.hpp"
+#include "report/record_file.hpp"
 
 namespace gridmerge {
 
@@ -157,8 +156,7 @@ std::optional<double> check_merged_size(const std::vector<std::string>& names,
 
 void prepare_merge_output(const fs::path& directory, const std::vector<fs::path>& inputs) {
   const MadeDirectories made(directory);
-  if (::access(directory.c_str(), W_OK | X_OK) != 0)
-    throw FileError(directory, "cannot be written to: " + std::generic_category().message(errno));
+  check_directory(directory);
   protect(inputs, directory);
   for (const char* const name : {"merged.yaml", "merged.pgm", kPreview, kReport, kTransforms})
     check_destination(directory / name);
@@ -187,8 +185,13 @@ std::vector<fs::path> write_merge_output(const fs::path& directory, const std::v
   return removed;
 }
 
-void write_report(const fs::path& directory, const std::vector<fs::path>& inputs, const NamedMerge& merge) {
+void write_report(const fs::path& directory, const std::vector<fs::path>& inputs, const NamedMerge& merge,
+                  std::optional<std::uint64_t> fingerprint) {
   FileSet files(directory);
+  // From here on no other merge writes there.
+  if (fingerprint && *fingerprint != read_fingerprint(directory))
+    throw FileError(directory / kTransforms,
+                    "has changed since it was read: another merge wrote there, so make the report again");
   protect(inputs, directory);
   files.add(kReport, report_page(merge));
   files.commit();

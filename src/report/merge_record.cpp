@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -22,6 +23,7 @@
 #include "report/json_values.hpp"
 #include "report/output_names.hpp"
 #include "report/plan_json.hpp"
+#include "report/record_file.hpp"
 #include "report/record_values.hpp"
 #include "report/told_joins.hpp"
 
@@ -316,12 +318,18 @@ class RecordReader {
   std::vector<bool> is_placed_;
 };
 
+std::uint64_t fingerprint_of(std::string_view text) {
+  return std::hash<std::string_view>()(text);
+}
+
 }  // namespace
 
 MergeRecord parse_transforms(const std::filesystem::path& file, std::string_view text) {
   try {
     const nlohmann::json json = parse_json(text);
-    return RecordReader().read(JsonReader(json));
+    MergeRecord record = RecordReader().read(JsonReader(json));
+    record.fingerprint = fingerprint_of(text);
+    return record;
   } catch (const JsonError& error) {
     throw FileError(file, error.what());
   }
@@ -338,6 +346,10 @@ MergeRecord read_merge_record(const std::filesystem::path& directory) {
   if (!std::filesystem::exists(file, error))
     throw FileError(directory, "holds no transforms.json: it is not what 'gridmerge merge' has written to");
   return read_transforms(file);
+}
+
+std::uint64_t internal::read_fingerprint(const std::filesystem::path& directory) {
+  return fingerprint_of(FileReader(directory / kTransforms, NamedBy::file).read_all(kMaxRecordBytes));
 }
 
 std::vector<std::size_t> fuse_again(MergeRecord& record, const std::vector<OccupancyGrid>& maps,

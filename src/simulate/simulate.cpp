@@ -216,7 +216,7 @@ void validate(const RangeFinder& sensor) {
   require(sensor.field_of_view > 0.0 && sensor.field_of_view <= 2.0 * std::numbers::pi + 1e-9,
           "the field of view must be between 0 and 360 degrees");
   require(sensor.angular_step >= 1e-4 && sensor.angular_step <= sensor.field_of_view,
-          "the angular step must be positive, and not above the field of view");
+          "the angular step must be 0.0001 rad (0.0058 degrees) at least, and not above the field of view");
   require(sensor.range >= 0.2 && sensor.range <= 200.0, "the range must be between 0.2 and 200 metres");
   require(sensor.noise >= 0.0 && sensor.noise <= 10.0, "the noise must be between 0 and 10 metres");
   require(is_share(sensor.stray_share) && is_share(sensor.missed_share) && is_share(sensor.cleared_share),

@@ -6,17 +6,21 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <fstream>
 #include <string>
 
 #include "bag/map_messages.hpp"
 #include "bag/support.hpp"
 #include "gridmerge/io/file_error.hpp"
+#include "io/parse_error.hpp"
 #include "io/support.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {
 namespace {
 
+using internal::StoredMessage;
 using test::all_cells;
 using test::cells_of;
 using test::contains;
@@ -259,6 +263,87 @@ TEST_F(McapFileTest, PublishersOfOneTopicAreOneTopic) {
   ASSERT_EQ(bag.topics().size(), 1u);
   EXPECT_EQ(bag.topics()[0].messages, 3u);
   EXPECT_EQ(BagMaps(bag).messages(), 3u);
+}
+
+// What this process has read by calls of the system: bytes and calls.
+struct Reads {
+  std::uint64_t bytes = 0, calls = 0;
+};
+
+Reads reads_by_now() {
+  std::ifstream file("/proc/self/io");
+  Reads reads;
+  std::string name;
+  for (std::uint64_t value = 0; file >> name >> value;) {
+    if (name == "rchar:") reads.bytes = value;
+    if (name == "syscr:") reads.calls = value;
+  }
+  return reads;
+}
+
+TEST_F(McapFileTest, MessagesOutOfTheOrderOfTheirTimesAreUnpackedOnce) {
+  constexpr std::int64_t kCount = 2000;
+  std::vector<Recorded> messages{row_at(0, {0, 0, 0})};
+  for (std::int64_t i = kCount; i > 0; --i)
+    messages.push_back(test::update_at(
+        i, {.x = static_cast<std::int32_t>(i % 3), .values = {static_cast<std::int8_t>(i % 101)}}));
+  const std::string file = mcap_file(messages, {.messages_a_chunk = messages.size()});
+  const Bag bag(directory_.write("a.mcap", file));
+  const Reads before = reads_by_now();
+  BagMaps maps(bag);
+  const std::vector<Cell> last = maps.last().grid.cells;
+  std::size_t count = 0;
+  while (const auto map = maps.next()) ++count;
+  EXPECT_LT(reads_by_now().bytes - before.bytes, 10 * file.size());
+  EXPECT_EQ(last, cells_of({1998 % 101, 1999 % 101, 2000 % 101}));
+  EXPECT_EQ(count, static_cast<std::size_t>(kCount) + 1);
+}
+
+TEST_F(McapFileTest, ChunksWhoseTimesAlternateAreUnpackedOnce) {
+  std::vector<Recorded> messages;
+  for (const int chunk : {0, 1}) {
+    for (int i = 0; i < 500; ++i)
+      messages.push_back(row_at(2 * i + chunk, {static_cast<std::int8_t>(i % 101)}));
+  }
+  const std::string file = mcap_file(messages, {.messages_a_chunk = 500});
+  const Bag bag(directory_.write("a.mcap", file));
+  const Reads before = reads_by_now();
+  const Rows rows = all_cells(bag);
+  EXPECT_LT(reads_by_now().bytes - before.bytes, 10 * file.size());
+  EXPECT_EQ(rows, rows_of(messages, "/map"));
+}
+
+TEST_F(McapFileTest, MapsWithoutCellsBehindTheLastMapAreUnpackedAFewTimes) {
+  std::vector<Recorded> messages{row_at(0, {0, 100, 100})};
+  for (int i = 1; i <= 2000; ++i) messages.push_back(row_at(i, {}));
+  const std::string file = mcap_file(messages, {.messages_a_chunk = messages.size()});
+  const Bag bag(directory_.write("a.mcap", file));
+  const Reads before = reads_by_now();
+  EXPECT_EQ(BagMaps(bag).last().grid.cells, cells_of({0, 100, 100}));
+  EXPECT_LT(reads_by_now().bytes - before.bytes, 20 * file.size());
+}
+
+TEST_F(McapFileTest, OnlySoMuchIsKeptOfWhatIsOutOfOrder) {
+  std::vector<StoredMessage> order;
+  for (std::uint64_t i = 20; i > 0; --i) order.push_back({0, 0, 8, i * 100, 100});
+  internal::ScatteredChunks few("a.mcap", 1999), enough("a.mcap", 2000);
+  const auto unpack = [](const StoredMessage& message) {
+    return std::string(message.bytes, static_cast<char>(message.offset / 100));
+  };
+  few.expect(order, 100);
+  enough.expect(order, 100);
+  EXPECT_TRUE(contains(test::message_of<internal::ParseError>([&] { few.read(order[0], unpack); }),
+                       "more than 1999 bytes of them would have to be kept"));
+  EXPECT_EQ(enough.read(order[3], unpack), std::string(100, '\x11'));
+}
+
+TEST_F(McapFileTest, ShortRecordsAreReadByFewCalls) {
+  std::string file(kMagic);
+  for (int i = 0; i < 50'000; ++i) file += mcap_record(0x99, "");
+  const std::string path = directory_.write("a.mcap", file);
+  const Reads before = reads_by_now();
+  const Bag bag(path);
+  EXPECT_LT(reads_by_now().calls - before.calls, 500u);
 }
 
 }  // namespace

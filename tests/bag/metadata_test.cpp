@@ -35,6 +35,20 @@ TEST(Metadata, NobodyLeadsOutOfTheFolder) {
     EXPECT_TRUE(contains(error_of(with_paths(bad)), "no file's name")) << bad;
 }
 
+TEST(Metadata, AFileCountsOnce) {
+  EXPECT_EQ(parse_metadata(with_paths("[b.db3, a.db3, b.db3, run/a.db3]")), (Names{"b.db3", "a.db3"}));
+}
+
+TEST(Metadata, FilesAreNotEndless) {
+  const auto names = [](int count) {
+    std::string paths = "[b_0.db3";
+    for (int i = 1; i < count; ++i) paths += ", b_" + std::to_string(i) + ".db3";
+    return with_paths(paths + "]");
+  };
+  EXPECT_EQ(parse_metadata(names(1000)).size(), 1000u);
+  EXPECT_TRUE(contains(error_of(names(1001)), "names more than 1000 files"));
+}
+
 TEST(Metadata, WhatIsNoneIsRefused) {
   EXPECT_TRUE(contains(error_of(""), "no rosbag2 metadata"));
   EXPECT_TRUE(contains(error_of("- a"), "no rosbag2 metadata"));

@@ -80,6 +80,18 @@ TEST_F(Simulate, WhatCannotBeHadIsAnErrorAndWritesNothing) {
   }
 }
 
+TEST_F(Simulate, TriesItsFolderFirst) {
+  const std::string file = directory.write("file", "");
+  // The robots' starts are looked at when the building is there.
+  const Outcome outcome = run(with({"-o", file + "/folder", "--start", "-3,7", "--start", "20,7"}));
+  expect_error(outcome, file + "/folder", "cannot be created");
+}
+
+TEST_F(Simulate, SaysTheLeastAngularStep) {
+  expect_error(run({"simulate", "-o", output("none"), "--quiet", "--angular-step", "0.000001"}), "",
+               "the angular step must be 0.0001 rad (0.0058 degrees) at least");
+}
+
 class WrongSimulation : public testing::TestWithParam<std::vector<std::string>> {};
 
 TEST_P(WrongSimulation, IsAUsageError) {

@@ -2,12 +2,16 @@
 // Recorded maps that a node publishes again, beside a peer over the loopback interface.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -115,6 +119,27 @@ TEST_F(Play, OnceDoesNotEndBeforeTheRecordings) {
   EXPECT_EQ(*asked, Explorers::kSteps + 1);
 }
 
+TEST_F(Play, EndsAmongMapsThatAreDueAtOnce) {
+  options.once = false;
+  std::atomic<bool> stopped = false;
+  std::atomic<int> asked = 0, asked_in_vain = 0;
+  options.played = {a.played()};
+  options.played.front().next = [&, map = explorers.map(0, 1)]() -> std::optional<PlayedMap> {
+    ++asked;
+    if (stopped && ++asked_in_vain > 100) return std::nullopt;  // or the test would never end
+    return PlayedMap{0.0, "map", map};
+  };
+  RunningNode node(options);
+  ASSERT_TRUE(comes_true([&] { return asked > 1; }));
+  std::thread late([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // stop() has come to the node by then
+    stopped = true;
+  });
+  EXPECT_EQ(node.stop(), RosNode::End::stopped);
+  late.join();
+  EXPECT_EQ(asked_in_vain, 0);
+}
+
 TEST_F(Play, FramesThatDifferAreKept) {
   options.once = false;
   options.played = {a.played(), Recording("/b/map", 1, "site").played()};
@@ -154,6 +179,18 @@ TEST_F(Play, TheProgramPlaysBags) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("tb_1: placed at "), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("tb2: placed at "), std::string::npos) << outcome.out;
+}
+
+TEST_F(Play, TheProgramEndsAtASignalWhileItReads) {
+  const internal::Participant network(internal::read_ros_environment(internal::process_environment), 1 << 20);
+  const TemporaryDirectory directory;
+  std::vector<Recorded> messages;
+  const OccupancyGrid map = explorers.map(0, Explorers::kSteps);
+  for (int i = 0; i < 3000; ++i) messages.push_back(record("/tb1/map", i, map));  // due at once
+  const std::string bag = directory.write("many.mcap", mcap_file(messages, {.compression = "zstd"}));
+  RunningProgram program({"node", "--bag", bag});
+  EXPECT_NE(program.read_line(), "");
+  EXPECT_EQ(program.end_with(SIGTERM).exit_code, 0);
 }
 
 TEST_F(Play, BagsThatCannotBePlayedAreErrors) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/io/file_error.hpp"
@@ -165,10 +167,43 @@ TEST(Dataset, KeepsProbabilitiesToAPercent) {
   EXPECT_TRUE(read_sets(directory.path() / "sets.tsv").empty());
 }
 
+TEST(Dataset, RemovesTheMapsOfAnEarlierOneAndNothingElse) {
+  const test::TemporaryDirectory directory;
+  SimulateOptions options = quick(3);
+  options.steps = 2;
+  const Simulation elsewhere = simulate(quick(1));
+  write_dataset(directory.path(), simulate(options), {elsewhere, elsewhere});
+  const std::vector<std::string> of_user{"robot_7.yaml", "robot_3_notes.yaml", "robot_3.png", "notes"};
+  for (const std::string& name : of_user) directory.write(name, "mine");
+  const Simulation other = simulate(quick(2));
+  write_dataset(directory.path(), other, {elsewhere});
+
+  const test::TemporaryDirectory fresh;
+  write_dataset(fresh.path(), other, {elsewhere});
+  std::vector<std::string> expected = fresh.names();
+  expected.insert(expected.end(), of_user.begin(), of_user.end());
+  std::ranges::sort(expected);
+  std::vector<std::string> names = directory.names();
+  std::ranges::sort(names);
+  EXPECT_EQ(names, expected);
+}
+
+TEST(Dataset, TablesOfOthersRemoveNothing) {
+  const test::TemporaryDirectory directory;
+  directory.write("pairs.tsv", "no table of maps: robot_9.yaml");
+  directory.write("robot_9.yaml", "mine");
+  write_dataset(directory.path(), simulate(quick(1)), {});
+  EXPECT_TRUE(std::filesystem::exists(directory.path() / "robot_9.yaml"));
+}
+
 TEST(Dataset, AFolderThatCannotBeMadeIsAnError) {
   const test::TemporaryDirectory directory;
   const std::string file = directory.write("file", "");
-  EXPECT_THROW(write_dataset(std::filesystem::path(file) / "folder", simulate(quick(1)), {}), FileError);
+  const std::filesystem::path folder = std::filesystem::path(file) / "folder";
+  EXPECT_THROW(write_dataset(folder, simulate(quick(1)), {}), FileError);
+  EXPECT_THROW(prepare_dataset(folder), FileError);
+  EXPECT_NO_THROW(prepare_dataset(directory.path() / "new" / "folder"));
+  EXPECT_FALSE(std::filesystem::exists(directory.path() / "new"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -15,6 +16,7 @@
 
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/io/file_error.hpp"
+#include "io/atomic_file.hpp"
 #include "io/support.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -54,6 +56,26 @@ TEST(FileSet, WithoutCommitNothingHasHappened) {
   }
   EXPECT_EQ(read_file(directory.file("a")), "old");
   EXPECT_EQ(directory.names(), Names{"a"});
+}
+
+TEST(FileSet, RemovesStagedFilesOfKilledProgramsAlone) {
+  const TemporaryDirectory directory;
+  const StagedFile other(directory.file("other"), "of a program that still runs");
+  directory.write(".gridmerge-1-0.tmp", "of a program that was killed: nobody has it locked");
+  directory.write(".gridmerge-notes.tmp", "of the user");
+  const std::size_t staged = 1;
+  FileSet files(directory.path());
+  files.add("a", "new");
+  files.commit();
+  EXPECT_FALSE(std::filesystem::exists(directory.file(".gridmerge-1-0.tmp")));
+  EXPECT_TRUE(std::filesystem::exists(directory.file(".gridmerge-notes.tmp")));
+  const Names names = directory.names();
+  EXPECT_EQ(static_cast<std::size_t>(std::count_if(names.begin(), names.end(),
+                                                   [](const std::string& name) {
+                                                     return name.starts_with(".gridmerge-") &&
+                                                            name.ends_with("-0.tmp");
+                                                   })),
+            staged);
 }
 
 TEST(FileSet, PutsInOrderWhatAKilledProgramHasLeft) {

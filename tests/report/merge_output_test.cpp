@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gridmerge/io/map_file.hpp"
+#include "gridmerge/report/merge_record.hpp"
 #include "io/file_size_limit.hpp"
 #include "io/png.hpp"
 #include "io/support.hpp"
@@ -73,6 +74,21 @@ TEST(MergeOutput, MakesTheDirectory) {
   const TemporaryDirectory directory;
   write_merge_output(directory.path() / "new" / "newer", kInputs, {kNames, kMaps, one_component()});
   EXPECT_TRUE(std::filesystem::exists(directory.path() / "new" / "newer" / "transforms.json"));
+}
+
+TEST(MergeOutput, AReportIsOfTheMergeThatIsThere) {
+  const TemporaryDirectory directory;
+  write_merge_output(directory.path(), kInputs, {kNames, kMaps, one_component()});
+  const MergeRecord read = read_merge_record(directory.path());
+  const NamedMerge merge{kNames, kMaps, read.result};
+  EXPECT_NO_THROW(write_report(directory.path(), kInputs, merge, read.fingerprint));
+  write_merge_output(directory.path(), kInputs, {kNames, kMaps, two_components()});
+  const std::string report = read_file(directory.file("report.html"));
+  EXPECT_EQ(message_of<FileError>([&] { write_report(directory.path(), kInputs, merge, read.fingerprint); }),
+            directory.file("transforms.json") +
+                ": has changed since it was read: another merge wrote there, so make the report again");
+  EXPECT_EQ(read_file(directory.file("report.html")), report);
+  EXPECT_NO_THROW(write_report(directory.path(), kInputs, {kNames, kMaps, two_components()}));
 }
 
 TEST(MergeOutput, RemovesTheMapsOfAnEarlierRunAndNothingElse) {

@@ -41,8 +41,9 @@ class BagContent;
 ///
 /// A file is hostile until parsed: what it claims is checked before memory is taken for it, and its checksums
 /// (of chunks and summaries of MCAP) have to be right. Nothing is written to it or beside it, except that
-/// SQLite needs a file of its own where a recorder left a log (`-wal`). Copies read the same files: one
-/// thread at a time.
+/// SQLite needs a file of its own where a recorder left a log (`-wal`). What has to be unpacked at once, or
+/// is out of the order of its times, is kept in the folder of temporary files, without a name. Copies read
+/// the same files: one thread at a time.
 class GRIDMERGE_EXPORT Bag {
  public:
   /// Opens a bag, and lists its topics. Of `options` only `max_cells` counts. Throws FileError.

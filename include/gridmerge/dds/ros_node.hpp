@@ -33,7 +33,8 @@ struct PlayedMap {
 struct PlayedTopic {
   std::string topic;   ///< where they are published: "/tb1/map"
   std::string source;  ///< for messages: where they come from
-  /// The next map, by time; none after the last. What it throws ends RosNode::run().
+  /// The next map, by time; none after the last. What it throws ends RosNode::run(). While it runs there,
+  /// throw_if_cancelled() throws once the node is stopped.
   std::function<std::optional<PlayedMap>()> next;
 };
 

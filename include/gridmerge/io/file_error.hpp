@@ -21,7 +21,7 @@ class GRIDMERGE_EXPORT FileError : public std::runtime_error {
  public:
   /// The message as it is, but for control characters and length.
   explicit FileError(std::string_view message);
-  /// "file: cause".
+  /// "file: cause"; of a name that is empty "'': cause".
   FileError(const std::filesystem::path& file, std::string_view cause);
 };
 

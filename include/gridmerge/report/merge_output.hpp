@@ -58,9 +58,12 @@ GRIDMERGE_EXPORT std::vector<std::filesystem::path> write_merge_output(
     const NamedMerge& merge);
 
 /// Writes `report.html` alone to `directory`, which is there. Arguments as of write_merge_output(). Throws
-/// FileError, also when one of the inputs would be replaced.
+/// FileError, also when one of the inputs would be replaced. `fingerprint` is that of the MergeRecord that
+/// the merge was read as: then also when the directory holds another merge by now, which the report would
+/// belie.
 GRIDMERGE_EXPORT void write_report(const std::filesystem::path& directory,
-                                   const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge);
+                                   const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge,
+                                   std::optional<std::uint64_t> fingerprint = std::nullopt);
 
 /// What other programs read of a merge; docs/exports.md describes each.
 enum class ExportFormat {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -33,6 +34,8 @@ struct MergeRecord {
   /// As merge() returned it, but for what is not kept: the fused maps have their omega and no more (see
   /// fuse_again()), and of a join's match there are no times.
   MergeResult result;
+  /// Of the text that it was read from: other texts have others, as good as surely.
+  std::uint64_t fingerprint = 0;
 };
 
 /// Reads the text of a `transforms.json`. Strict: every key that transforms_json() writes has to be there and
