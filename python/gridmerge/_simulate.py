@@ -101,8 +101,8 @@ class Simulation:
         building.yaml, and the truth as evaluate() reads it: pairs.tsv, negatives.tsv and sets.tsv, and building.tsv
         of the robots' maps on building.yaml.
 
-        With `probabilities` the maps are written in mode raw. Maps that an earlier dataset's tables name there, and this
-        one has not, are removed. Raises FileError when they cannot be written.
+        With `probabilities` the maps are written in mode raw. Maps that an earlier dataset's tables name there, and
+        this one has not, are removed. Raises FileError when they cannot be written.
         """
         self._core.save(_arguments.path("directory", directory), bool(probabilities))
 
