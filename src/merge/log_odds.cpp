@@ -9,6 +9,7 @@
 #include <string>
 #include <tuple>
 
+#include "grid/known_rim.hpp"
 #include "grid/parallel.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/grid/occupancy_grid.hpp"
@@ -51,26 +52,9 @@ Box known_box(const PlacedMap& input) {
 // between two of them, where the rim bulges by less than a cell.
 Box known_box(const PlacedMap& input, const Deformation& deformation) {
   if (deformation.is_identity()) return known_box(input);
-  const OccupancyGrid& map = *input.map;
-  const auto is_known = [&](int column, int row) {
-    return map.contains(column, row) && map.at(column, row) != Cell::unknown;
-  };
   Box box;
-  for (int row = 0; row < map.height; ++row) {
-    throw_if_cancelled();
-    for (int column = 0; column < map.width; ++column) {
-      if (!is_known(column, row)) continue;
-      if (is_known(column - 1, row) && is_known(column + 1, row) && is_known(column, row - 1) &&
-          is_known(column, row + 1))
-        continue;
-      for (const int x : {column, column + 1}) {
-        for (const int y : {row, row + 1}) {
-          const Point2 corner = map.origin * Point2{x * map.resolution, y * map.resolution};
-          box.add(input.T_output_map * deformation.bend(corner));
-        }
-      }
-    }
-  }
+  for_each_rim_corner(*input.map,
+                      [&](const Point2& corner) { box.add(input.T_output_map * deformation.bend(corner)); });
   return box;
 }
 

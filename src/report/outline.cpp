@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "grid/cell_box.hpp"
+#include "grid/known_rim.hpp"
 #include "report/interchange.hpp"
 
 namespace gridmerge::internal {
@@ -32,28 +33,6 @@ std::optional<Span> known_in(const OccupancyGrid& grid, int row) {
   auto last = begin + grid.width - 1;
   while (!is_known(*last)) --last;
   return Span{static_cast<int>(first - begin), static_cast<int>(last - begin)};
-}
-
-/// The corners of the known cells at the rim of what is known, in cells. However a map is bent, its outline
-/// runs along these cells.
-std::vector<Point2> rim_corners(const OccupancyGrid& grid) {
-  const auto is_known = [&grid](int column, int row) {
-    return column >= 0 && column < grid.width && row >= 0 && row < grid.height &&
-           grid.at(column, row) != Cell::unknown;
-  };
-  std::vector<Point2> corners;
-  for (int row = 0; row < grid.height; ++row) {
-    for (int column = 0; column < grid.width; ++column) {
-      if (!is_known(column, row)) continue;
-      if (is_known(column - 1, row) && is_known(column + 1, row) && is_known(column, row - 1) &&
-          is_known(column, row + 1))
-        continue;
-      for (const int x : {column, column + 1})
-        for (const int y : {row, row + 1})
-          corners.push_back({static_cast<double>(x), static_cast<double>(y)});
-    }
-  }
-  return corners;
 }
 
 /// The smallest upright box that holds all known cells; empty if nothing is known.
@@ -92,13 +71,12 @@ std::vector<Point2> convex_hull(std::vector<Point2> points) {
 }
 
 std::vector<Point2> known_outline(const OccupancyGrid& grid, const Member& member) {
-  std::vector<Point2> corners;  // in cells
+  std::vector<Point2> corners;
   if (!member.deformation.is_identity()) {
-    corners = in_map_frame(rim_corners(grid), grid);
-    for (Point2& corner : corners) corner = member.to_component(corner);
+    for_each_rim_corner(grid, [&](const Point2& corner) { corners.push_back(member.to_component(corner)); });
     return convex_hull(std::move(corners));
   }
-  for (int row = 0; row < grid.height; ++row) {
+  for (int row = 0; row < grid.height; ++row) {  // in cells at first
     const std::optional<Span> known = known_in(grid, row);
     if (!known) continue;
     for (const int y : {row, row + 1}) {
