@@ -23,18 +23,30 @@ namespace {
 
 }  // namespace
 
+BytesRead try_read_at(int descriptor, std::uint64_t offset, char* to, std::size_t count) {
+  BytesRead read;
+  while (read.count < count) {
+    const ssize_t got =
+        ::pread(descriptor, to + read.count, count - read.count, static_cast<off_t>(offset + read.count));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) read.error = errno;
+    if (got <= 0) break;
+    read.count += static_cast<std::size_t>(got);
+  }
+  return read;
+}
+
 std::size_t read_at(int descriptor, std::uint64_t offset, char* to, std::size_t count,
                     const std::filesystem::path& shown) {
   constexpr std::size_t kStep = std::size_t{1} << 20;
   std::size_t held = 0;
   while (held < count) {
     throw_if_cancelled();
-    const ssize_t got =
-        ::pread(descriptor, to + held, std::min(count - held, kStep), static_cast<off_t>(offset + held));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw_errno(shown, errno);
-    if (got == 0) break;
-    held += static_cast<std::size_t>(got);
+    const std::size_t wanted = std::min(count - held, kStep);
+    const BytesRead step = try_read_at(descriptor, offset + held, to + held, wanted);
+    if (step.error != 0) throw_errno(shown, step.error);
+    held += step.count;
+    if (step.count < wanted) break;
   }
   return held;
 }

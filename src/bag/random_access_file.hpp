@@ -9,8 +9,17 @@
 
 namespace gridmerge::internal {
 
-/// Reads up to `count` bytes of an open file at `offset`; fewer only where the file ends. Throws FileError,
-/// of the file `shown`, and Cancelled.
+/// What a reading call gave.
+struct BytesRead {
+  std::size_t count = 0;
+  int error = 0;  ///< the errno that stopped it; 0 if none did
+};
+
+/// Reads up to `count` bytes of an open file at `offset`; fewer only where the file ends, or an error stops
+/// it.
+BytesRead try_read_at(int descriptor, std::uint64_t offset, char* to, std::size_t count);
+
+/// The same in steps. Throws FileError, of the file `shown`, and Cancelled.
 std::size_t read_at(int descriptor, std::uint64_t offset, char* to, std::size_t count,
                     const std::filesystem::path& shown);
 

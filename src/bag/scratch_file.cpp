@@ -12,6 +12,7 @@
 
 #include "bag/random_access_file.hpp"
 #include "gridmerge/io/file_error.hpp"
+#include "io/durable.hpp"
 
 namespace gridmerge::internal {
 
@@ -40,15 +41,10 @@ ScratchFile::~ScratchFile() {
 }
 
 void ScratchFile::append(std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0)
-      throw FileError(shown_, fmt::format("cannot be unpacked into the folder of temporary files: {}",
-                                          std::generic_category().message(errno)));
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-    size_ += static_cast<std::uint64_t>(written);
-  }
+  if (const int error = write_all(descriptor_, bytes); error != 0)
+    throw FileError(shown_, fmt::format("cannot be unpacked into the folder of temporary files: {}",
+                                        std::generic_category().message(error)));
+  size_ += bytes.size();
 }
 
 std::string ScratchFile::read(std::uint64_t offset, std::size_t count) const {

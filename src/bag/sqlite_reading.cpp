@@ -7,8 +7,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
+#include <cstdint>
 #include <cstring>
+
+#include "bag/random_access_file.hpp"
 
 namespace gridmerge::internal {
 
@@ -34,17 +36,10 @@ int close_database(sqlite3_file* file) {
 int read_database(sqlite3_file* file, void* to, int count, sqlite3_int64 offset) {
   char* const bytes = static_cast<char*>(to);
   const auto wanted = static_cast<std::size_t>(count);
-  std::size_t held = 0;
-  while (held < wanted) {
-    const ssize_t got = ::pread(descriptor_of(file), bytes + held, wanted - held,
-                                static_cast<off_t>(offset) + static_cast<off_t>(held));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return SQLITE_IOERR_READ;
-    if (got == 0) break;
-    held += static_cast<std::size_t>(got);
-  }
-  std::memset(bytes + held, 0, wanted - held);  // as SQLite asks
-  return held == wanted ? SQLITE_OK : SQLITE_IOERR_SHORT_READ;
+  const BytesRead held = try_read_at(descriptor_of(file), static_cast<std::uint64_t>(offset), bytes, wanted);
+  if (held.error != 0) return SQLITE_IOERR_READ;
+  std::memset(bytes + held.count, 0, wanted - held.count);  // as SQLite asks
+  return held.count == wanted ? SQLITE_OK : SQLITE_IOERR_SHORT_READ;
 }
 
 int tell_size(sqlite3_file* file, sqlite3_int64* size) {
