@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,10 +37,13 @@ int run_view(const ViewCommandOptions& options) {
   auto shared = std::make_shared<const std::string>(std::move(page));
   PageAnswers answers;
   answers.page = [shared] { return shared; };
-  // As the page draws and scores them.
+  // As the page draws and scores them: drawn when they are first asked for.
   std::vector<std::optional<OccupancyGrid>> bent;
-  with_threads(options.common.threads, [&] { bent = bent_maps(merge.maps, merge.result); });
+  std::once_flag are_drawn;
   answers.refine = [&](const std::string& body) {
+    std::call_once(are_drawn, [&] {
+      with_threads(options.common.threads, [&] { bent = bent_maps(merge.maps, merge.result); });
+    });
     const auto map = [&](std::size_t i) -> const OccupancyGrid& {
       return bent[i] ? *bent[i] : merge.maps[i];
     };
