@@ -154,7 +154,9 @@ Answer match_files(const MatchCommandOptions& options) {
     const bool may_hint = !options.scaled() && !options.search.random_walk();
     if (may_hint && result.verdict == Verdict::refused) {
       console.progress("trying other scales");
-      text += plan_hint({fixed_map, moving_map});
+      const char* const what_helps = "--scale 0.5:2 finds its scale and place";
+      const std::string hint = plan_hint(fixed_map, what_helps);
+      text += hint.empty() ? plan_hint(moving_map, what_helps) : hint;
       text += scale_hint(fixed_map, moving_map, match_options(options.common, options.search));
     }
     return {result.verdict, std::move(text)};

@@ -23,7 +23,6 @@
 #include "gridmerge/merge/tree.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "known_poses.hpp"
-#include "match/drawing.hpp"
 #include "merge_notices.hpp"
 #include "merge_summary.hpp"
 #include "plan.hpp"
@@ -146,15 +145,15 @@ std::string scale_hints(const MergeCommandOptions& options, const std::vector<Oc
   std::size_t asked = 0;
   for (const LeftOut& one : result.left_out) {
     const std::size_t map = one.map;
-    if (is_drawing(maps[map])) {
-      text += fmt::format("hint: {} looks like a drawing of walls: --plan {} hangs the other maps on it\n",
-                          escape_controls(options.maps[map]), escape_controls(options.maps[map]));
-      continue;
-    }
+    const NamedMap left_out{options.maps[map], maps[map]};
+    const std::string plan = plan_hint(
+        left_out, fmt::format("--plan {} hangs the other maps on it", escape_controls(left_out.name)));
+    text += plan;
+    if (!plan.empty()) continue;
     if ((!has_merged && map == first) || count_cells(maps[map]).known() == 0 || asked == kMaxHints) continue;
     ++asked;
     console.progress("trying other scales");
-    text += scale_hint(fixed, {options.maps[map], maps[map]}, match_options(options.common, options.search));
+    text += scale_hint(fixed, left_out, match_options(options.common, options.search));
   }
   return text;
 }

@@ -13,13 +13,9 @@ namespace gridmerge::cli {
 
 using namespace internal;
 
-std::string plan_hint(const std::vector<NamedMap>& maps) {
-  for (const NamedMap& map : maps) {
-    if (is_drawing(map.grid))
-      return fmt::format("hint: {} looks like a drawing of walls: --scale 0.5:2 finds its scale and place\n",
-                         escape_controls(map.name));
-  }
-  return {};
+std::string plan_hint(const NamedMap& map, const std::string& what_helps) {
+  if (!is_drawing(map.grid)) return {};
+  return fmt::format("hint: {} looks like a drawing of walls: {}\n", escape_controls(map.name), what_helps);
 }
 
 std::string scale_hint(const NamedMap& fixed, const NamedMap& moving, const MatchOptions& options) {

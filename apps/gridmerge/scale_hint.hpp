@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "gridmerge/match/match.hpp"
 
@@ -14,9 +13,9 @@ struct NamedMap {
   const OccupancyGrid& grid;
 };
 
-/// A line for people if one of the maps, which do not fit, is a plan and not what a robot has made; "" if
-/// not.
-std::string plan_hint(const std::vector<NamedMap>& maps);
+/// A line for people if a map, which does not fit, is a plan and not what a robot has made, with what helps
+/// then; "" if not. O(cells).
+std::string plan_hint(const NamedMap& map, const std::string& what_helps);
 
 /// A line for people if the maps, which do not fit, do at another scale; "" if not. As long as find_scale().
 std::string scale_hint(const NamedMap& fixed, const NamedMap& moving, const MatchOptions& options);
