@@ -36,13 +36,19 @@ bool is_temporary_name(std::string_view name) {
          numbers.find_first_not_of("0123456789-") == std::string_view::npos;
 }
 
+bool leads_to(const std::filesystem::path& file, const struct stat& opened) {
+  struct stat named {};
+  return ::lstat(file.c_str(), &named) == 0 && named.st_dev == opened.st_dev && named.st_ino == opened.st_ino;
+}
+
 // Its program lives for as long as the lock cannot be had. Whoever cannot lock or remove leaves it there.
+// Until the lock is there the file may get its final name, and a new one this name: that one is not removed.
 void remove_if_abandoned(const std::filesystem::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return;
   struct stat status {};
   if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
-      ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+      ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && leads_to(file, status)) {
     ::unlink(file.c_str());
   }
   ::close(descriptor);

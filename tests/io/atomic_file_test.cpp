@@ -3,15 +3,20 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstdio>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "io/file_size_limit.hpp"
 #include "io/spool_file.hpp"
 #include "io/support.hpp"
+#include "io/temporary_file.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {
@@ -208,6 +213,28 @@ TEST(AtomicFile, RemovesWhatAKilledProgramHasLeft) {
   expected.emplace_back("b");
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(directory.names(), expected);
+}
+
+// One writer's file gets its final name while another looks at it; the name may be a third one's by then.
+TEST(AtomicFile, LeavesTheFilesOfThoseWhoWriteAtTheSameTime) {
+  const TemporaryDirectory directory;
+  std::atomic<bool> is_over = false;
+  std::vector<std::thread> cleaners;
+  for (int i = 0; i < 4; ++i)
+    cleaners.emplace_back([&] {
+      while (!is_over) remove_abandoned(directory.path());
+    });
+  const std::filesystem::path final = directory.file("final");
+  int gone = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const TemporaryFile created = create_beside(final);
+    gone += std::rename(created.path.c_str(), final.c_str()) != 0;
+    ::close(created.descriptor);
+  }
+  is_over = true;
+  for (std::thread& cleaner : cleaners) cleaner.join();
+  EXPECT_EQ(gone, 0);
+  EXPECT_EQ(directory.names(), Names{"final"});
 }
 
 TEST(AtomicFile, LeavesAllAsItWasOnAFullDisk) {
