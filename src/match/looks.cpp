@@ -129,8 +129,12 @@ std::vector<Hypothesis> find_hypotheses(const ComparedMaps& maps, const LookOpti
   std::vector<Hypothesis> hypotheses;
   if (options.search != SearchMethod::thorough) {
     const double share = may_look_twice ? 0.3 : 1.0;
-    hypotheses = look_quickly(maps, judge, [&](double done) { report(0.1 + share * 0.9 * done); });
-    weigh_and_settle(hypotheses, maps, judge);
+    if (options.quick_look != nullptr) {
+      hypotheses = *options.quick_look;
+    } else {
+      hypotheses = look_quickly(maps, judge, [&](double done) { report(0.1 + share * 0.9 * done); });
+      weigh_and_settle(hypotheses, maps, judge);
+    }
     const double best = hypotheses.empty() ? 0.0 : hypotheses.front().probability;
     if (!may_look_twice || best >= options.decided_from) return hypotheses;
   }

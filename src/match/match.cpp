@@ -8,6 +8,7 @@
 
 #include "gridmerge/grid/execution.hpp"
 #include "match/drawing.hpp"
+#include "match/looked_twice.hpp"
 #include "match/looks.hpp"
 #include "match/match_at_scales.hpp"
 #include "match/pair_pose.hpp"
@@ -23,15 +24,26 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-MatchResult match_in_arena(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options) {
-  // So the answer does not depend on which map the caller called fixed.
-  const bool swapped = are_swapped(fixed, moving);
-  const ComparedMaps maps(swapped ? moving : fixed, swapped ? fixed : moving);
+/// Two maps in the order in which they are compared.
+struct InOrder {
+  InOrder(const PreparedMap& fixed, const PreparedMap& moving)
+      : swapped(are_swapped(fixed, moving)), maps(swapped ? moving : fixed, swapped ? fixed : moving) {}
 
-  MatchResult result;
+  bool swapped;  // so the answer does not depend on which map the caller called fixed
+  ComparedMaps maps;
+};
+
+std::vector<Hypothesis> look(const ComparedMaps& maps, const MatchOptions& options,
+                             const QuickLook* quick_look = nullptr) {
   // Whoever accepts less than usual is told the same probability: the second look is spared from the same on.
   const double decided_from = std::max(options.accept_probability, LookOptions{}.decided_from);
-  result.hypotheses = find_hypotheses(maps, {options.search, decided_from, options.progress});
+  return find_hypotheses(maps, {options.search, decided_from, options.progress, quick_look});
+}
+
+MatchResult judge(const InOrder& in_order, std::vector<Hypothesis> found, const MatchOptions& options) {
+  const ComparedMaps& maps = in_order.maps;
+  MatchResult result;
+  result.hypotheses = std::move(found);
   result.reason = explain_refusal(figures_of(result.hypotheses), options.accept_probability);
   if (result.hypotheses.empty()) return result;
   const Hypothesis& best = result.hypotheses.front();
@@ -40,7 +52,13 @@ MatchResult match_in_arena(const PreparedMap& fixed, const PreparedMap& moving, 
   count_common(maps.fixed, maps.moving, result);
   result.verdict = best.probability >= options.accept_probability ? Verdict::accepted : Verdict::refused;
   if (result.hypotheses.size() > options.max_hypotheses) result.hypotheses.resize(options.max_hypotheses);
-  return swapped ? inverse(std::move(result)) : result;
+  return in_order.swapped ? inverse(std::move(result)) : result;
+}
+
+void require_prepared_search(const MatchOptions& options) {
+  validate(options);
+  if (options.search == SearchMethod::random_walk || options.scales)
+    throw std::invalid_argument("prepared maps are matched at one scale, and not by the random walk");
 }
 
 MatchResult walk(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options) {
@@ -71,14 +89,39 @@ MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const
 }
 
 MatchResult match(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options) {
-  validate(options);
-  if (options.search == SearchMethod::random_walk || options.scales)
-    throw std::invalid_argument("prepared maps are matched at one scale, and not by the random walk");
+  require_prepared_search(options);
   const auto start = std::chrono::steady_clock::now();
-  MatchResult result = match_in_arena(fixed, moving, options);
+  const InOrder in_order(fixed, moving);
+  MatchResult result = judge(in_order, look(in_order.maps, options), options);
   result.seconds = seconds_since(start);
   return result;
 }
+
+namespace internal {
+
+QuickMatch match_quickly(const PreparedMap& fixed, const PreparedMap& moving, MatchOptions options) {
+  options.search = SearchMethod::quick;
+  require_prepared_search(options);
+  const auto start = std::chrono::steady_clock::now();
+  const InOrder in_order(fixed, moving);
+  QuickLook found = look(in_order.maps, options);
+  MatchResult result = judge(in_order, found, options);
+  result.seconds = seconds_since(start);
+  return {std::move(result), std::move(found)};
+}
+
+MatchResult match_again(const PreparedMap& fixed, const PreparedMap& moving, MatchOptions options,
+                        const QuickLook& found) {
+  options.search = SearchMethod::exhaustive;
+  require_prepared_search(options);
+  const auto start = std::chrono::steady_clock::now();
+  const InOrder in_order(fixed, moving);
+  MatchResult result = judge(in_order, look(in_order.maps, options, &found), options);
+  result.seconds = seconds_since(start);
+  return result;
+}
+
+}  // namespace internal
 
 void validate(const ScaleRange& scales) {
   if (!(scales.least >= kMinScale && scales.most <= kMaxScale && scales.least <= scales.most))

@@ -7,6 +7,14 @@
 
 namespace gridmerge::internal {
 
+namespace {
+
+/// What the first look found at so many pairs is kept for the second one: some 1.5 kB each. The others'
+/// second look begins anew.
+constexpr std::size_t kMostFound = 20000;
+
+}  // namespace
+
 PairLooks::PairLooks(MatchOptions options) : options_(std::move(options)) {}
 
 std::vector<PairLooks::Pair> PairLooks::choose_pairs(const std::vector<MapId>& maps) {
@@ -41,13 +49,37 @@ std::vector<PairLooks::Pair> PairLooks::due_for_a_second_look(std::vector<Pair> 
 }
 
 void PairLooks::look(const std::vector<Pair>& pairs, const MapStore& maps, const Progress& progress) {
-  const auto find = [&](MapId id) -> const PreparedMap& { return maps.at(id).prepared; };
-  first_.add(pairs, find, match_options(first_search()), progress);
+  const MatchOptions options = match_options(first_search());
+  const auto make = [&](const Pair& pair) {
+    const PreparedMap &fixed = maps.at(pair.first).prepared, &moving = maps.at(pair.second).prepared;
+    if (!looks_twice()) return match(fixed, moving, options);
+    QuickMatch quick = match_quickly(fixed, moving, options);
+    const std::lock_guard lock(keeping_);
+    if (found_.size() < kMostFound) found_[std::minmax(pair.first, pair.second)] = std::move(quick.found);
+    return std::move(quick.result);
+  };
+  first_.add(pairs, make, progress);
 }
 
 void PairLooks::look_again(const std::vector<Pair>& pairs, const MapStore& maps, const Progress& progress) {
-  const auto find = [&](MapId id) -> const PreparedMap& { return maps.at(id).prepared; };
-  second_.add(pairs, find, match_options(second_search()), progress);
+  const MatchOptions options = match_options(second_search());
+  const auto make = [&](const Pair& pair) {
+    const PreparedMap &fixed = maps.at(pair.first).prepared, &moving = maps.at(pair.second).prepared;
+    const std::optional<QuickLook> found = take_found(pair);
+    return found ? match_again(fixed, moving, options, *found) : match(fixed, moving, options);
+  };
+  second_.add(pairs, make, progress);
+}
+
+std::optional<QuickLook> PairLooks::take_found(const Pair& pair) {
+  const std::lock_guard lock(keeping_);
+  auto found = found_.extract(std::minmax(pair.first, pair.second));
+  return found ? std::optional(std::move(found.mapped())) : std::nullopt;
+}
+
+void PairLooks::forget_found(MapId id) {
+  std::erase_if(found_,
+                [&](const auto& found) { return found.first.first == id || found.first.second == id; });
 }
 
 void PairLooks::hand_in(const Pair& pair, SearchMethod search, MatchResult match) {
@@ -87,11 +119,13 @@ MatchResult PairLooks::between(MapId fixed, MapId moving, const std::set<Pair>& 
 void PairLooks::outdate(MapId id) {
   first_.outdate(id);
   second_.outdate(id);
+  forget_found(id);
 }
 
 void PairLooks::forget(MapId id) {
   first_.forget(id);
   second_.forget(id);
+  forget_found(id);
 }
 
 }  // namespace gridmerge::internal

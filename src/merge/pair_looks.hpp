@@ -3,12 +3,16 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/merge/merger.hpp"
+#include "match/looked_twice.hpp"
 #include "merge/map_store.hpp"
 #include "merge/pair_matches.hpp"
 
@@ -71,9 +75,15 @@ class PairLooks {
   void forget(MapId id);
 
  private:
+  /// What the first look at the pair's maps, as they are now, has found; once.
+  std::optional<QuickLook> take_found(const Pair& pair);
+  void forget_found(MapId id);
+
   MatchOptions options_;
   PairMatches first_;
   PairMatches second_;
+  std::mutex keeping_;
+  std::map<Pair, QuickLook> found_;  // by first looks that were made here, by the lower id and the higher one
 };
 
 }  // namespace gridmerge::internal

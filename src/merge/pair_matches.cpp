@@ -16,14 +16,12 @@ PairMatches::Pair key_of(const PairMatches::Pair& pair) {
 
 }  // namespace
 
-void PairMatches::add(std::vector<Pair> pairs, const FindMap& find_map, const MatchOptions& options,
-                      const Progress& progress) {
+void PairMatches::add(std::vector<Pair> pairs, const Make& make, const Progress& progress) {
   std::erase_if(pairs, [&](const Pair& pair) { return is_up_to_date(pair.first, pair.second); });
   std::mutex keeping;
   std::size_t done = 0;
   parallel_tasks(pairs.size(), [&](std::size_t i) {
-    const auto [fixed, moving] = pairs[i];
-    MatchResult result = match(find_map(fixed), find_map(moving), options);
+    MatchResult result = make(pairs[i]);
     const std::lock_guard lock(keeping);
     keep(pairs[i], std::move(result));
     ++done;

@@ -17,13 +17,13 @@ class PairMatches {
  public:
   using MapId = std::size_t;
   using Pair = std::pair<MapId, MapId>;  ///< fixed, moving
-  using FindMap = std::function<const PreparedMap&(MapId)>;
+  using Make = std::function<MatchResult(const Pair&)>;
   using Progress = std::function<void(std::size_t, std::size_t)>;  ///< done, of all
 
-  /// Matches those of the pairs that it does not hold, or holds as outdated, as the maps are now. When the
-  /// work is cancelled, or a match throws, what is done by then is kept. Runs in the calling TBB arena.
-  void add(std::vector<Pair> pairs, const FindMap& find_map, const MatchOptions& options,
-           const Progress& progress);
+  /// Makes those of the pairs that it does not hold, or holds as outdated, as the maps are now, several at a
+  /// time. When the work is cancelled, or `make` throws, what is done by then is kept. Runs in the calling
+  /// TBB arena.
+  void add(std::vector<Pair> pairs, const Make& make, const Progress& progress);
 
   /// Takes a match of the pair as its maps are now.
   void keep(const Pair& pair, MatchResult match);

@@ -5,9 +5,12 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gridmerge/match/match.hpp"
+#include "gridmerge/match/stored_match.hpp"
+#include "match/looked_twice.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {
@@ -50,6 +53,39 @@ TEST(SearchMethod, WhatItLeavesUndecidedIs) {
   const MatchResult both = look(one, other, SearchMethod::exhaustive);
   EXPECT_EQ(both.verdict, Verdict::refused);
   EXPECT_GT(both.hypotheses.size(), quick.hypotheses.size());
+}
+
+using internal::match_again;
+using internal::match_quickly;
+using internal::QuickMatch;
+
+TEST(SearchMethod, ASecondLookGoesOnWhereTheQuickOneEnded) {
+  const OccupancyGrid building = test::draw_building(1);
+  const PreparedMap larger(test::draw_building(2)),
+      smaller(test::map_part(building, {0, 0, 12, 13}, {1, 2, 0.5}));
+  for (const auto& [fixed, moving] : {std::pair(&larger, &smaller), std::pair(&smaller, &larger)}) {
+    MatchOptions options;
+    options.max_hypotheses = 3;  // of more that the quick look has found
+    QuickMatch quick = match_quickly(*fixed, *moving, options);
+    MatchResult whole = match(*fixed, *moving, options);
+    MatchResult again = match_again(*fixed, *moving, options, quick.found);
+    options.search = SearchMethod::quick;
+    MatchResult look = match(*fixed, *moving, options);
+    for (MatchResult* one : {&quick.result, &whole, &again, &look}) one->seconds = 0.0;
+    EXPECT_EQ(to_bytes(again), to_bytes(whole));
+    EXPECT_EQ(to_bytes(quick.result), to_bytes(look));
+    EXPECT_NE(to_bytes(quick.result), to_bytes(whole));
+    EXPECT_GT(quick.found.size(), 3U);
+  }
+}
+
+TEST(SearchMethod, ASecondLookTakesTheFirstOnesWord) {
+  const PreparedMap one(test::draw_building(1)), other(test::draw_building(2));
+  internal::QuickLook found = match_quickly(one, other, {}).found;
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(match_again(one, other, {}, found).verdict, Verdict::refused);
+  found.front().probability = 0.99;
+  EXPECT_EQ(match_again(one, other, {}, found).probability, 0.99);
 }
 
 TEST(SearchMethod, TheThoroughLookFindsWhatTheQuickOneFinds) {

@@ -37,6 +37,14 @@ std::vector<SearchMethod> match_elsewhere(Merger& merger, const std::vector<Occu
   return rounds;
 }
 
+void hand_in_first_looks(Merger& merger, const std::vector<OccupancyGrid>& maps) {
+  for (std::vector<DueMatch> due = merger.due(); !due.empty() && due.front().search == SearchMethod::quick;
+       due = merger.due()) {
+    for (const DueMatch& one : due)
+      merger.hand_in(one, match(maps[one.fixed], maps[one.moving], merger.match_options(one.search)));
+  }
+}
+
 /// Options of a merge that counts the pairs which it matches itself.
 MergeOptions counting(std::size_t& matched) {
   MergeOptions options;
@@ -103,15 +111,23 @@ TEST(DueMatches, OfAMapThatHasChangedAreDueAgain) {
   expect_same(merger.solve(), merge(team.maps));
 }
 
+TEST(DueMatches, SecondLooksGoOnFromTheFirstLooksOfTheMapsAsTheyAre) {
+  Team team;
+  Merger merger;
+  for (const OccupancyGrid& map : team.maps) merger.add(map);
+  merger.solve();
+  const OccupancyGrid stranger = test::draw_building(77);
+  team.maps[1] = stranger;  // it was joined by a first look alone
+  merger.update(1, stranger);
+  hand_in_first_looks(merger, team.maps);
+  expect_same(merger.solve(), merge(team.maps));
+}
+
 TEST(DueMatches, WhatIsKnownLaterChangesWhatIsDue) {
   const Team team;
   Merger merger;
   for (const OccupancyGrid& map : team.maps) merger.add(map);
-  while (merger.due().front().search == SearchMethod::quick) {
-    for (const DueMatch& one : merger.due())
-      merger.hand_in(one,
-                     match(team.maps[one.fixed], team.maps[one.moving], merger.match_options(one.search)));
-  }
+  hand_in_first_looks(merger, team.maps);
   EXPECT_EQ(merger.due().size(), 4u);  // of the stranger
   for (std::size_t map = 0; map < 5; ++map) merger.set_known_pose(map, KnownPose{{0, 0, 0}, 0.1, 0.1, true});
   EXPECT_TRUE(merger.due().empty());  // all are fixed, so none lies apart
