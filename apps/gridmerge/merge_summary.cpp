@@ -230,10 +230,22 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
 
 namespace {
 
-const char* what_may_help(MapTransform asked) {
-  return asked == MapTransform::rigid ? "; --elastic bends maps so that they fit better, and --transform "
-                                        "similarity mends a false scale"
-                                      : "; --elastic bends maps so that they fit better";
+std::string what_may_help(MapTransform asked, bool rests_on_initial_poses) {
+  std::string help = rests_on_initial_poses ? "; an initial pose may be wrong, or" : ";";
+  help += " --elastic bends maps so that they fit better";
+  if (asked == MapTransform::rigid) help += ", and --transform similarity mends a false scale";
+  return help;
+}
+
+/// Whether maps of the component lie together by their initial poses alone.
+bool rests_on_initial_poses(const Component& component, const MergeResult& result) {
+  const auto is_member = [&](std::size_t map) {
+    return std::any_of(component.members.begin(), component.members.end(),
+                       [&](const Member& member) { return member.map == map; });
+  };
+  return std::any_of(result.joins.begin(), result.joins.end(), [&](const Join& join) {
+    return join.outcome == JoinOutcome::known && is_member(join.fixed);
+  });
 }
 
 }  // namespace
@@ -247,8 +259,10 @@ std::string describe_doubled(const AskedMerge& asked, const std::vector<Occupanc
     const bool may_help = asked.transform != MapTransform::elastic && share >= kManyDoubled &&
                           !holds_all(asked, result.components[i]);
     if (!may_help && !is_asked_for) continue;
-    fmt::format_to(std::back_inserter(text), "{}: {:.1f} % of the walls that several maps saw lie double{}\n",
-                   component_file(i), 100.0 * share, may_help ? what_may_help(asked.transform) : "");
+    fmt::format_to(
+        std::back_inserter(text), "{}: {:.1f} % of the walls that several maps saw lie double{}\n",
+        component_file(i), 100.0 * share,
+        may_help ? what_may_help(asked.transform, rests_on_initial_poses(result.components[i], result)) : "");
   }
   return text;
 }

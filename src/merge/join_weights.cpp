@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "merge/pose_graph.hpp"
@@ -19,10 +20,9 @@ constexpr double kDependence = 0.3;
 /// A pair of whose places a share is fresh speaks of them with this power of the share: what borders on known
 /// places is not independent of them either.
 constexpr double kFreshPower = 2.0;
-/// The loss when two maps that would have much in common have no candidate that agrees, and the shares of the
-/// smaller map at which it begins and is whole: of simulated pairs that have less than a tenth in common the
-/// true pose is hardly ever among the candidates, of those with a quarter in two of three cases, and from a
-/// half on in 97 of 100.
+/// The shares in common at which a miss begins to count, and counts in full: of simulated pairs that have
+/// less than a tenth in common the true pose is hardly ever among the candidates, of those with a quarter in
+/// two of three cases, and from a half on in 97 of 100.
 constexpr double kMissNats = 3.3;
 constexpr double kMissFrom = 0.12;
 constexpr double kMissWhole = 0.45;
@@ -46,6 +46,23 @@ struct Witness {
   double worth;
   double against_alike;  // the same against two places that look alike: there poses agree, too. Not negative
   std::vector<Point2> places;  // of which it speaks [m, frame of the first group]
+  bool is_known;               // by the given poses of these maps of the two groups
+  std::size_t map_a, map_b;
+};
+
+/// Pairs that speak by given poses. A given pose is one statement, of however many pairs: the pair that
+/// doubts it most tells its worth.
+class GivenPoses {
+ public:
+  /// Whether neither pose has spoken before.
+  bool speak(const Witness& witness) {
+    if (spoken_.contains(witness.map_a) || spoken_.contains(witness.map_b)) return false;
+    spoken_.insert({witness.map_a, witness.map_b});
+    return true;
+  }
+
+ private:
+  std::set<std::size_t> spoken_;
 };
 
 /// What speaks for a case against two others together, if so much speaks for it against each of them [nats].
@@ -78,6 +95,10 @@ class SpokenOf {
 };
 
 }  // namespace
+
+double nats_of_a_miss(double share_in_common) {
+  return kMissNats * std::clamp((share_in_common - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
+}
 
 JoinWeights::JoinWeights(const JoinProblem& problem) : problem_(problem), partners_(problem.maps.size()) {
   marks_.reserve(problem.pairs.size());
@@ -193,17 +214,20 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
       const bool is_known = agreement && problem_.pairs[*pair].candidates[agreement->candidate].is_known;
       const double against_alike = is_known ? worth : worth - kPoseNats;
       if (against_alike < 0.0) {
-        const double share = know_coverage ? of_a->share_in_common(*of_b, T) : 0.0;
-        const double loss = -kMissNats * std::clamp((share - kMissFrom) / (kMissWhole - kMissFrom), 0.0, 1.0);
+        const double loss = -nats_of_a_miss(know_coverage ? of_a->share_in_common(*of_b, T) : 0.0);
         if (worth <= 0.0) losses.push_back(std::max(loss, worth));
         if (against_alike != kSaysNothing) doubts.push_back(std::max(loss, against_alike));
       }
       if (worth > 0.0) {
-        witnesses.push_back({worth, std::max(0.0, against_alike), {}});
+        witnesses.push_back({worth, std::max(0.0, against_alike), {}, is_known, in_a.map, b[i].map});
         if (know_coverage) witnesses.back().places = of_a->places_in_common(*of_b, T, T_a_map);
       }
     }
   }
+  std::stable_sort(witnesses.begin(), witnesses.end(),
+                   [](const Witness& x, const Witness& y) { return x.worth < y.worth; });
+  GivenPoses given_poses;
+  std::erase_if(witnesses, [&](const Witness& one) { return one.is_known && !given_poses.speak(one); });
   std::stable_sort(witnesses.begin(), witnesses.end(),
                    [](const Witness& x, const Witness& y) { return x.worth > y.worth; });
   const double lost = sum_of_dependent(std::move(losses)) - kPoseNats;

@@ -28,6 +28,10 @@ inline constexpr double kSaysNothing = -kPoseNats;
 /// [nats].
 inline constexpr double kAlikeNats = 0.5;
 
+/// What it says against a pose if two maps that have such a share of the smaller one in common there have no
+/// candidate that agrees [nats].
+double nats_of_a_miss(double share_in_common);
+
 /// What it is worth to two groups of maps to lie together so [nats].
 struct JoinWorth {
   double against_other_poses = 0.0;  ///< all that speaks for it: tells how they lie, if they belong together

@@ -95,7 +95,7 @@ JoinProblem make_problem(const MapStore& store, const std::vector<MapId>& maps,
     PairCandidates pair{a, b, candidate_joins(looks.between(fixed, moving, again))};
     const std::optional<KnownPose> of_a = store.known_pose(fixed), of_b = store.known_pose(moving);
     if (of_a && of_b && !(of_a->fixed && of_b->fixed))
-      apply_known_poses(*of_a, *of_b, problem.maps[a].extent, problem.maps[b].extent, pair);
+      apply_known_poses(*of_a, *of_b, problem.maps[a], problem.maps[b], pair);
     problem.pairs.push_back(std::move(pair));
   }
   // In whatever order they were chosen.

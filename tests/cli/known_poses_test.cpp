@@ -50,6 +50,17 @@ TEST_F(KnownPoses, AGivenPoseThatTwoMapsContradictIsNamed) {
   EXPECT_EQ(outcome.out.find("a lower --accept"), std::string::npos) << outcome.out;
 }
 
+TEST_F(KnownPoses, APrecisePoseThatPutsWallsBesideWallsIsNotBelievedBlindly) {
+  const std::string poses = directory.write(
+      "poses.tsv", "map\tx\ty\ttheta\tsd\tsd_theta\nleft.yaml\t0\t0\t0\t0.05\t0.005\nright.yaml\t" +
+                       std::to_string(T_left_right.x - 3.0) + "\t" + std::to_string(T_left_right.y) + "\t" +
+                       std::to_string(T_left_right.theta) + "\t0.05\t0.005\n");
+  const Outcome outcome = run({"merge", left, right, "--init", poses, "-o", output});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.out.find("the given pose is 3 m from where the map surely fits "), std::string::npos)
+      << outcome.out;
+}
+
 TEST_F(KnownPoses, AFixedMapThatIsLeftOutIsNamed) {
   const std::string blank = write_map(directory, "blank", make_grid(40, 30, 0.1));
   const Outcome outcome = run({"merge", left, right, blank, "--fix", blank, "-o", output});

@@ -251,11 +251,38 @@ TEST(ConsistentSet, MapsWhosePairsAreAllSureAreOnePlace) {
 TEST(ConsistentSet, AKnownPoseIsOfNoOtherPlace) {
   World world(3);
   world.say(0, 1, 4.0);
-  world.say(0, 2, 0.0);
-  world.say(1, 2, 0.0);
+  world.say(0, 2, 1.6);
   EXPECT_EQ(find_consistent_set(world.problem, kAccept).groups.size(), 2u);
-  for (const std::size_t other : {0u, 1u}) world.pair(other, 2).candidates[0].is_known = true;
+  world.pair(0, 2).candidates[0].is_known = true;
   EXPECT_EQ(find_consistent_set(world.problem, kAccept).groups.size(), 1u);
+}
+
+/// One map's given pose puts it right or wrong for all others: they do not bear it out.
+TEST(ConsistentSet, AWrongGivenPoseDoesNotGainByEveryPairThatItIsGivenFor) {
+  World world(4);
+  for (const auto& [a, b] : {std::pair(0u, 1u), std::pair(0u, 2u), std::pair(1u, 2u)}) world.say(a, b, 5.0);
+  for (const std::size_t other : {0u, 1u, 2u}) {
+    const SE2 T_other_wrong = world.T(other, 0) * kWrong * world.T(0, 3);
+    world.say(other, 3, 6.0, inverse(world.T(other, 3)) * T_other_wrong);
+    world.pair(other, 3).candidates[0].is_known = true;
+  }
+  EXPECT_EQ(find_consistent_set(world.problem, kAccept).groups.size(), 1u) << "nothing says that it is wrong";
+  world.say(0, 3, 5.8);
+  EXPECT_EQ(find_consistent_set(world.problem, kAccept).groups.size(), 2u) << "that may be, too";
+  world.say(1, 3, 5.8);
+  const ConsistentSet consistent_set = find_consistent_set(world.problem, kAccept);
+  ASSERT_EQ(consistent_set.groups.size(), 1u);
+  world.expect_true(consistent_set.groups[0]);
+}
+
+/// The pair that sees most of a given pose tells what it is worth.
+TEST(ConsistentSet, AGivenPoseIsWorthWhatThePairSaysThatDoubtsItMost) {
+  World world(3);
+  world.say(0, 1, 5.0);
+  world.say(0, 2, 6.0);
+  world.say(1, 2, 1.0);
+  for (const std::size_t other : {0u, 1u}) world.pair(other, 2).candidates[0].is_known = true;
+  EXPECT_EQ(find_consistent_set(world.problem, kAccept).groups.size(), 2u);
 }
 
 TEST(ConsistentSet, AWrongJoinStrongerThanEveryRightOneIsNotUsed) {

@@ -249,7 +249,9 @@ TEST(PlaceOnPlan, APartWithoutAWallLeftSaysNothing) {
     return map;
   };
   const std::vector<OccupancyGrid> maps{room(10, 30), room(33, 50)};
-  const MergeResult merged = merge(maps, {}, {KnownPose{{}, 0.01, 0.01}, KnownPose{{}, 0.01, 0.01}});
+  MergeOptions options;
+  options.match.accept_probability = 0.9;  // the maps say that the poses are doubtful
+  const MergeResult merged = merge(maps, options, {KnownPose{{}, 0.01, 0.01}, KnownPose{{}, 0.01, 0.01}});
   ASSERT_EQ(merged.components.size(), 1u);
   ASSERT_EQ(count_cells(merged.components[0].fused.grid).occupied, 0u);
   const MergeResult result = place_on_plan(maps, Ends().plan, merged, {}, at_scales(1.2, 1.3));
