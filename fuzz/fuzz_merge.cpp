@@ -92,8 +92,6 @@ bool are_same(const MergeResult& a, const MergeResult& b) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   FuzzedDataProvider bytes(data, size);
   MergeOptions options;
-  // The quick look alone: the target `match` is for the thorough one, and it takes ten times as long.
-  options.match.search = SearchMethod::quick;
   options.match.accept_probability = bytes.PickValueInArray({0.95, 0.0, 0.5});
   options.max_false_joins = bytes.PickValueInArray({0.05, 0.0, 10.0});
   const auto count = bytes.ConsumeIntegralInRange(std::size_t{2}, std::size_t{4});
@@ -102,6 +100,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.transform = bytes.PickValueInArray(
       {MapTransform::rigid, MapTransform::elastic, MapTransform::similarity, MapTransform::affine});
   options.resolution = draw_resolution(maps);
+  options.match.search =
+      bytes.PickValueInArray({SearchMethod::exhaustive, SearchMethod::quick, SearchMethod::thorough});
   MergeResult result;
   try {
     result = merge(maps, options, known);

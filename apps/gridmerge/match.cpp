@@ -17,6 +17,7 @@
 #include "match/drawing.hpp"
 #include "report/json_lines.hpp"
 #include "scale_hint.hpp"
+#include "scarce_memory.hpp"
 #include "search_options.hpp"
 
 namespace gridmerge::cli {
@@ -127,10 +128,8 @@ std::string describe_drawings(const std::vector<NamedMap>& maps) {
   return text;
 }
 
-Answer match_files(const MatchCommandOptions& options) {
-  Console console(options.common);
-  MapReader reader(options.load, console);
-  const auto [fixed, moving] = read_maps(options, reader);
+Answer match_loaded(const MatchCommandOptions& options, const LoadedMap& fixed, const LoadedMap& moving,
+                    MapReader& reader, Console& console) {
   if (options.scaled()) {
     check_walls(options.fixed, fixed.grid);
     check_walls(options.moving, moving.grid);
@@ -163,6 +162,19 @@ Answer match_files(const MatchCommandOptions& options) {
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(options.fixed + " and " + options.moving + ": " + error.what());
   }
+}
+
+Answer match_files(const MatchCommandOptions& options) {
+  Console console(options.common);
+  MapReader reader(options.load, console);
+  const auto [fixed, moving] = read_maps(options, reader);
+  const auto match_them = [&, &fixed = fixed, &moving = moving] {
+    return match_loaded(options, fixed, moving, reader, console);
+  };
+  return with_scarce_memory(match_them, [&, &fixed = fixed, &moving = moving] {
+    return fmt::format("while matching {} and {}: maps of larger cells take less",
+                       describe_size(options.fixed, fixed.grid), describe_size(options.moving, moving.grid));
+  });
 }
 
 int run_match(const MatchCommandOptions& options) {

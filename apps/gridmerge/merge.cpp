@@ -27,6 +27,7 @@
 #include "merge_summary.hpp"
 #include "plan.hpp"
 #include "scale_hint.hpp"
+#include "scarce_memory.hpp"
 #include "search_options.hpp"
 #include "transform_options.hpp"
 
@@ -158,6 +159,13 @@ std::string scale_hints(const MergeCommandOptions& options, const std::vector<Oc
   return text;
 }
 
+std::string describe_work(const MergeCommandOptions& options, const Inputs& inputs) {
+  return fmt::format(
+      "while merging {}: larger cells take less (of the merged map: --output-resolution), and so do fewer "
+      "--threads",
+      describe_sizes(options.maps, inputs.maps));
+}
+
 int run_shard(const MergeCommandOptions& options) {
   Console console(options.common);
   const KnownPoses known_poses(options.known, options.maps, console);
@@ -165,7 +173,9 @@ int run_shard(const MergeCommandOptions& options) {
   const Inputs inputs = load_inputs(options, known_poses, console);
   const MergeOptions engine = merge_options(options, console);
   tell_of_all_pairs(options, inputs.maps.size(), engine, console);
-  const ShardOutcome outcome = cached.make_shard(inputs.maps, engine, known_poses.poses());
+  const ShardOutcome outcome =
+      with_scarce_memory([&] { return cached.make_shard(inputs.maps, engine, known_poses.poses()); },
+                         [&] { return describe_work(options, inputs); });
   console.clear();
   print(outcome.text);
   return outcome.is_all_made ? kDone : kRefused;
@@ -191,15 +201,18 @@ int run_merge(const MergeCommandOptions& options) {
   try_exports(exports, options.output, inputs.files);
   if (!options.search.trace.empty())
     require_not_exported(exports, options.search.trace, "--export and --trace");
-  MergeResult result =
-      merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
-  if (inputs.plan)
-    result = inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
-  console.progress("writing the result");
+  MergeResult result;
   std::vector<std::filesystem::path> removed;
-  with_threads(options.common.threads, [&] {
-    removed = write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
-  });
+  const auto merge_and_write = [&] {
+    result = merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
+    if (inputs.plan)
+      result = inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
+    console.progress("writing the result");
+    with_threads(options.common.threads, [&] {
+      removed = write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
+    });
+  };
+  with_scarce_memory(merge_and_write, [&] { return describe_work(options, inputs); });
   matcher.write_trace();
   std::string exported;
   std::exception_ptr not_exported;  // told behind what the merge has found

@@ -2,6 +2,7 @@
 #include "gridmerge/evaluate/evaluate.hpp"
 
 #include <algorithm>
+#include <new>
 #include <set>
 #include <stdexcept>
 
@@ -25,6 +26,8 @@ auto named(const TruthMap& map, const Read& read) {
     throw FileError(std::string(error.what()) + " (" + map.named_at + " names it)");
   }
 }
+
+constexpr const char* kNoMemory = "out of memory: maps of larger cells take less";
 
 LoadOptions of_named_files(LoadOptions options) {
   options.regular_files_only = true;
@@ -81,6 +84,8 @@ class Evaluator {
       return judge_set(set, moments, options_.merger(grids));
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error("set " + set.name + ": " + error.what());
+    } catch (const std::bad_alloc&) {
+      throw std::runtime_error("set " + set.name + ": " + kNoMemory);
     }
   }
 
@@ -96,10 +101,15 @@ class Evaluator {
 
   MatchResult match_named(const TruthMap& fixed, const EvaluatedMap& fixed_map, const TruthMap& moving,
                           const EvaluatedMap& moving_map) const {
+    const auto failed = [&](const char* why) {
+      return std::runtime_error(fixed.path.string() + " and " + moving.path.string() + ": " + why);
+    };
     try {
       return options_.matcher(fixed_map.grid, moving_map.grid);
     } catch (const std::invalid_argument& error) {
-      throw std::runtime_error(fixed.path.string() + " and " + moving.path.string() + ": " + error.what());
+      throw failed(error.what());
+    } catch (const std::bad_alloc&) {
+      throw failed(kNoMemory);
     }
   }
 

@@ -75,7 +75,7 @@ std::vector<ScoredPose> keep_distinct(std::vector<ScoredPose> poses, const PoseM
 
 double rank_of(const Evidence& evidence, RankBy rank) {
   if (rank == RankBy::amount) return evidence.score;
-  return evidence.score / std::pow(std::max(1.0, evidence.seen_walls), kSpreadPower);
+  return evidence.score / spread_of(std::max(1.0, evidence.seen_walls));
 }
 
 double PoseMetric::displacement(const SE2& a, const SE2& b) const {

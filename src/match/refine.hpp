@@ -34,7 +34,7 @@ struct ScoredPose {
 /// What makes one pose better than another on the way.
 enum class RankBy {
   amount,   ///< the score: what overlaps much wins
-  quality,  ///< the score by what unrelated walls spread it, seen_walls^kSpreadPower: what overlaps little
+  quality,  ///< the score by what unrelated walls spread it, spread_of(seen_walls): what overlaps little
             ///< may win
 };
 

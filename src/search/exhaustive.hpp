@@ -29,10 +29,11 @@ inline constexpr std::size_t kMaxSearchSamples = 240;
 /// Scores the moving map's wall points at every rotation and every translation at which at least 8 % of them
 /// can lie on the fixed map, and returns the best local maxima, best first. A score is the sum over the
 /// sampled walls of the evidence (evidence_table) in the fixed map, averaged over the coarse cell in which
-/// the wall falls, in whole sixths of a nat and at most 15 of them: the result is the same bits on every
-/// machine and for any number of threads. Shifts that by a bound cannot reach the score of the last candidate
-/// are passed over (branch and bound, Lawler and Wood 1966, of one level), which changes nothing in the
-/// result. Runs in the calling TBB arena. O(rotations * samples * translations).
+/// the wall falls, in whole sixths of a nat and at most 15 of them: the result is the same bits for any
+/// number of threads, and on every machine whose C library gives the same bits for sin, cos, hypot, erf and
+/// log. Shifts that by a bound cannot reach the score of the last candidate are passed over (branch and
+/// bound, Lawler and Wood 1966, of one level), which changes nothing in the result. Runs in the calling TBB
+/// arena. O(rotations * samples * translations).
 std::vector<PoseCandidate> search_all_poses(const LikelihoodField& fixed, const LikelihoodField& moving,
                                             const ExhaustiveSearchOptions& options = {});
 

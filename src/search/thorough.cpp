@@ -106,7 +106,7 @@ EvidenceImage make_seen_pairs(const LikelihoodField& fixed, const SearchFrame& f
 }
 
 /// What unrelated poses score [nats] with n samples seen: -kMean n on average, with a standard deviation of
-/// kSpread n^kSpreadPower.
+/// kSpread spread_of(n).
 constexpr double kMean = 0.37;
 constexpr double kSpread = 0.48;
 constexpr double kUnits = 256.0;     // of a score, a standard deviation
@@ -122,7 +122,7 @@ class Normal {
     for (std::size_t seen = 0; seen <= most; ++seen) {
       const double n = weight * static_cast<double>(seen) / kMaxCorrelated;
       const bool is_enough = n >= kMinSeenSamples;
-      const double per_unit = is_enough ? kUnits / (kScale * kSpread * std::pow(n, kSpreadPower)) : 0.0;
+      const double per_unit = is_enough ? kUnits / (kScale * kSpread * spread_of(n)) : 0.0;
       mean_.push_back(static_cast<float>(-kScale * kMean * n));
       per_unit_.push_back(static_cast<float>(per_unit));
     }

@@ -125,6 +125,21 @@ class Faults : public FaultTest {
     return !std::filesystem::exists(directory.file("o/.gridmerge.tmp"));
   }
 
+  /// Of 20 runs, each with another allocation that fails, those which say this.
+  int allocations_that_tell(const std::vector<std::string>& command, const std::string& text) const {
+    constexpr int kRuns = 20;
+    run(command, with_fault("none 0"));
+    const int allocations = counts().allocations;
+    EXPECT_GT(allocations, 1000);
+    int told = 0;
+    for (int i = 1; i <= kRuns; ++i) {
+      const Outcome outcome =
+          run(command, with_fault(fmt::format("memory {}", i * (allocations / (kRuns + 1)))));
+      told += outcome.exit_code == 1 && outcome.err.find(text) != std::string::npos ? 1 : 0;
+    }
+    return told;
+  }
+
   void signal_at_each_call(Over over, int signal) {
     bool was_old = false, was_new = false;
     at_each_call(over, "signal", std::to_string(signal), [&](const Outcome& outcome, bool is_old) {
@@ -177,6 +192,17 @@ TEST_F(Faults, AFailedAllocationIsAnErrorThatLeavesTheOldSet) {
   // a small sample a few may be such.
   EXPECT_LE(untidy, 3 + runs / 40);
   expect_order(Over::old_set);
+}
+
+TEST_F(Faults, WithoutMemoryTheMapsOfTheWorkAreNamed) {
+  const std::vector<std::string> match{"match", a, b, "--threads", "1"};
+  const std::string match_named = fmt::format(
+      "out of memory while matching {} (50 x 50 cells) and {} (50 x 50 cells): maps of larger cells", a, b);
+  EXPECT_GE(allocations_that_tell(match, match_named), 10);
+  const std::string merge_named = "out of memory while merging 2 maps, the largest of which is " + a +
+                                  " (50 x 50 cells): larger cells take less (of the merged map: "
+                                  "--output-resolution)";
+  EXPECT_GE(allocations_that_tell(merge_into("o"), merge_named), 10);
 }
 
 TEST_F(Faults, AThreadThatCannotBeStartedIsAnErrorThatLeavesTheOldSet) {

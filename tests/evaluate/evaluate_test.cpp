@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -149,6 +150,13 @@ TEST_F(Evaluate, NamesTheMapsThatCannotBeComparedOrMerged) {
             map("left").path.string() + " and " + map("right").path.string() + ": too odd");
   set.sets = {{"floor", {{map("left"), {}, 0.2}, {map("right"), {}, 0.2}}}};
   EXPECT_EQ(message_of<std::runtime_error>([&] { evaluate(set, options); }), "set floor: too many");
+
+  options.matcher = [](const OccupancyGrid&, const OccupancyGrid&) -> MatchResult { throw std::bad_alloc(); };
+  options.merger = [](const std::vector<OccupancyGrid>&) -> MergeResult { throw std::bad_alloc(); };
+  const std::string no_memory = ": out of memory: maps of larger cells take less";
+  EXPECT_EQ(message_of<std::runtime_error>([&] { evaluate(pair, options); }),
+            map("left").path.string() + " and " + map("right").path.string() + no_memory);
+  EXPECT_EQ(message_of<std::runtime_error>([&] { evaluate(set, options); }), "set floor" + no_memory);
 }
 
 TEST_F(Evaluate, SaysWhichLineNamesAMapThatCannotBeRead) {

@@ -65,6 +65,28 @@ TEST(PreparedMap, CanBeCancelledWhileItIsMadeAndDrawn) {
   EXPECT_EQ(DrawnWalls::of(prepared, 0.1).cell, 0.1);  // another time it is drawn
 }
 
+TEST(Match, TellsOfNoProgressOnceItIsCancelled) {
+  const PreparedMap fixed(test::map_part(test::draw_building(1), {0.0, 0.0, 9.0, 9.0}, {}));
+  const PreparedMap moving(test::map_part(test::draw_building(1), {7.0, 4.0, 16.0, 13.0}, {}));
+  std::atomic<bool> cancelled{false};
+  int told = 0, last = 0;
+  MatchOptions options;
+  options.accept_probability = 1.0;  // so that there is a thorough look too
+  options.progress = [&](double) {
+    if (++told == last) cancelled = true;
+  };
+  const auto work = [&] { with_threads(1, [&] { match(fixed, moving, options); }); };
+  with_cancellation(cancelled, work);
+  const int all = told;
+  EXPECT_GE(all, 11);
+  for (last = 1; last < all; ++last) {
+    told = 0;
+    cancelled = false;
+    EXPECT_THROW(with_cancellation(cancelled, work), Cancelled);
+    EXPECT_EQ(told, last);
+  }
+}
+
 TEST(Match, JoinsPartsThatOverlap) {
   std::mt19937 random(5);
   const OccupancyGrid building = test::draw_building(2);

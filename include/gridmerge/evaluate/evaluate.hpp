@@ -162,7 +162,7 @@ GRIDMERGE_EXPORT std::vector<std::filesystem::path> input_files(const Truth& tru
 
 /// Matches every pair and negative and merges every set, one after the other, reading maps as it goes.
 /// Throws FileError when a map cannot be read, and std::runtime_error naming the maps when they cannot be
-/// compared.
+/// compared, or only with more memory than there is.
 GRIDMERGE_EXPORT Evaluation evaluate(const Truth& truth, const EvaluateOptions& options = {});
 
 }  // namespace gridmerge

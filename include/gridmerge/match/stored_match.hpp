@@ -13,7 +13,7 @@
 namespace gridmerge {
 
 /// The version of the engine that matches pairs, and a digest of its sources: engines of one id give the same
-/// answers.
+/// answers, but for last digits where C libraries or processors round functions differently.
 GRIDMERGE_EXPORT const char* engine_id();
 
 /// A name for what a grid holds: its size, resolution, origin, cells and probabilities. 64 hexadecimal
