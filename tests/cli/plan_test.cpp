@@ -78,6 +78,15 @@ TEST_F(MergePlan, AnImageNeedsNoResolution) {
   EXPECT_NEAR(transforms().at("plan").at("scale"), 1.25, 0.02);
 }
 
+TEST_F(MergePlan, MapsThatThePlanAloneJoinsAreNotBent) {
+  const Outcome outcome =
+      run({"merge", west, east, "--plan", plan, "--plan-scale", "1.1:1.4", "--elastic", "-o", output});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("no map is bent: maps that the plan alone joins stay as they are\n"),
+            std::string::npos)
+      << outcome.out;
+}
+
 TEST_F(MergePlan, ADrawingAmongTheMapsMayBeTheirPlan) {
   const std::string drawing = write_map(directory, "drawing", on_white_paper(draw_building(2)));
   const Outcome outcome = run({"merge", left, right, drawing, "-o", output});
