@@ -195,18 +195,17 @@ int run_merge(const MergeCommandOptions& options) {
       merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
   if (inputs.plan)
     result = inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
+  const NamedMerge named{options.maps, inputs.maps, result, inputs.plan ? &inputs.plan->grid() : nullptr};
   console.progress("writing the result");
   std::vector<std::filesystem::path> removed;
-  with_threads(options.common.threads, [&] {
-    removed = write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
-  });
+  with_threads(options.common.threads,
+               [&] { removed = write_merge_output(options.output, inputs.files, named); });
   matcher.write_trace();
   std::string exported;
   std::exception_ptr not_exported;  // told behind what the merge has found
   try {
     if (!exports.empty()) console.progress("writing the exports");
-    exported =
-        write_exports(exports, inputs.files, {options.maps, inputs.maps, result}, options.common.threads);
+    exported = write_exports(exports, inputs.files, named, options.common.threads);
   } catch (const FileError&) {
     not_exported = std::current_exception();
   }

@@ -171,7 +171,7 @@ MergeResult place_on_plan(const std::vector<OccupancyGrid>& maps, const Occupanc
     std::vector<MergePart> parts = parts_of(merged, inputs);
     Hanger hanger(drawn, merged, options, plan_options, parts);
     const std::vector<std::optional<PlanWay>> ways = hanger.find();
-    PlanPlacement placement{plan_options.name, 1.0, {}};
+    PlanPlacement placement{plan_options.name, 1.0, {}, plan.resolution};
     for (std::size_t i = 0; i < parts.size(); ++i) {
       PlanPart told;
       for (const Member& member : parts[i].members) told.maps.push_back(member.map);

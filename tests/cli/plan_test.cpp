@@ -41,7 +41,7 @@ TEST_F(MergePlan, JoinsWhatNothingElseJoins) {
     expect_near(member.at("transform"), inverse(T), 0.4, 0.03);
   }
   const Json& told = json.at("plan");
-  expect_keys(told, {"source", "scale", "probability", "component", "maps", "parts"});
+  expect_keys(told, {"source", "resolution", "scale", "probability", "component", "maps", "parts"});
   EXPECT_EQ(told.at("source"), plan);
   EXPECT_NEAR(told.at("scale"), 1.25, 0.02);
   EXPECT_GE(told.at("probability"), 0.95);
@@ -52,6 +52,7 @@ TEST_F(MergePlan, JoinsWhatNothingElseJoins) {
     expect_keys(part, {"maps", "transform", "scale", "probability", "reason"});
     EXPECT_NEAR(part.at("scale"), 1.25, 0.05);
   }
+  EXPECT_EQ(told.at("resolution"), draw_building(1).resolution * 0.8);
   // The page names the plan, and a report that is made again is the same to the byte.
   const std::string page = read_file(output + "/report.html");
   EXPECT_NE(page.find("\"plan\":{\"name\":"), std::string::npos);
@@ -76,6 +77,25 @@ TEST_F(MergePlan, AnImageNeedsNoResolution) {
                             "1.1:1.4", "-o", output});
   EXPECT_EQ(told.err, "");
   EXPECT_NEAR(transforms().at("plan").at("scale"), 1.25, 0.02);
+}
+
+// As the merge counted its pixels, whatever the report is told of images.
+TEST_F(MergePlan, AReportThatIsMadeAgainShowsThePlanToo) {
+  const std::string image = directory.file("plan.pgm");
+  ASSERT_EQ(run({"merge", left, right, "--plan", image, "--plan-scale", "0.9:1.1", "-o", output}).exit_code,
+            0);
+  const std::string page = read_file(output + "/report.html");
+  EXPECT_NE(page.find("\"grid\":{\"width\":"), std::string::npos);
+  const Outcome again = run({"report", output, "--resolution", "0.3"});
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(again.err, "");
+  EXPECT_EQ(read_file(output + "/report.html"), page);
+  std::filesystem::rename(image, directory.file("moved.pgm"));
+  const Outcome without = run({"report", output});
+  EXPECT_EQ(without.exit_code, 0) << without.err;
+  EXPECT_NE(without.err.find(image), std::string::npos) << without.err;
+  EXPECT_NE(without.err.find("the report does not show the plan"), std::string::npos) << without.err;
+  EXPECT_NE(read_file(output + "/report.html").find("\"grid\":null"), std::string::npos);
 }
 
 TEST_F(MergePlan, MapsThatThePlanAloneJoinsAreNotBent) {

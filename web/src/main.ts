@@ -150,13 +150,19 @@ async function unpackAll(state: State): Promise<void> {
       await each(component.file, component, (grid) => { state.mergedGrids[i] = grid; });
     }
   };
+  const unpackPlan = async () => {
+    const { plan } = report;
+    if (plan?.grid) await each(plan.name, plan.grid, (grid) => { state.planGrid = grid; });
+  };
   const first = new Set(state.scene.placed.map(({ map }) => map));
   const waiting = new Set([...report.maps.keys()].sort((a, b) => Number(first.has(b)) - Number(first.has(a))));
   if (!large) {
     for (const i of waiting) await unpackMap(i);
     await unpackMerged();
+    await unpackPlan();
   } else {
     await unpackMerged();
+    await unpackPlan();
     state.changed("grids");
     document.documentElement.dataset.ready = "true";
     while (waiting.size > 0) {
@@ -263,6 +269,9 @@ function build(report: Report): void {
       if (report.components.length > 0) toggleMerged();
     },
     toggleAgreement: () => layers.toggle(state.agreement),
+    togglePlan: () => {
+      if (state.planPlace()) layers.toggle(state.plan);
+    },
     toggleRuler,
     help: () => help.showModal(),
     refine: () => void hand.refine(),
