@@ -158,6 +158,16 @@ std::string scale_hints(const MergeCommandOptions& options, const std::vector<Oc
   return text;
 }
 
+/// Of a plan that no map hangs on: whether the sizes of both speak for other scales.
+std::string plan_scale_hint(const MergeCommandOptions& options, const Inputs& inputs,
+                            const MergeResult& result) {
+  if (!inputs.plan || !result.plan->maps_on_plan().empty()) return {};
+  const NamedMap map = result.components.empty()
+                           ? NamedMap{options.maps.front(), inputs.maps.front()}
+                           : NamedMap{"the merged map", result.components.front().fused.grid};
+  return range_hint(map, {options.plan.file, inputs.plan->grid()}, inputs.plan->scales(), "--plan-scale");
+}
+
 int run_shard(const MergeCommandOptions& options) {
   Console console(options.common);
   const KnownPoses known_poses(options.known, options.maps, console);
@@ -215,7 +225,8 @@ int run_merge(const MergeCommandOptions& options) {
                          map_transform(options.transform).value(),
                          options.max_false_joins,
                          options.output_resolution != 0.0};
-  const std::string hints = scale_hints(options, inputs.maps, result, console) +
+  const std::string hints = plan_scale_hint(options, inputs, result) +
+                            scale_hints(options, inputs.maps, result, console) +
                             describe_doubled(asked, inputs.maps, result, options.common.verbose);
   console.clear();
   if (options.common.verbose) print(describe_joins(asked, result));

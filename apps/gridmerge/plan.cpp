@@ -53,10 +53,14 @@ Plan::Plan(const PlanCommandOptions& options, const std::vector<std::string>& na
   }
 }
 
+ScaleRange Plan::scales() const {
+  return options_.scales.empty() ? PlanOptions{}.scales : to_scales(options_.scales);
+}
+
 MergeResult Plan::place(const std::vector<OccupancyGrid>& maps, MergeResult merged,
                         const MergeOptions& engine, Console& console) const {
   PlanOptions options;
-  if (!options_.scales.empty()) options.scales = to_scales(options_.scales);
+  options.scales = scales();
   options.name = options_.file;
   options.progress = [&console](std::size_t done, std::size_t total) {
     console.progress("laying maps on the plan", static_cast<double>(done) / static_cast<double>(total));

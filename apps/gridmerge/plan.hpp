@@ -31,6 +31,8 @@ class Plan {
   /// As it was read.
   const OccupancyGrid& grid() const { return plan_.grid; }
 
+  ScaleRange scales() const;
+
   /// That it was read from.
   const std::vector<std::filesystem::path>& files() const { return plan_.files; }
 

@@ -142,6 +142,18 @@ TEST_F(MergePlan, AStrangersPlanChangesNothing) {
   EXPECT_EQ(after, before);
 }
 
+TEST_F(MergePlan, APlanOfAnotherSizeIsToldWithTheRangeThatFits) {
+  OccupancyGrid drawing = on_white_paper(draw_building(1));
+  drawing.resolution *= 8.0;
+  const std::string large = write_map(directory, "large", drawing);
+  const std::vector<std::string> asked{"merge",        left,      right, "--plan", large,
+                                       "--plan-scale", "0.9:1.1", "-o",  output};
+  const Outcome outcome = run(asked);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.out.find("times the floor of the merged map as it is"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(", and --plan-scale 0.1"), std::string::npos) << outcome.out;
+}
+
 TEST_F(MergePlan, OneMapThatHangsThereAloneIsToldOf) {
   const Outcome outcome =
       run({"merge", west, other, "--plan", plan, "--plan-scale", "1.2:1.3", "-o", output});
