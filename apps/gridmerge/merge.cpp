@@ -238,7 +238,8 @@ int run_merge(const MergeCommandOptions& options) {
   print(exported);
   const bool all_on_plan = !result.plan || std::all_of(result.plan->parts.begin(), result.plan->parts.end(),
                                                        [](const PlanPart& part) { return part.on_plan(); });
-  return result.components.size() == 1 && result.left_out.empty() && all_on_plan ? kDone : kRefused;
+  const bool is_one = result.components.size() == 1 && result.left_out.empty();
+  return (is_one || inputs.maps.size() == 1) && all_on_plan ? kDone : kRefused;
 }
 
 /// What --help says behind the options.
@@ -264,6 +265,7 @@ constexpr const char* kFooter =
     "  gridmerge merge robot1.yaml robot2.yaml -o merged --export g2o --export open-rmf=fleet.yaml\n"
     "  gridmerge merge robot1.mcap team.mcap#/tb2/map team.mcap#/tb3/map -o merged\n"
     "  gridmerge merge robot1.yaml robot2.yaml --plan layout.yaml -o merged\n"
+    "  gridmerge merge robot1.yaml --plan layout.yaml -o placed\n"
     "  gridmerge merge robot1.yaml robot2.yaml --transform similarity -o merged\n"
     "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged\n"
     "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml --fix robot2.yaml -o "
@@ -281,7 +283,7 @@ void add_files(CLI::App& command, MergeCommandOptions& options) {
   command.add_option("MAP", options.maps, std::string(kMapHelp))
       ->type_name("MAP")
       ->required()
-      ->expected(2, -1);
+      ->expected(1, -1);
   command.add_option("-o,--output", options.output, "Directory for the results; made if need be")
       ->type_name("DIR");
   command
@@ -356,6 +358,8 @@ void require_joint(const MergeCommandOptions& options) {
 
 /// Throws CLI::Error for options that do not go together, and settles what --transform and --elastic say.
 void settle(MergeCommandOptions& options, const Given& given) {
+  if (options.maps.size() < 2 && options.plan.file.empty())
+    throw CLI::ArgumentMismatch::AtLeast("MAP", 2, options.maps.size());
   const bool up_the_tree = options.search.up_the_tree();
   if (given.max_false_joins->count() > 0 && up_the_tree)
     throw CLI::ValidationError("--max-false-joins", "needs --strategy joint");

@@ -209,8 +209,11 @@ std::string describe_coarser(const std::vector<OccupancyGrid>& maps, const Compo
 std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyGrid>& maps,
                            const MergeResult& result, const std::string& unused_poses) {
   const std::vector<std::string>& names = asked.names;
-  std::string text =
-      result.components.empty() ? describe_nothing(asked, result, unused_poses) : std::string();
+  // Of one map there is nothing to tell but how it lies on the plan.
+  const bool is_single = names.size() == 1;
+  std::string text;
+  if (result.components.empty())
+    text = is_single ? unused_poses : describe_nothing(asked, result, unused_poses);
   const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     const Component& component = result.components[i];
@@ -229,8 +232,10 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
   if (result.not_compared)
     fmt::format_to(out, "not compared: {} pairs, which may hide {:.1f} more joins (--max-missed)\n",
                    result.not_compared->pairs, result.not_compared->expected_joins);
-  for (const LeftOut& one : result.left_out)
-    fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain(result, one));
+  for (const LeftOut& one : result.left_out) {
+    if (!is_single)
+      fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain(result, one));
+  }
   if (!result.components.empty()) text += describe_remedy(asked, result);
   text += describe_open_ways(names, result);
   for (const Join& join : result.joins) {

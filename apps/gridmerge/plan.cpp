@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -72,6 +73,13 @@ MergeResult Plan::place(const std::vector<OccupancyGrid>& maps, MergeResult merg
   }
 }
 
+namespace {
+
+/// A place that is less probable than none is not to be had by asking for less.
+constexpr double kWorthAsking = 0.5;
+
+}  // namespace
+
 std::string describe_plan(const std::vector<std::string>& names, const MergeResult& result) {
   if (!result.plan) return {};
   const PlanPlacement& plan = *result.plan;
@@ -101,6 +109,15 @@ std::string describe_plan(const std::vector<std::string>& names, const MergeResu
     fmt::format_to(out, "off the plan: {}: {} (probability {:.4f}{})\n", fmt::join(maps, ", "), explain(part),
                    part.probability, best);
   }
+  const double most = std::accumulate(
+      plan.parts.begin(), plan.parts.end(), 0.0,
+      [](double probability, const PlanPart& part) { return std::max(probability, part.probability); });
+  if (on_plan == 0 && most >= kWorthAsking)
+    fmt::format_to(
+        out,
+        "     a lower --accept with a higher --max-false-joins asks for less: this place is false with "
+        "probability {:.3f}\n",
+        1.0 - most);
   return text;
 }
 

@@ -75,12 +75,14 @@ Json places_json(const MergeResult& result) {
 
 Json plan_page_json(const NamedMerge& merge) {
   const PlanPlacement& plan = *merge.result.plan;
+  Json places = places_json(merge.result);
+  const bool is_drawn = merge.plan != nullptr && !places.empty();
   return {{"name", plan.name},
           {"scale", number_json(plan.scale)},
           {"probability", number_json(plan.probability())},
           {"maps", plan.maps_on_plan()},
-          {"places", places_json(merge.result)},
-          {"grid", merge.plan == nullptr ? Json() : grid_json(show_plan(*merge.plan))}};
+          {"places", std::move(places)},
+          {"grid", is_drawn ? grid_json(show_plan(*merge.plan)) : Json()}};
 }
 
 }  // namespace gridmerge::internal

@@ -163,6 +163,30 @@ TEST_F(MergePlan, OneMapThatHangsThereAloneIsToldOf) {
   EXPECT_EQ(transforms().at("plan").at("maps"), Json{west});
 }
 
+TEST_F(MergePlan, OneMapIsEnough) {
+  const Outcome outcome = run({"merge", west, "--plan", plan, "--plan-scale", "1.2:1.3", "-o", output});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(outcome.out.find("plan " + plan + ": 1 of 1 maps hang on it, enlarged by 1.2"), 0u)
+      << outcome.out;
+  EXPECT_EQ(outcome.out.find("left out"), std::string::npos) << outcome.out;
+  EXPECT_EQ(transforms().at("plan").at("maps"), Json{west});
+  const std::string page = read_file(output + "/report.html");
+  EXPECT_NE(page.find("\"places\":[{\"component\":null,\"map\":0,"), std::string::npos);
+  ASSERT_EQ(run({"report", output}).exit_code, 0);
+  EXPECT_EQ(read_file(output + "/report.html"), page);
+  const std::vector<std::string> doubtful{"merge",   west, "--plan", plan,       "--plan-scale",
+                                          "1.2:1.3", "-o", output,   "--accept", "0.99999"};
+  EXPECT_NE(run(doubtful).out.find("--accept with a higher --max-false-joins asks for less: this place is"),
+            std::string::npos);
+  const Outcome stranger = run({"merge", other, "--plan", plan, "--plan-scale", "1.2:1.3", "-o", output});
+  EXPECT_EQ(stranger.exit_code, 3);
+  EXPECT_EQ(stranger.out.find("--accept"), std::string::npos) << stranger.out;
+  EXPECT_EQ(stranger.out.find("plan " + plan + ": no map hangs on it\n"), 0u) << stranger.out;
+  const Outcome alone = run({"merge", west, "-o", output});
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_NE(alone.err.find("MAP"), std::string::npos) << alone.err;
+}
+
 TEST_F(MergePlan, WhatMakesNoSenseIsAUsageError) {
   const auto expect_usage = [&](std::vector<std::string> more, const std::string& option) {
     std::vector<std::string> asked{"merge", left, right};

@@ -92,6 +92,9 @@ TEST(PlanLayer, IsPartOfThePageWhetherItsFileIsThereOrNot) {
   EXPECT_TRUE(page_data({kNames, kMaps, result}).at("plan").at("grid").is_null());
   const OccupancyGrid plan = map_from({"###", "#.#", "###"}, 0.1);
   EXPECT_EQ(page_data({kNames, kMaps, result, &plan}).at("plan").at("grid").at("width"), 3);
+  MergeResult nowhere = test::merged(kMaps, {});
+  nowhere.plan = PlanPlacement{"floor.png", 1.0, {{{0}, {}, 1.0, 0.0, Reason::several}}, 0.1};
+  EXPECT_TRUE(plan_of(nowhere, &plan).at("grid").is_null()) << "what has no place is not drawn";
   EXPECT_FALSE(page_data({kNames, kMaps, test::merged(kMaps, {})}).contains("plan"));
 }
 

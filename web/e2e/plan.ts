@@ -50,6 +50,17 @@ test("a plan is drawn under the maps that hang on it", async () => {
   await tab.close();
 });
 
+test("a single map is seen on its plan", async () => {
+  const tab = await open(mergeInto("one_planned", examples.slice(0, 1), "--plan", plan(), "--plan-scale", "1.15:1.35"));
+  const { page } = tab;
+  assert.match((await page.textContent("#summary"))!, /^1 of 1 hang on the plan /);
+  assert.ok(await page.isChecked("#layer-plan"));
+  assert.equal(await page.locator(".left-out").count(), 0);
+  await tab.screenshot("plan_one");
+  assert.ok(await tab.changes(() => page.click("#layer-plan")));
+  await tab.close();
+});
+
 test("a served page shows the plan too", async () => {
   const { server, address } = await view(planned());
   try {

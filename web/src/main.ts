@@ -24,13 +24,14 @@ import { count, flat } from "./text";
 
 /** The scenes that can be picked without a join: merged maps and maps that were left out. */
 function scenePicker(state: State): HTMLElement {
-  const { components, left_out: leftOut } = state.report;
+  const { report } = state;
+  const { components, left_out: leftOut } = report;
   const ids: { id: SceneId; label: string }[] = [
     ...components.map((component, i) => ({
       id: { kind: "component", component: i } as SceneId,
       label: `${component.file} (${count(component.members.length, "map")})`,
     })),
-    ...leftOut.map(({ map }) => ({ id: { kind: "map", map } as SceneId, label: `left out: ${flat(state.names[map])}` })),
+    ...leftOut.map(({ map }) => ({ id: { kind: "map", map } as SceneId, label: `${report.maps.length > 1 ? "left out: " : ""}${flat(state.names[map])}` })),
   ];
   const select = h("select", { id: "scene", change: () => {
     if (select.value !== "") state.show(ids[Number(select.value)].id);

@@ -209,7 +209,7 @@ export class LayersPanel {
   private leftOut(isWanted: (one: LeftOut) => boolean): HTMLElement | null {
     const { left_out: all, maps, components } = this.state.report;
     const leftOut = all.filter(isWanted);
-    if (leftOut.length === 0) return null;
+    if (leftOut.length === 0 || maps.length === 1) return null;
     const items = leftOut.slice(0, isLarge(this.state.report) ? mostRows : leftOut.length).map(({ map, explanation }) => h("li", { "data-map": map },
       h("div", {}, badge(this.state, map), name(this.state.names[map], maps[map].name)),
       h("p", { class: "soft" }, `${explanation.charAt(0).toUpperCase()}${explanation.slice(1)}.`),

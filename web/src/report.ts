@@ -183,6 +183,7 @@ export function isUsed(join: Join): boolean {
 
 /** How the merge went: a sentence, and one of the plan if there is one. */
 export function summary(report: Report): string {
+  if (report.maps.length === 1 && report.plan !== undefined) return planSummary(report.plan, 1);
   const joined = report.components.reduce((sum, component) => sum + component.members.length, 0);
   const into = report.components.length === 0 ? "" : ` into ${count(report.components.length, "merged map")}`;
   const merged = `${count(report.maps.length, "map")}: ${joined} joined${into}, ${report.left_out.length} left out.`;
