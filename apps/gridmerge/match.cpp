@@ -91,7 +91,7 @@ std::string describe(const MatchResult& result, const MatchCommandOptions& optio
 
 /// Throws std::runtime_error for a map that tells no scale.
 void check_walls(const std::string& name, const OccupancyGrid& map) {
-  if (count_cells(map).occupied == 0)
+  if (count_cells(map).occupied == 0 && count_cells(with_enclosed_free(map)).occupied == 0)
     throw std::runtime_error(name + ": has no walls by which to tell a scale");
 }
 
