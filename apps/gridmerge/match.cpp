@@ -92,19 +92,32 @@ std::string describe(const MatchResult& result, const MatchCommandOptions& optio
 
 /// Throws std::runtime_error for a map that tells no scale.
 void check_walls(const std::string& name, const OccupancyGrid& map) {
-  if (count_cells(map).occupied == 0)
+  if (count_cells(map).occupied == 0 && count_cells(with_enclosed_free(map)).occupied == 0)
     throw std::runtime_error(name + ": has no walls by which to tell a scale");
+}
+
+/// A map whose resolution is to be known.
+LoadedMap read_to_scale(const std::string& name, MapReader& reader) {
+  if (!reader.lacks_resolution(name)) return reader.read(name);
+  try {
+    return reader.read(name);
+  } catch (const FileError& lacks) {
+    throw std::runtime_error(std::string(lacks.what()) + "; --scale 0.5:2 finds that of a plan");
+  }
 }
 
 /// The fixed one and the moving one. Where the scale is to be found, the resolution of one of them may be
 /// unknown.
 std::pair<LoadedMap, LoadedMap> read_maps(const MatchCommandOptions& options, MapReader& reader) {
-  if (options.scaled() && reader.lacks_resolution(options.fixed)) {
+  if (!options.scaled()) {
+    LoadedMap fixed = read_to_scale(options.fixed, reader);
+    return {std::move(fixed), read_to_scale(options.moving, reader)};
+  }
+  if (reader.lacks_resolution(options.fixed)) {
     LoadedMap moving = reader.read(options.moving);
     return {reader.read(options.fixed, moving.grid.resolution, options.moving), std::move(moving)};
   }
   LoadedMap fixed = reader.read(options.fixed);
-  if (!options.scaled()) return {std::move(fixed), reader.read(options.moving)};
   LoadedMap moving = reader.read(options.moving, fixed.grid.resolution, options.fixed);
   return {std::move(fixed), std::move(moving)};
 }
@@ -150,6 +163,8 @@ Answer match_loaded(const MatchCommandOptions& options, const LoadedMap& fixed, 
     const NamedMap fixed_map{options.fixed, fixed.grid}, moving_map{options.moving, moving.grid};
     std::string text = describe(result, options, moving.grid.resolution);
     if (options.scaled()) text += describe_drawings({fixed_map, moving_map});
+    if (options.scaled() && result.verdict == Verdict::refused)
+      text += range_hint(fixed_map, moving_map, to_scales(options.search.scales), "--scale");
     const bool may_hint = !options.scaled() && !options.search.random_walk();
     if (may_hint && result.verdict == Verdict::refused) {
       console.progress("trying other scales");

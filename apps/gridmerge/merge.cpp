@@ -166,6 +166,16 @@ std::string describe_work(const MergeCommandOptions& options, const Inputs& inpu
       describe_sizes(options.maps, inputs.maps));
 }
 
+/// Of a plan that no map hangs on: whether the sizes of both speak for other scales.
+std::string plan_scale_hint(const MergeCommandOptions& options, const Inputs& inputs,
+                            const MergeResult& result) {
+  if (!inputs.plan || !result.plan->maps_on_plan().empty()) return {};
+  const NamedMap map = result.components.empty()
+                           ? NamedMap{options.maps.front(), inputs.maps.front()}
+                           : NamedMap{"the merged map", result.components.front().fused.grid};
+  return range_hint(map, {options.plan.file, inputs.plan->grid()}, inputs.plan->scales(), "--plan-scale");
+}
+
 int run_shard(const MergeCommandOptions& options) {
   Console console(options.common);
   const KnownPoses known_poses(options.known, options.maps, console);
@@ -202,15 +212,15 @@ int run_merge(const MergeCommandOptions& options) {
   if (!options.search.trace.empty())
     require_not_exported(exports, options.search.trace, "--export and --trace");
   MergeResult result;
+  const NamedMerge named{options.maps, inputs.maps, result, inputs.plan ? &inputs.plan->grid() : nullptr};
   std::vector<std::filesystem::path> removed;
   const auto merge_and_write = [&] {
     result = merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
     if (inputs.plan)
       result = inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
     console.progress("writing the result");
-    with_threads(options.common.threads, [&] {
-      removed = write_merge_output(options.output, inputs.files, {options.maps, inputs.maps, result});
-    });
+    with_threads(options.common.threads,
+                 [&] { removed = write_merge_output(options.output, inputs.files, named); });
   };
   with_scarce_memory(merge_and_write, [&] { return describe_work(options, inputs); });
   matcher.write_trace();
@@ -218,8 +228,7 @@ int run_merge(const MergeCommandOptions& options) {
   std::exception_ptr not_exported;  // told behind what the merge has found
   try {
     if (!exports.empty()) console.progress("writing the exports");
-    exported =
-        write_exports(exports, inputs.files, {options.maps, inputs.maps, result}, options.common.threads);
+    exported = write_exports(exports, inputs.files, named, options.common.threads);
   } catch (const FileError&) {
     not_exported = std::current_exception();
   }
@@ -229,7 +238,8 @@ int run_merge(const MergeCommandOptions& options) {
                          map_transform(options.transform).value(),
                          options.max_false_joins,
                          options.output_resolution != 0.0};
-  const std::string hints = scale_hints(options, inputs.maps, result, console) +
+  const std::string hints = plan_scale_hint(options, inputs, result) +
+                            scale_hints(options, inputs.maps, result, console) +
                             describe_doubled(asked, inputs.maps, result, options.common.verbose);
   console.clear();
   if (options.common.verbose) print(describe_joins(asked, result));
@@ -241,7 +251,8 @@ int run_merge(const MergeCommandOptions& options) {
   print(exported);
   const bool all_on_plan = !result.plan || std::all_of(result.plan->parts.begin(), result.plan->parts.end(),
                                                        [](const PlanPart& part) { return part.on_plan(); });
-  return result.components.size() == 1 && result.left_out.empty() && all_on_plan ? kDone : kRefused;
+  const bool is_one = result.components.size() == 1 && result.left_out.empty();
+  return (is_one || inputs.maps.size() == 1) && all_on_plan ? kDone : kRefused;
 }
 
 /// What --help says behind the options.
@@ -267,6 +278,7 @@ constexpr const char* kFooter =
     "  gridmerge merge robot1.yaml robot2.yaml -o merged --export g2o --export open-rmf=fleet.yaml\n"
     "  gridmerge merge robot1.mcap team.mcap#/tb2/map team.mcap#/tb3/map -o merged\n"
     "  gridmerge merge robot1.yaml robot2.yaml --plan layout.yaml -o merged\n"
+    "  gridmerge merge robot1.yaml --plan layout.yaml -o placed\n"
     "  gridmerge merge robot1.yaml robot2.yaml --transform similarity -o merged\n"
     "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml -o merged\n"
     "  gridmerge merge robot1.yaml robot2.yaml --init poses.tsv --fix robot1.yaml --fix robot2.yaml -o "
@@ -284,7 +296,7 @@ void add_files(CLI::App& command, MergeCommandOptions& options) {
   command.add_option("MAP", options.maps, std::string(kMapHelp))
       ->type_name("MAP")
       ->required()
-      ->expected(2, -1);
+      ->expected(1, -1);
   command.add_option("-o,--output", options.output, "Directory for the results; made if need be")
       ->type_name("DIR");
   command
@@ -359,6 +371,8 @@ void require_joint(const MergeCommandOptions& options) {
 
 /// Throws CLI::Error for options that do not go together, and settles what --transform and --elastic say.
 void settle(MergeCommandOptions& options, const Given& given) {
+  if (options.maps.size() < 2 && options.plan.file.empty())
+    throw CLI::ArgumentMismatch::AtLeast("MAP", 2, options.maps.size());
   const bool up_the_tree = options.search.up_the_tree();
   if (given.max_false_joins->count() > 0 && up_the_tree)
     throw CLI::ValidationError("--max-false-joins", "needs --strategy joint");

@@ -139,9 +139,33 @@ bool holds_all(const AskedMerge& asked, const Component& component) {
   });
 }
 
+/// What of a component the plan alone has joined.
+enum class JoinedByPlan { nothing, some, all };
+
+JoinedByPlan joined_by_plan(const MergeResult& result, const Component& component) {
+  if (!result.plan) return JoinedByPlan::nothing;
+  std::size_t parts = 0;
+  bool is_any_joined = false;
+  for (const PlanPart& part : result.plan->parts) {
+    const bool is_here =
+        part.on_plan() && std::any_of(component.members.begin(), component.members.end(),
+                                      [&](const Member& member) { return member.map == part.maps.front(); });
+    if (!is_here) continue;
+    ++parts;
+    is_any_joined = is_any_joined || part.maps.size() > 1;
+  }
+  if (parts < 2) return JoinedByPlan::nothing;
+  return is_any_joined ? JoinedByPlan::some : JoinedByPlan::all;
+}
+
 /// Why no map was changed although that was asked for.
 std::string explain_no_change(const AskedMerge& asked, const MergeResult& result) {
   const bool is_bending = asked.transform == MapTransform::elastic;
+  if (std::all_of(result.components.begin(), result.components.end(), [&](const Component& component) {
+        return joined_by_plan(result, component) == JoinedByPlan::all;
+      }))
+    return fmt::format("no map is {}: maps that the plan alone joins stay as they are\n",
+                       is_bending ? "bent" : "stretched");
   if (std::all_of(result.components.begin(), result.components.end(),
                   [&](const Component& component) { return holds_all(asked, component); }))
     return fmt::format("no map is {}: --fix holds all of them as they are\n",
@@ -185,8 +209,11 @@ std::string describe_coarser(const std::vector<OccupancyGrid>& maps, const Compo
 std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyGrid>& maps,
                            const MergeResult& result, const std::string& unused_poses) {
   const std::vector<std::string>& names = asked.names;
-  std::string text =
-      result.components.empty() ? describe_nothing(asked, result, unused_poses) : std::string();
+  // Of one map there is nothing to tell but how it lies on the plan.
+  const bool is_single = names.size() == 1;
+  std::string text;
+  if (result.components.empty())
+    text = is_single ? unused_poses : describe_nothing(asked, result, unused_poses);
   const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     const Component& component = result.components[i];
@@ -205,8 +232,10 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
   if (result.not_compared)
     fmt::format_to(out, "not compared: {} pairs, which may hide {:.1f} more joins (--max-missed)\n",
                    result.not_compared->pairs, result.not_compared->expected_joins);
-  for (const LeftOut& one : result.left_out)
-    fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain(result, one));
+  for (const LeftOut& one : result.left_out) {
+    if (!is_single)
+      fmt::format_to(out, "left out: {}: {}\n", escape_controls(names[one.map]), explain(result, one));
+  }
   if (!result.components.empty()) text += describe_remedy(asked, result);
   text += describe_open_ways(names, result);
   for (const Join& join : result.joins) {
@@ -230,10 +259,11 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
 
 namespace {
 
-std::string what_may_help(MapTransform asked, bool rests_on_initial_poses) {
+std::string what_may_help(MapTransform asked, JoinedByPlan by_plan, bool rests_on_initial_poses) {
   std::string help = rests_on_initial_poses ? "; an initial pose may be wrong, or" : ";";
   help += " --elastic bends maps so that they fit better";
   if (asked == MapTransform::rigid) help += ", and --transform similarity mends a false scale";
+  if (by_plan == JoinedByPlan::some) help += ", but not maps that the plan alone joins";
   return help;
 }
 
@@ -256,13 +286,14 @@ std::string describe_doubled(const AskedMerge& asked, const std::vector<Occupanc
   std::string text;
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     const double share = measure_doubled_walls(maps, result.components[i]).share();
+    const JoinedByPlan by_plan = joined_by_plan(result, result.components[i]);
     const bool may_help = asked.transform != MapTransform::elastic && share >= kManyDoubled &&
-                          !holds_all(asked, result.components[i]);
+                          by_plan != JoinedByPlan::all && !holds_all(asked, result.components[i]);
     if (!may_help && !is_asked_for) continue;
-    fmt::format_to(
-        std::back_inserter(text), "{}: {:.1f} % of the walls that several maps saw lie double{}\n",
-        component_file(i), 100.0 * share,
-        may_help ? what_may_help(asked.transform, rests_on_initial_poses(result.components[i], result)) : "");
+    const bool is_given = rests_on_initial_poses(result.components[i], result);
+    fmt::format_to(std::back_inserter(text), "{}: {:.1f} % of the walls that several maps saw lie double{}\n",
+                   component_file(i), 100.0 * share,
+                   may_help ? what_may_help(asked.transform, by_plan, is_given) : "");
   }
   return text;
 }

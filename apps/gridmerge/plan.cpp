@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -53,10 +54,14 @@ Plan::Plan(const PlanCommandOptions& options, const std::vector<std::string>& na
   }
 }
 
+ScaleRange Plan::scales() const {
+  return options_.scales.empty() ? PlanOptions{}.scales : to_scales(options_.scales);
+}
+
 MergeResult Plan::place(const std::vector<OccupancyGrid>& maps, MergeResult merged,
                         const MergeOptions& engine, Console& console) const {
   PlanOptions options;
-  if (!options_.scales.empty()) options.scales = to_scales(options_.scales);
+  options.scales = scales();
   options.name = options_.file;
   options.progress = [&console](std::size_t done, std::size_t total) {
     console.progress("laying maps on the plan", static_cast<double>(done) / static_cast<double>(total));
@@ -67,6 +72,13 @@ MergeResult Plan::place(const std::vector<OccupancyGrid>& maps, MergeResult merg
     throw std::runtime_error(options_.file + ": " + error.what());
   }
 }
+
+namespace {
+
+/// A place that is less probable than none is not to be had by asking for less.
+constexpr double kWorthAsking = 0.5;
+
+}  // namespace
 
 std::string describe_plan(const std::vector<std::string>& names, const MergeResult& result) {
   if (!result.plan) return {};
@@ -97,6 +109,15 @@ std::string describe_plan(const std::vector<std::string>& names, const MergeResu
     fmt::format_to(out, "off the plan: {}: {} (probability {:.4f}{})\n", fmt::join(maps, ", "), explain(part),
                    part.probability, best);
   }
+  const double most = std::accumulate(
+      plan.parts.begin(), plan.parts.end(), 0.0,
+      [](double probability, const PlanPart& part) { return std::max(probability, part.probability); });
+  if (on_plan == 0 && most >= kWorthAsking)
+    fmt::format_to(
+        out,
+        "     a lower --accept with a higher --max-false-joins asks for less: this place is false with "
+        "probability {:.3f}\n",
+        1.0 - most);
   return text;
 }
 

@@ -28,6 +28,11 @@ class Plan {
   Plan(const PlanCommandOptions& options, const std::vector<std::string>& names,
        const std::vector<OccupancyGrid>& maps, MapReader& reader);
 
+  /// As it was read.
+  const OccupancyGrid& grid() const { return plan_.grid; }
+
+  ScaleRange scales() const;
+
   /// That it was read from.
   const std::vector<std::filesystem::path>& files() const { return plan_.files; }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saved_merge.hpp"
 
+#include <fmt/format.h>
+
 #include <system_error>
 #include <utility>
 
@@ -19,6 +21,22 @@ LoadedMap load_map_of(const std::string& name, const SavedMergeOptions& options,
                     "is not there, and the report shows it: name the folder from which the maps were merged "
                     "with --root FOLDER");
   return reader.read(path.string());
+}
+
+/// The report does without it: its maps are what it is about.
+std::optional<LoadedMap> load_plan_of(const PlanPlacement& plan, double usual_resolution,
+                                      const SavedMergeOptions& options, Console& console) {
+  const std::string path = (std::filesystem::path(options.root) / plan.name).string();
+  LoadOptions load = options.load;
+  load.regular_files_only = true;
+  // The scale that was found counts from these metres, whatever an option says of the maps.
+  load.resolution = plan.resolution > 0.0 ? plan.resolution : usual_resolution;
+  try {
+    return load_any_map(path, load);
+  } catch (const FileError& error) {
+    console.warn(fmt::format("{}; the report does not show the plan", error.what()));
+    return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -46,6 +64,12 @@ SavedMerge load_saved_merge(const SavedMergeOptions& options, Console& console) 
     merge.files.insert(merge.files.end(), map.files.begin(), map.files.end());
   }
   reader.tell_warnings();
+  if (record.result.plan) {
+    if (auto plan = load_plan_of(*record.result.plan, merge.maps.front().resolution, options, console)) {
+      merge.plan = std::move(plan->grid);
+      merge.files.insert(merge.files.end(), plan->files.begin(), plan->files.end());
+    }
+  }
   for (const std::size_t component : fuse_again(record, merge.maps, options.directory)) {
     console.warn((std::filesystem::path(options.directory) / component_file(component)).string() +
                  ": is not what the maps give: it or they have been changed since");

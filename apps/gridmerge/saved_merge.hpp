@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,15 +27,16 @@ void add_saved_merge_options(CLI::App& command, SavedMergeOptions& options);
 struct SavedMerge {
   std::vector<std::string> names;
   std::vector<OccupancyGrid> maps;
-  std::vector<std::filesystem::path> files;  // that the maps were read from
+  std::optional<OccupancyGrid> plan;         // if the merge has one that is still there
+  std::vector<std::filesystem::path> files;  // that all of it was read from
   MergeResult result;
   std::uint64_t fingerprint = 0;  // MergeRecord::fingerprint
 
-  NamedMerge named() const { return {names, maps, result}; }
+  NamedMerge named() const { return {names, maps, result, plan ? &*plan : nullptr}; }
 };
 
 /// Reads what 'gridmerge merge' wrote, and the maps that it names. Warns of merged maps that differ from what
-/// their maps give now. Throws FileError.
+/// their maps give now, and of a plan that cannot be read. Throws FileError.
 SavedMerge load_saved_merge(const SavedMergeOptions& options, Console& console);
 
 }  // namespace gridmerge::cli

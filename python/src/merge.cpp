@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "merge.hpp"
 
+#include <stdexcept>
 #include <utility>
 
+#include "grid_bytes.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "gridmerge/merge/tree.hpp"
@@ -87,7 +89,7 @@ void save(const Merged& merged, const nb::bytes& directory, const std::vector<nb
   const std::vector<std::string> texts = to_strings(names);
   const std::filesystem::path path = to_string(directory);
   const OthersRun meanwhile;
-  write_merge_output(path, inputs, {texts, grids_of(merged.maps), *merged.result});
+  write_merge_output(path, inputs, {texts, grids_of(merged.maps), *merged.result, merged.plan.get()});
 }
 
 void write_exported(const Merged& merged, const std::string& format, const nb::bytes& file,
@@ -174,7 +176,11 @@ void bind_results(nb::module_& module) {
            [](const Merged& merged) {
              const std::string bytes = [&] {
                const OthersRun meanwhile;
-               return to_bytes(*merged.result);
+               ByteWriter writer;
+               writer.text(to_bytes(*merged.result));
+               writer.byte(merged.plan ? 1 : 0);
+               if (merged.plan) write_grid(*merged.plan, writer);
+               return writer.take();
              }();
              return to_nb_bytes(bytes);
            })
@@ -183,7 +189,12 @@ void bind_results(nb::module_& module) {
           [](std::vector<Map> maps, const nb::bytes& state) {
             const std::string bytes = to_string(state);
             const OthersRun meanwhile;
-            return Merged{std::move(maps), std::make_shared<const MergeResult>(merge_from_bytes(bytes))};
+            ByteReader reader(bytes);
+            Merged merged{std::move(maps),
+                          std::make_shared<const MergeResult>(merge_from_bytes(reader.text()))};
+            if (reader.byte() != 0) merged.plan = std::make_shared<const OccupancyGrid>(read_grid(reader));
+            if (!reader.is_at_end()) throw std::invalid_argument("holds more than a merge");
+            return merged;
           },
           nb::arg("maps"), nb::arg("state"))
       .def("preview", &preview, nb::arg("names"))

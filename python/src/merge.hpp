@@ -14,6 +14,7 @@ namespace gridmerge::python {
 struct Merged {
   std::vector<Map> maps;
   std::shared_ptr<const MergeResult> result;
+  std::shared_ptr<const OccupancyGrid> plan = {};  // none if it has none, or was read
 };
 
 /// x, y [m] and theta [rad] of a map in the world, their standard deviations, and whether it is fixed there.

@@ -118,6 +118,7 @@ Join read_join(ByteReader& reader) {
 void write(const PlanPlacement& plan, ByteWriter& writer) {
   writer.text(plan.name);
   writer.number(plan.scale);
+  writer.number(plan.resolution);
   writer.whole(plan.parts.size());
   for (const PlanPart& part : plan.parts) {
     writer.whole(part.maps.size());
@@ -133,6 +134,7 @@ PlanPlacement read_plan(ByteReader& reader) {
   PlanPlacement plan;
   plan.name = reader.text();
   plan.scale = reader.number();
+  plan.resolution = reader.number();
   plan.parts.resize(reader.count(kNumber));
   for (PlanPart& part : plan.parts) {
     part.maps.resize(reader.count(kNumber));

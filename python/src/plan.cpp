@@ -33,7 +33,7 @@ Merged place(const Merged& merged, const Map& plan, const nb::bytes& name, std::
   MergeResult result = compute_in_worker(nb::none(), [&](const Report&) {
     return place_on_plan(grids, *plan.grid, *merged.result, options, plan_options);
   });
-  return {merged.maps, std::make_shared<const MergeResult>(std::move(result))};
+  return {merged.maps, std::make_shared<const MergeResult>(std::move(result)), plan.grid};
 }
 
 }  // namespace

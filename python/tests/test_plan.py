@@ -65,6 +65,10 @@ def test_hangs_maps_on_a_plan_as_the_command_line_does(
     again = pickle.loads(pickle.dumps(result))
     assert again == result
     assert again.plan == result.plan
+    again.save(tmp_path / "again")
+    assert (tmp_path / "again" / "report.html").read_bytes() == (
+        tmp_path / "cli" / "report.html"
+    ).read_bytes()
 
 
 def test_a_strangers_plan_changes_nothing(robots: list[gridmerge.OccupancyGrid], elsewhere: str) -> None:

@@ -147,15 +147,19 @@ OccupancyGrid enclose(const OccupancyGrid& walls, int reach) {
 
 bool is_drawing(const OccupancyGrid& grid) {
   const CellCounts counts = count_cells(grid);
-  if (counts.occupied == 0) return false;
-  if (counts.free == 0) return true;
+  if (counts.free == 0) return counts.occupied > 0;
+  // Lines may all be gray. As long as the sheet they are more than a few cells that nobody has seen.
+  const std::size_t gray = grid.cells.size() - counts.known();
+  if (counts.occupied == 0 && gray < static_cast<std::size_t>(std::max(grid.width, grid.height)))
+    return false;
   for (int column = 0; column < grid.width; ++column) {
     if (grid.at(column, 0) != Cell::free || grid.at(column, grid.height - 1) != Cell::free) return false;
   }
   for (int row = 0; row < grid.height; ++row) {
     if (grid.at(0, row) != Cell::free || grid.at(grid.width - 1, row) != Cell::free) return false;
   }
-  return has_thin_gray_alone(grid);
+  // Without black, thick gray is walls as well: there are no others.
+  return counts.occupied == 0 || has_thin_gray_alone(grid);
 }
 
 OccupancyGrid with_enclosed_free(const OccupancyGrid& grid) {

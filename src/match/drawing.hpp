@@ -8,7 +8,7 @@ namespace gridmerge::internal {
 
 /// Whether a grid is a drawing of walls, and no map: it has walls, but no cell of it is free; or it is free
 /// along its whole rim, as white paper is, and what is unknown in it is thin, as gray lines and the soft
-/// edges of black ones are. O(cells).
+/// edges of black ones are: all lines may be gray, and thick then. O(cells).
 GRIDMERGE_INTERNAL_EXPORT bool is_drawing(const OccupancyGrid& grid);
 
 /// A drawing as a map: gray lines are walls too; what walls enclose is free, and what lies outside is

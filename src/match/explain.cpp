@@ -20,6 +20,8 @@ std::string explain_ambiguous(const MatchResult& result, double accept_probabili
   if (result.hypotheses.size() > 1 &&
       is_near_rival(result.hypotheses[0].probability, result.hypotheses[1].probability, accept_probability))
     return "another way to lay the maps explains them too well to be ruled out";
+  if (stands_out(best, accept_probability))
+    return "the maps agree, but on so few walls that other places or scales may fit as well by chance";
   return "this way to lay the maps hardly stands out from all others";
 }
 
@@ -34,7 +36,9 @@ std::string explain(const MatchResult& result, double accept_probability) {
       if (!result.hypotheses.empty()) return explain_ambiguous(result, accept_probability);
       return "more than one way to lay the maps explains them";
     case Reason::contradiction:
-      return "the maps disagree where both know the same places";
+      return result.scale == 1.0
+                 ? "the maps disagree where both know the same places"
+                 : "too few walls meet a wall of the other map where both know the same places";
     case Reason::too_little_overlap:
       return "the maps agree, but on too little to be sure";
     case Reason::several:

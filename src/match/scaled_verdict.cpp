@@ -37,7 +37,7 @@ static_assert(kTerms.size() == kScaledWeights.size(), "each term has its weight"
 
 VerdictModel scaled_model(std::size_t levels) {
   const double freedom = std::max(0.0, std::log(static_cast<double>(levels) / kFittedLevels));
-  return {kRankTerms, kScaledRankWeights, kTerms, kScaledWeights, kScaledBias - freedom};
+  return {kRankTerms, kScaledRankWeights, kTerms, kScaledWeights, kScaledBias - freedom, true};
 }
 
 void weigh_scaled(std::vector<Hypothesis>& hypotheses, std::size_t levels,

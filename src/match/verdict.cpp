@@ -192,9 +192,26 @@ bool slides(const PoseFigures& figures) {
   return how_held(figures) < kSlides;
 }
 
+bool stands_out(const PoseFigures& figures, double accept_probability) {
+  return logistic(figures.stands_out) >= accept_probability;
+}
+
 bool is_near_rival(double best, double next, double accept_probability) {
   return 1.0 - next / (best + next) < accept_probability;
 }
+
+namespace {
+
+/// Whether it would be believed if the rest of the smaller map met the other one as what they share does.
+bool more_overlap_would_do(PoseFigures figures, double accept_probability, const VerdictModel& model) {
+  const double shared = std::clamp(figures.overlap, 0.01, 1.0);
+  figures.wall_lines /= shared;
+  figures.held += (1.0 - shared) * (figures.held_most - figures.held);
+  figures.stands_out = kMaxStandingOut;
+  return logistic(log_odds_of(figures, model)) >= accept_probability;
+}
+
+}  // namespace
 
 Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_probability,
                        const VerdictModel& model) {
@@ -215,16 +232,18 @@ Reason explain_refusal(std::span<const PoseFigures> hypotheses, double accept_pr
     return mended([&](TermKind kind) { return kind == TermKind::rivals || is_mended(kind); }) >=
            accept_probability;
   };
-  const bool stands_out = logistic(hypotheses[0].stands_out) >= accept_probability;
-  if (!stands_out && with_rivals([](TermKind) { return false; })) return Reason::ambiguous;
+  if (!stands_out(hypotheses[0], accept_probability) && with_rivals([](TermKind) { return false; }))
+    return Reason::ambiguous;
   const bool agrees = with_rivals([](TermKind kind) { return kind == TermKind::amount; });
   if (agrees && probabilities.size() > 1 &&
       is_near_rival(probabilities[0], probabilities[1], accept_probability))
     return Reason::ambiguous;
   if (agrees && slides(hypotheses[0])) return Reason::ambiguous;
+  const bool contradicts = with_rivals([](TermKind kind) { return kind == TermKind::quality; });
+  if (agrees && model.is_scaled && !more_overlap_would_do(hypotheses[0], accept_probability, model))
+    return contradicts ? Reason::contradiction : Reason::ambiguous;
   if (agrees) return Reason::too_little_overlap;
-  if (with_rivals([](TermKind kind) { return kind == TermKind::quality; })) return Reason::contradiction;
-  return Reason::several;
+  return contradicts ? Reason::contradiction : Reason::several;
 }
 
 const char* name_of(TermKind kind) {

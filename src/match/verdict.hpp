@@ -63,6 +63,8 @@ struct VerdictModel {
   std::span<const VerdictTerm> terms;
   std::span<const VerdictWeight> weights;  ///< in the order of terms
   double bias;                             ///< [nats]
+  /// Whether the scale is unknown as well. Then walls may agree on too little however much the maps share.
+  bool is_scaled = false;
 };
 
 /// The model of maps of one scale: verdict_terms() and rank_terms() with the weights of verdict_model.hpp.
@@ -96,6 +98,9 @@ std::vector<double> probabilities_of(std::span<const PoseFigures> hypotheses,
 /// Whether the maps can slide along each other at hardly any loss, as two pieces of a corridor can:
 /// PoseFigures::free_direction says which way.
 bool slides(const PoseFigures& figures);
+
+/// Whether it stands so far above all other hypotheses of its pair together that they cannot refuse it.
+bool stands_out(const PoseFigures& figures, double accept_probability);
 
 /// Whether the second of two hypotheses, by their probabilities, is nearly as good: the better one would be
 /// refused however much the maps had in common.

@@ -32,7 +32,7 @@ const char* explain(const PlanPart& part) {
     case Reason::nothing_to_compare:
       return "there is too little to compare";
     case Reason::ambiguous:
-      return "the plan has more than one place that fits";
+      return "other places on the plan, or other scales of it, may fit as well";
     case Reason::contradiction:
       return "the plan has walls where there are none, or none where there are some";
     case Reason::too_little_overlap:

@@ -147,8 +147,9 @@ Reason reason_of(const MergePart& part, const std::optional<PlanWay>& way, doubl
 
 void validate_plan(const std::vector<OccupancyGrid>& maps, const OccupancyGrid& plan) {
   validate(plan);
-  if (count_cells(plan).occupied == 0) throw std::invalid_argument("has no walls to hang maps on");
-  if (PreparedMap(with_enclosed_free(plan)).counts().occupied == 0)
+  OccupancyGrid drawn = with_enclosed_free(plan);
+  if (count_cells(drawn).occupied == 0) throw std::invalid_argument("has no walls to hang maps on");
+  if (PreparedMap(std::move(drawn)).counts().occupied == 0)
     throw std::invalid_argument("has no walls to hang maps on: none of what it draws has floor beside it");
   for (std::size_t i = 0; i < maps.size(); ++i) {
     if (has_equal_cells(maps[i], plan))
@@ -171,7 +172,7 @@ MergeResult place_on_plan(const std::vector<OccupancyGrid>& maps, const Occupanc
     std::vector<MergePart> parts = parts_of(merged, inputs);
     Hanger hanger(drawn, merged, options, plan_options, parts);
     const std::vector<std::optional<PlanWay>> ways = hanger.find();
-    PlanPlacement placement{plan_options.name, 1.0, {}};
+    PlanPlacement placement{plan_options.name, 1.0, {}, plan.resolution};
     for (std::size_t i = 0; i < parts.size(); ++i) {
       PlanPart told;
       for (const Member& member : parts[i].members) told.maps.push_back(member.map);

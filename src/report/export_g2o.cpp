@@ -62,7 +62,7 @@ std::vector<std::size_t> held_in(const Component& component, const std::optional
 }  // namespace
 
 std::string g2o_text(const NamedMerge& merge) {
-  const auto& [names, maps, result] = merge;
+  const auto& [names, maps, result, plan] = merge;
   // Vertices and edges come first: GTSAM reads no edge behind a line that it does not know, such as a
   // comment.
   std::string text;

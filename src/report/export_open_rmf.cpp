@@ -123,7 +123,7 @@ std::string quoted(const std::string& text) {
 }
 
 std::string open_rmf_text(const NamedMerge& merge) {
-  const auto& [names, maps, result] = merge;
+  const auto& [names, maps, result, plan] = merge;
   std::string text = std::string(kOpenRmfMark) + kHeader;
   const auto out = std::back_inserter(text);
   text += "merged_maps:\n";

@@ -14,6 +14,7 @@
 #include "gridmerge/version.hpp"
 #include "report/bent_maps.hpp"
 #include "report/deformation_json.hpp"
+#include "report/plan_layer.hpp"
 #include "report/shown_map.hpp"
 #include "report/told_joins.hpp"
 
@@ -26,14 +27,6 @@ constexpr std::size_t kMaxMapsInFull = 50;
 constexpr std::size_t kMostBytesOfMaps = 10'000'000;
 constexpr std::size_t kMostBytesOfMerged = 4'000'000;
 constexpr std::size_t kAnyBytes = std::numeric_limits<std::size_t>::max();
-
-Json grid_json(const ShownMap& map) {
-  return {{"width", map.width},
-          {"height", map.height},
-          {"resolution", number_json(map.resolution)},
-          {"origin", transform_json(map.origin)},
-          {"cells", map.cells}};
-}
 
 std::string colour_text(Colour colour) {
   return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
@@ -120,18 +113,10 @@ std::vector<ShownMap> show_all(const std::vector<const OccupancyGrid*>& grids, s
   }
 }
 
-/// The plan and which maps hang on it.
-Json plan_page_json(const PlanPlacement& plan) {
-  return {{"name", plan.name},
-          {"scale", number_json(plan.scale)},
-          {"probability", number_json(plan.probability())},
-          {"maps", plan.maps_on_plan()}};
-}
-
 }  // namespace
 
 Json page_data(const NamedMerge& merge) {
-  const auto& [names, maps, result] = merge;
+  const auto& [names, maps, result, plan] = merge;
   const bool is_small = maps.size() <= kMaxMapsInFull;
   // The page bends few maps itself, and many are shown as they are merged.
   std::vector<std::optional<OccupancyGrid>> bent(maps.size());
@@ -168,7 +153,7 @@ Json page_data(const NamedMerge& merge) {
             {"refused", refused_json(result, told)},
             {"left_out", std::move(left_out)},
             {"open_ways", std::move(open_ways)}};
-  if (result.plan) page["plan"] = plan_page_json(*result.plan);
+  if (result.plan) page["plan"] = plan_page_json(merge);
   return page;
 }
 

@@ -76,6 +76,7 @@ Json plan_json(const std::vector<std::string>& names, const PlanPlacement& plan,
   }
   const bool any = !maps.empty();
   return {{"source", plan.name},
+          {"resolution", number_json(plan.resolution)},
           {"scale", any ? number_json(plan.scale) : Json()},
           {"probability", any ? number_json(plan.probability()) : Json()},
           {"component", component.empty() ? Json() : Json(component)},
@@ -109,6 +110,8 @@ void check_plan(const JsonReader& json, const std::vector<std::string>& names, c
 void read_plan(const JsonReader& json, const std::vector<std::string>& names, MergeResult& result) {
   PlanPlacement plan;
   plan.name = json.at("source").text();
+  // Not in what earlier versions wrote.
+  if (json.has("resolution")) plan.resolution = json.at("resolution").number_in(0.0, kFarthest);
   if (!json.at("scale").is_null()) plan.scale = json.at("scale").number_in(kMinScale, kMaxScale);
   std::vector<bool> is_taken(names.size(), false);
   const JsonReader parts = json.at("parts");

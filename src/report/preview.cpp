@@ -161,7 +161,7 @@ Colour map_colour(std::size_t map) {
 }
 
 std::string preview_png(const NamedMerge& merge) {
-  const auto& [names, maps, result] = merge;
+  const auto& [names, maps, result, plan] = merge;
   const std::vector<std::string> called = short_names(names);
   const TextSize size = result.components.empty() ? TextSize::small : TextSize::large;
   std::vector<Canvas> blocks;

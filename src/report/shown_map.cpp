@@ -42,4 +42,12 @@ ShownMap show_map(const OccupancyGrid& grid, std::size_t max_cells) {
   return {known.width, known.height, known.resolution, known.origin, to_base64(deflated(known.cells))};
 }
 
+Json grid_json(const ShownMap& map) {
+  return {{"width", map.width},
+          {"height", map.height},
+          {"resolution", number_json(map.resolution)},
+          {"origin", transform_json(map.origin)},
+          {"cells", map.cells}};
+}
+
 }  // namespace gridmerge::internal

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "report/json_values.hpp"
 
 namespace gridmerge::internal {
 
@@ -29,5 +30,8 @@ struct ShownMap {
 
 /// Of a grid of any size, 0 x 0 too; large ones are shown coarser (at_most(), kMaxShownCells). O(cells).
 ShownMap show_map(const OccupancyGrid& grid, std::size_t max_cells = kMaxShownCells);
+
+/// As the page's script reads it.
+Json grid_json(const ShownMap& map);
 
 }  // namespace gridmerge::internal

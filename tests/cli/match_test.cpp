@@ -247,5 +247,35 @@ TEST_F(Match, APlanWithoutWallsIsAnError) {
   expect_error(run({"match", left, empty, "--scale", "0.5:2", "--json"}), empty, "no walls");
 }
 
+TEST_F(Match, AnImageWithoutAResolutionIsToldOfScales) {
+  const std::string image = directory.file("left.pgm");
+  expect_error(run({"match", right, image}), image, "--scale 0.5:2 finds that of a plan");
+  expect_error(run({"match", image, right}), image, "--scale 0.5:2 finds that of a plan");
+  EXPECT_EQ(run({"match", right, directory.file("absent.pgm")}).err.find("--scale"), std::string::npos);
+}
+
+TEST_F(Match, APlanOfAnotherSizeIsToldWithTheRangeThatFits) {
+  OccupancyGrid drawing = on_white_paper(draw_building(1));
+  drawing.resolution *= 5.0;
+  const std::string plan = write_map(directory, "large", drawing);
+  const std::string whole = write_map(directory, "whole", draw_building(1));
+  const Outcome outcome = run({"match", whole, plan, "--scale", "0.9:1.1"});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.out;
+  const std::string hint = "hint: what " + plan + " draws has ", range = ", and --scale ";
+  const std::size_t at = outcome.out.find(hint), from = outcome.out.find(range, at);
+  ASSERT_NE(from, std::string::npos) << outcome.out;
+  const std::string asked = outcome.out.substr(
+      from + range.size(), outcome.out.find(' ', from + range.size()) - from - range.size());
+  const Outcome found = run({"match", whole, plan, "--scale", asked});
+  EXPECT_EQ(found.exit_code, 0) << asked << "\n" << found.out;
+  EXPECT_NE(found.out.find("scale          0.2"), std::string::npos) << found.out;
+  // The other way round it is the map that is enlarged.
+  const Outcome turned = run({"match", plan, whole, "--scale", "0.9:1.1"});
+  EXPECT_NE(turned.out.find("the scale is near 5"), std::string::npos) << turned.out;
+  // Neither of two drawings or of two maps says how large the other is.
+  EXPECT_EQ(run({"match", plan, plan, "--scale", "3:4"}).out.find(hint), std::string::npos);
+  EXPECT_EQ(run({"match", whole, other, "--scale", "3:4"}).out.find("hint: what"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace gridmerge::test

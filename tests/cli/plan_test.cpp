@@ -41,7 +41,7 @@ TEST_F(MergePlan, JoinsWhatNothingElseJoins) {
     expect_near(member.at("transform"), inverse(T), 0.4, 0.03);
   }
   const Json& told = json.at("plan");
-  expect_keys(told, {"source", "scale", "probability", "component", "maps", "parts"});
+  expect_keys(told, {"source", "resolution", "scale", "probability", "component", "maps", "parts"});
   EXPECT_EQ(told.at("source"), plan);
   EXPECT_NEAR(told.at("scale"), 1.25, 0.02);
   EXPECT_GE(told.at("probability"), 0.95);
@@ -52,6 +52,7 @@ TEST_F(MergePlan, JoinsWhatNothingElseJoins) {
     expect_keys(part, {"maps", "transform", "scale", "probability", "reason"});
     EXPECT_NEAR(part.at("scale"), 1.25, 0.05);
   }
+  EXPECT_EQ(told.at("resolution"), draw_building(1).resolution * 0.8);
   // The page names the plan, and a report that is made again is the same to the byte.
   const std::string page = read_file(output + "/report.html");
   EXPECT_NE(page.find("\"plan\":{\"name\":"), std::string::npos);
@@ -76,6 +77,34 @@ TEST_F(MergePlan, AnImageNeedsNoResolution) {
                             "1.1:1.4", "-o", output});
   EXPECT_EQ(told.err, "");
   EXPECT_NEAR(transforms().at("plan").at("scale"), 1.25, 0.02);
+}
+
+// As the merge counted its pixels, whatever the report is told of images.
+TEST_F(MergePlan, AReportThatIsMadeAgainShowsThePlanToo) {
+  const std::string image = directory.file("plan.pgm");
+  ASSERT_EQ(run({"merge", left, right, "--plan", image, "--plan-scale", "0.9:1.1", "-o", output}).exit_code,
+            0);
+  const std::string page = read_file(output + "/report.html");
+  EXPECT_NE(page.find("\"grid\":{\"width\":"), std::string::npos);
+  const Outcome again = run({"report", output, "--resolution", "0.3"});
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(again.err, "");
+  EXPECT_EQ(read_file(output + "/report.html"), page);
+  std::filesystem::rename(image, directory.file("moved.pgm"));
+  const Outcome without = run({"report", output});
+  EXPECT_EQ(without.exit_code, 0) << without.err;
+  EXPECT_NE(without.err.find(image), std::string::npos) << without.err;
+  EXPECT_NE(without.err.find("the report does not show the plan"), std::string::npos) << without.err;
+  EXPECT_NE(read_file(output + "/report.html").find("\"grid\":null"), std::string::npos);
+}
+
+TEST_F(MergePlan, MapsThatThePlanAloneJoinsAreNotBent) {
+  const Outcome outcome =
+      run({"merge", west, east, "--plan", plan, "--plan-scale", "1.1:1.4", "--elastic", "-o", output});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("no map is bent: maps that the plan alone joins stay as they are\n"),
+            std::string::npos)
+      << outcome.out;
 }
 
 TEST_F(MergePlan, ADrawingAmongTheMapsMayBeTheirPlan) {
@@ -113,6 +142,18 @@ TEST_F(MergePlan, AStrangersPlanChangesNothing) {
   EXPECT_EQ(after, before);
 }
 
+TEST_F(MergePlan, APlanOfAnotherSizeIsToldWithTheRangeThatFits) {
+  OccupancyGrid drawing = on_white_paper(draw_building(1));
+  drawing.resolution *= 8.0;
+  const std::string large = write_map(directory, "large", drawing);
+  const std::vector<std::string> asked{"merge",        left,      right, "--plan", large,
+                                       "--plan-scale", "0.9:1.1", "-o",  output};
+  const Outcome outcome = run(asked);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.out.find("times the floor of the merged map as it is"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(", and --plan-scale 0.1"), std::string::npos) << outcome.out;
+}
+
 TEST_F(MergePlan, OneMapThatHangsThereAloneIsToldOf) {
   const Outcome outcome =
       run({"merge", west, other, "--plan", plan, "--plan-scale", "1.2:1.3", "-o", output});
@@ -120,6 +161,30 @@ TEST_F(MergePlan, OneMapThatHangsThereAloneIsToldOf) {
   EXPECT_NE(outcome.out.find("1 of 2 maps hang on it, enlarged by 1.2"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("\n  " + west + ": x "), std::string::npos) << outcome.out;
   EXPECT_EQ(transforms().at("plan").at("maps"), Json{west});
+}
+
+TEST_F(MergePlan, OneMapIsEnough) {
+  const Outcome outcome = run({"merge", west, "--plan", plan, "--plan-scale", "1.2:1.3", "-o", output});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(outcome.out.find("plan " + plan + ": 1 of 1 maps hang on it, enlarged by 1.2"), 0u)
+      << outcome.out;
+  EXPECT_EQ(outcome.out.find("left out"), std::string::npos) << outcome.out;
+  EXPECT_EQ(transforms().at("plan").at("maps"), Json{west});
+  const std::string page = read_file(output + "/report.html");
+  EXPECT_NE(page.find("\"places\":[{\"component\":null,\"map\":0,"), std::string::npos);
+  ASSERT_EQ(run({"report", output}).exit_code, 0);
+  EXPECT_EQ(read_file(output + "/report.html"), page);
+  const std::vector<std::string> doubtful{"merge",   west, "--plan", plan,       "--plan-scale",
+                                          "1.2:1.3", "-o", output,   "--accept", "0.99999"};
+  EXPECT_NE(run(doubtful).out.find("--accept with a higher --max-false-joins asks for less: this place is"),
+            std::string::npos);
+  const Outcome stranger = run({"merge", other, "--plan", plan, "--plan-scale", "1.2:1.3", "-o", output});
+  EXPECT_EQ(stranger.exit_code, 3);
+  EXPECT_EQ(stranger.out.find("--accept"), std::string::npos) << stranger.out;
+  EXPECT_EQ(stranger.out.find("plan " + plan + ": no map hangs on it\n"), 0u) << stranger.out;
+  const Outcome alone = run({"merge", west, "-o", output});
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_NE(alone.err.find("MAP"), std::string::npos) << alone.err;
 }
 
 TEST_F(MergePlan, WhatMakesNoSenseIsAUsageError) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "support/building.hpp"
@@ -81,6 +82,26 @@ TEST(Drawing, MayHaveGrayLinesAndSoftEdges) {
   EXPECT_EQ(at(map, 5.05, 4.05), Cell::occupied);
   EXPECT_EQ(at(map, 3.05, 2.15), Cell::free);
   EXPECT_EQ(at(map, 3.05, 1.85), Cell::unknown);
+}
+
+TEST(Drawing, MayHaveGrayLinesAlone) {
+  OccupancyGrid sheet = outline(Cell::free, 0);
+  std::replace(sheet.cells.begin(), sheet.cells.end(), Cell::occupied, Cell::unknown);
+  EXPECT_TRUE(is_drawing(sheet));
+  const OccupancyGrid enclosed = with_enclosed_free(sheet);
+  EXPECT_EQ(count_cells(enclosed).occupied, count_cells(outline(Cell::free, 0)).occupied);
+  EXPECT_EQ(at(enclosed, 5.0, 4.0), Cell::free);
+  EXPECT_EQ(at(enclosed, 1.0, 4.0), Cell::unknown);
+  for (int row = 20; row <= 60; ++row) {
+    for (int column = 60; column <= 80; ++column) sheet.at(column, row) = Cell::unknown;
+  }
+  EXPECT_TRUE(is_drawing(sheet)) << "a thick wall";
+  EXPECT_EQ(at(with_enclosed_free(sheet), 7.0, 4.0), Cell::occupied);
+  // Floor of which a few cells were not seen.
+  OccupancyGrid floor = make_grid(100, 80, 0.1, {}, Cell::free);
+  floor.at(50, 40) = floor.at(51, 40) = floor.at(20, 30) = Cell::unknown;
+  EXPECT_FALSE(is_drawing(floor));
+  EXPECT_FALSE(is_drawing(make_grid(10, 10, 0.1, {}, Cell::free)));
 }
 
 TEST(Drawing, ClosesGapsUpToAShareOfItsLongerSide) {

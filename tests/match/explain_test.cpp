@@ -49,5 +49,19 @@ TEST(Explain, TellsRivalsFromMapsThatSlide) {
   EXPECT_EQ(explain(result), "the maps are free to slide along 30 degrees");
 }
 
+TEST(Explain, OfUnknownScaleSaysWhatWalls) {
+  MatchResult result = refused(Reason::ambiguous);
+  PoseFigures held;
+  held.held = held.held_most = 10.0;
+  held.stands_out = 6.0;
+  result.hypotheses = {{{}, 10.0, 0.5, held}};
+  EXPECT_EQ(explain(result),
+            "the maps agree, but on so few walls that other places or scales may fit as well by chance");
+  result.reason = Reason::contradiction;
+  EXPECT_EQ(explain(result), "the maps disagree where both know the same places");
+  result.scale = 1.25;
+  EXPECT_EQ(explain(result), "too few walls meet a wall of the other map where both know the same places");
+}
+
 }  // namespace
 }  // namespace gridmerge

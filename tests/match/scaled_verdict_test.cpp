@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "match/hypotheses.hpp"
 #include "match/scaled_verdict_model.hpp"
 
 namespace gridmerge {
@@ -79,6 +80,47 @@ TEST(ScaledVerdict, MoreLevelsThanWereFittedAreBelievedLess) {
     before = now;
   }
   EXPECT_NEAR(scaled_model(96).bias, scaled_model(48).bias - std::log(2.0), 1e-12);
+}
+
+Reason reason_of(const PoseFigures& changed) {
+  Hypothesis one = clear_pose();
+  one.figures = changed;
+  const std::vector<Hypothesis> all = weighed({one});
+  return explain_refusal(figures_of(all), 0.95, scaled_model(48));
+}
+
+TEST(ScaledVerdict, NamesLittleOverlapOnlyWhereMoreOfItWouldDo) {
+  PoseFigures few_walls = clear_pose().figures;
+  few_walls.walls_met_locally = 0.9;
+  few_walls.wall_lines = 3.0;
+  few_walls.overlap = 0.2;
+  EXPECT_EQ(reason_of(few_walls), Reason::too_little_overlap);
+  few_walls.overlap = 0.98;
+  few_walls.wall_lines = 1.2;
+  few_walls.walls_met_locally = 0.99;
+  EXPECT_EQ(reason_of(few_walls), Reason::ambiguous);
+
+  PoseFigures bent = clear_pose().figures;
+  bent.walls_met_locally = 0.62;
+  bent.wall_lines = 11.0;
+  bent.overlap = 0.98;
+  EXPECT_EQ(reason_of(bent), Reason::contradiction);
+  bent.overlap = 0.3;
+  EXPECT_EQ(reason_of(bent), Reason::too_little_overlap);
+
+  PoseFigures hopeless = chance_pose().figures;
+  hopeless.wall_lines = 1.0;
+  hopeless.walls_met_locally = 0.2;
+  hopeless.overlap = 0.98;
+  EXPECT_EQ(reason_of(hopeless), Reason::several);
+}
+
+TEST(ScaledVerdict, AnEqualPoseOfAnotherScaleMakesItAmbiguous) {
+  Hypothesis here = clear_pose(), there = clear_pose();
+  here.figures.overlap = there.figures.overlap = 0.3;
+  there.scale = 1.1;
+  const std::vector<Hypothesis> both = weighed({here, there});
+  EXPECT_EQ(explain_refusal(figures_of(both), 0.95, scaled_model(48)), Reason::ambiguous);
 }
 
 TEST(ScaledVerdict, FiguresOutOfAllBoundsHaveAProbability) {

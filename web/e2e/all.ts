@@ -11,6 +11,7 @@ import "./following";
 import "./bent";
 import "./hostile";
 import "./many";
+import "./plan";
 import "./palette";
 
 before(start);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type Rgb, disagreement, ink, parseColor, white } from "../src/color";
+import { type Rgb, disagreement, ink, parseColor, sepia, white } from "../src/color";
 import { mergeInto, reportData, six } from "./reports";
 
 /** What people without one kind of cone see, in linear light (Machado, Oliveira & Fernandes 2009, severity 1). */
@@ -37,11 +37,11 @@ function difference(a: number[], b: number[]): number {
   return Math.hypot(...a.map((value, i) => value - b[i]));
 }
 
-test("colours of maps, of disagreement, of shared walls and of free space differ for every kind of colour vision", (t) => {
+test("colours of maps, of a plan, of disagreement, of shared walls and of free space differ for every kind of colour vision", (t) => {
   const colors = reportData(mergeInto("six", six())).maps.map((map) => map.color);
   assert.equal(colors.length, 6);
   const named: [string, Rgb][] = [...colors.map((color): [string, Rgb] => [color, parseColor(color)]),
-    ["disagreement", disagreement], ["ink", ink], ["white", white]];
+    ["disagreement", disagreement], ["ink", ink], ["white", white], ["plan", sepia]];
   for (const [sight, matrix] of Object.entries(sights)) {
     let least: [number, string] = [Infinity, ""];
     for (let i = 0; i < named.length; i++) {

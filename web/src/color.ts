@@ -19,5 +19,7 @@ export const white: Rgb = [255, 255, 255];
 export const ink: Rgb = [32, 32, 36];
 /** Where one map says free and another occupied: vermilion, which no map's own colour is. */
 export const disagreement: Rgb = [213, 94, 0];
+/** Of a plan's walls: as far from every map's colour as can be, for every kind of colour vision. */
+export const sepia: Rgb = [112, 48, 16];
 /** How much of a map's colour is in its free space. */
 export const tint = 0.2;

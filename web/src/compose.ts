@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { type Rgb, disagreement, ink, mix, tint, white } from "./color";
+import { type Rgb, disagreement, ink, mix, sepia, tint, white } from "./color";
 import { Cell, type Grid } from "./grid";
 import { type SE2, compose, identity, inverse } from "./se2";
 import { type Box, boxAround } from "./viewport";
@@ -22,12 +22,16 @@ export interface Picture {
   layers: Layer[];
   /** How strongly what the layers agree and disagree on is marked, 0 to 1. */
   agreement: number;
+  /** A plan, whose walls lie over floor and under the walls of maps. */
+  plan?: { grid: Grid; T_scene_map: SE2; opacity: number } | null;
 }
 
 /** The part of the scene that the picture covers. */
 export function extentOf(picture: Picture): Box {
   const corners = picture.layers.flatMap((layer) => layer.grid.corners(layer.T_scene_map));
-  return boxAround(picture.merged ? corners.concat(picture.merged.grid.corners()) : corners);
+  if (picture.merged) corners.push(...picture.merged.grid.corners());
+  if (picture.plan) corners.push(...picture.plan.grid.corners(picture.plan.T_scene_map));
+  return boxAround(corners);
 }
 
 /** A square of `pixels` by `pixels`, each `side` metres, whose lower left corner is at (left, bottom) of the scene. */
@@ -172,15 +176,19 @@ function mark(out: Uint8ClampedArray, walls: number, frees: number, pixel: numbe
 export function paint(picture: Picture, square: Square): Uint8ClampedArray<ArrayBuffer> {
   const count = square.pixels * square.pixels;
   const out = new Uint8ClampedArray(4 * count);
-  if (!picture.merged || picture.merged.opacity < 1) paintLayers(picture, square, out);
-  if (!picture.merged || picture.merged.opacity === 0) return out;
-  cover(picture.merged, square, out);
-  const above = picture.layers.filter((layer) => layer.above);
-  if (above.length > 0) paintLayers({ merged: null, layers: above, agreement: 0 }, square, out);
+  const walls = new Float32Array(count);
+  if (!picture.merged || picture.merged.opacity < 1) paintLayers(picture, square, out, walls);
+  if (picture.merged && picture.merged.opacity > 0) {
+    cover(picture.merged, square, out, walls);
+    const above = picture.layers.filter((layer) => layer.above);
+    if (above.length > 0) paintLayers({ merged: null, layers: above, agreement: 0 }, square, out, walls);
+  }
+  if (picture.plan) paintPlan(picture.plan, walls, square, out);
   return out;
 }
 
-function paintLayers(picture: Picture, square: Square, out: Uint8ClampedArray): void {
+/** Notes in `walls` how strongly walls are drawn. */
+function paintLayers(picture: Picture, square: Square, out: Uint8ClampedArray, walls: Float32Array): void {
   const count = square.pixels * square.pixels;
   const votes = emptyVotes(count);
   const visible = picture.layers.filter((layer) => layer.opacity > 0);
@@ -189,17 +197,26 @@ function paintLayers(picture: Picture, square: Square, out: Uint8ClampedArray): 
     if (votes.walls[pixel] + votes.frees[pixel] === 0) continue;
     layOver(out, votes.freeColor, votes.freeOpacity, pixel);
     layOver(out, votes.wallColor, votes.wallOpacity, pixel);
+    walls[pixel] = Math.max(walls[pixel], votes.wallOpacity[pixel]);
     if (picture.agreement > 0) mark(out, votes.walls[pixel], votes.frees[pixel], pixel, picture.agreement);
   }
 }
 
-/** Lays a map over what `out` shows; where it knows nothing, that fades as well. */
-function cover({ grid, opacity }: { grid: Grid; opacity: number }, square: Square, out: Uint8ClampedArray): void {
+/** Lays a map over what `out` shows; where it knows nothing, that fades as well. `walls` as of paintLayers(). */
+function cover({ grid, opacity }: { grid: Grid; opacity: number }, square: Square, out: Uint8ClampedArray, walls: Float32Array): void {
   const known = new Uint8Array(square.pixels * square.pixels);
   sample(grid, identity, square, (pixel, cell) => {
     const [red, green, blue] = cell === Cell.occupied ? ink : white;
     over(out, 4 * pixel, red, green, blue, opacity);
+    if (cell === Cell.occupied) walls[pixel] = Math.max(walls[pixel], opacity);
     known[pixel] = 1;
   });
   for (let pixel = 0; pixel < known.length; pixel++) if (known[pixel] === 0) out[4 * pixel + 3] *= 1 - opacity;
+}
+
+function paintPlan(plan: NonNullable<Picture["plan"]>, walls: Float32Array, square: Square, out: Uint8ClampedArray): void {
+  const [red, green, blue] = sepia;
+  sample(plan.grid, plan.T_scene_map, square, (pixel, cell) => {
+    if (cell === Cell.occupied) over(out, 4 * pixel, red, green, blue, plan.opacity * (1 - walls[pixel]));
+  });
 }

@@ -46,6 +46,13 @@ export class Grid {
     return this.level(Math.max(0, Math.round(Math.log2(side / this.finest.resolution))));
   }
 
+  /** The same cells in metres that are `factor` times as long. */
+  scaled(factor: number): Grid {
+    const { width, height, resolution, cells } = this.finest;
+    const { x, y, theta } = this.origin;
+    return new Grid(width, height, factor * resolution, { x: factor * x, y: factor * y, theta }, cells);
+  }
+
   /** What the map says of a point of its frame. */
   at(p: Point, level: Level = this.finest): number {
     const q = apply(this.T_grid_map, p);

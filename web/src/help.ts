@@ -7,6 +7,7 @@ const keys: [string, string][] = [
   ["0", "show all"],
   ["1 … 9", "show or hide a map"],
   ["m, a", "show the merged map or the maps in it; show or hide what they agree on"],
+  ["p", "show or hide the plan, if the merge has one"],
   ["r", "measure: Enter, a click or a drag puts the ends"],
   ["g", "show or hide the metre grid"],
   ["q, e", "turn the map in hand by half a degree (Shift: five)"],

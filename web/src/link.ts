@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { type Report, isLarge } from "./report";
+import { type Report, isLarge, isPlanBelieved } from "./report";
 import { type SceneId, firstScene } from "./scene";
 import { type Point, type SE2, normalizeAngle } from "./se2";
 
@@ -13,6 +13,7 @@ export interface SharedView {
   /** How strongly these are drawn; 0 for what is hidden. */
   merged: number;
   agreement: number;
+  plan: number;
   /** By map; those that are not named are seen in full. */
   maps: Map<number, number>;
   /** By map, "#rrggbb"; those that are not named have the report's. */
@@ -31,7 +32,7 @@ export function defaultView(report: Report): SharedView {
   return {
     scene: firstScene(report), center: null, metres: 0, tab: isLarge(report) ? "overview" : "layers",
     // A thousand maps over each other say less than what they make.
-    merged: isLarge(report) && report.components.length > 0 ? 1 : 0, agreement: 1, maps: new Map(), colors: new Map(),
+    merged: isLarge(report) && report.components.length > 0 ? 1 : 0, agreement: 1, plan: isPlanBelieved(report) ? 1 : 0, maps: new Map(), colors: new Map(),
     placed: new Map(), grid: true, bent: 1, arrows: false, ruler: null,
   };
 }
@@ -47,6 +48,7 @@ export function toHash(view: SharedView, report: Report): string {
   if (view.tab !== usual.tab) parts.set("tab", view.tab);
   if (view.merged !== usual.merged) parts.set("merged", short(view.merged));
   if (view.agreement !== usual.agreement) parts.set("agreement", short(view.agreement));
+  if (view.plan !== usual.plan) parts.set("plan", short(view.plan));
   const faded = [...view.maps].filter(([, opacity]) => opacity !== 1);
   if (faded.length > 0) parts.set("maps", faded.map(([map, opacity]) => `${map}:${short(opacity)}`).join(","));
   const colored = [...view.colors].filter(([map, color]) => color !== report.maps[map].color);
@@ -80,6 +82,7 @@ export function fromHash(hash: string, report: Report, tabs: readonly string[]):
   if (tabs.includes(get("tab"))) view.tab = get("tab");
   view.merged = share(get("merged")) ?? view.merged;
   view.agreement = share(get("agreement")) ?? view.agreement;
+  view.plan = share(get("plan")) ?? view.plan;
   for (const part of get("maps").split(",")) {
     const [, map, opacity] = /^(\d+):(.*)$/.exec(part) ?? [];
     const faded = share(opacity ?? "");

@@ -24,13 +24,14 @@ import { count, flat } from "./text";
 
 /** The scenes that can be picked without a join: merged maps and maps that were left out. */
 function scenePicker(state: State): HTMLElement {
-  const { components, left_out: leftOut } = state.report;
+  const { report } = state;
+  const { components, left_out: leftOut } = report;
   const ids: { id: SceneId; label: string }[] = [
     ...components.map((component, i) => ({
       id: { kind: "component", component: i } as SceneId,
       label: `${component.file} (${count(component.members.length, "map")})`,
     })),
-    ...leftOut.map(({ map }) => ({ id: { kind: "map", map } as SceneId, label: `left out: ${flat(state.names[map])}` })),
+    ...leftOut.map(({ map }) => ({ id: { kind: "map", map } as SceneId, label: `${report.maps.length > 1 ? "left out: " : ""}${flat(state.names[map])}` })),
   ];
   const select = h("select", { id: "scene", change: () => {
     if (select.value !== "") state.show(ids[Number(select.value)].id);
@@ -150,13 +151,19 @@ async function unpackAll(state: State): Promise<void> {
       await each(component.file, component, (grid) => { state.mergedGrids[i] = grid; });
     }
   };
+  const unpackPlan = async () => {
+    const { plan } = report;
+    if (plan?.grid) await each(plan.name, plan.grid, (grid) => { state.planGrid = grid; });
+  };
   const first = new Set(state.scene.placed.map(({ map }) => map));
   const waiting = new Set([...report.maps.keys()].sort((a, b) => Number(first.has(b)) - Number(first.has(a))));
   if (!large) {
     for (const i of waiting) await unpackMap(i);
     await unpackMerged();
+    await unpackPlan();
   } else {
     await unpackMerged();
+    await unpackPlan();
     state.changed("grids");
     document.documentElement.dataset.ready = "true";
     while (waiting.size > 0) {
@@ -263,6 +270,9 @@ function build(report: Report): void {
       if (report.components.length > 0) toggleMerged();
     },
     toggleAgreement: () => layers.toggle(state.agreement),
+    togglePlan: () => {
+      if (state.planPlace()) layers.toggle(state.plan);
+    },
     toggleRuler,
     help: () => help.showModal(),
     refine: () => void hand.refine(),

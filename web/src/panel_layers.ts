@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import { badge, mapLabel } from "./badge";
-import { type Rgb, disagreement, ink, white } from "./color";
+import { type Rgb, disagreement, ink, sepia, white } from "./color";
 import { straighten } from "./deformation";
 import { h, name, replace, swatch } from "./dom";
 import { Cell } from "./grid";
-import { fixed } from "./numbers";
+import { fixed, probability } from "./numbers";
 import { type SE2, apply, inverse } from "./se2";
 import { openWays } from "./open_ways";
 import { type Component, type LeftOut, isLarge } from "./report";
@@ -86,10 +86,22 @@ export class LayersPanel {
         legendItem(ink, "walls in two maps or more"), legendItem(white, "floor in two maps or more"),
         legendItem(disagreement, "they contradict each other"),
         component === null ? null : agreementCounts(state.report.components[component])), "a"),
+      this.planRow(),
       state.hasBent() ? bendRow(state) : null);
     this.readings = new Map();
     replace(this.mapRows, ...listed.map((map) => this.mapRow(map)), moreNote(isLarge(state.report) ? found.length : 0, "map"));
     this.read();
+  }
+
+  private planRow(): HTMLElement | null {
+    const { plan } = this.state.report;
+    const place = this.state.planPlace();
+    if (!plan || !place) return null;
+    const file = name(flat(plan.name).replace(/^.*\//, ""), plan.name);
+    const words = `, enlarged by ${place.scale.toFixed(4)}. `;
+    const doubt = `Its most probable place (probability ${probability(place.probability)}): nothing that is shown here hangs on it.`;
+    return this.ownRow("plan", "Plan", this.state.plan, h("span", { class: "legend" },
+      legendItem(sepia, "its walls"), h("div", { class: "soft" }, file, place.on_plan ? words : words + doubt)), "p");
   }
 
   private ownRow(id: string, label: string, look: Look, legend: Node | null, key: string): HTMLElement {
@@ -197,7 +209,7 @@ export class LayersPanel {
   private leftOut(isWanted: (one: LeftOut) => boolean): HTMLElement | null {
     const { left_out: all, maps, components } = this.state.report;
     const leftOut = all.filter(isWanted);
-    if (leftOut.length === 0) return null;
+    if (leftOut.length === 0 || maps.length === 1) return null;
     const items = leftOut.slice(0, isLarge(this.state.report) ? mostRows : leftOut.length).map(({ map, explanation }) => h("li", { "data-map": map },
       h("div", {}, badge(this.state, map), name(this.state.names[map], maps[map].name)),
       h("p", { class: "soft" }, `${explanation.charAt(0).toUpperCase()}${explanation.slice(1)}.`),

@@ -107,6 +107,18 @@ export interface Refused {
   rows: [number, number, string, number, number, number, number][];
 }
 
+/** Where the plan lies in the frame of a merged map, or of a map that was left out. */
+export interface PlanPlace {
+  component: number | null;
+  map: number | null;
+  transform: SE2;
+  /** By which its own metres are enlarged there. */
+  scale: number;
+  probability: number;
+  /** Otherwise the merge does not believe it: it is the most probable place. */
+  on_plan: boolean;
+}
+
 /** An architect's plan that the merge was given. */
 export interface Plan {
   name: string;
@@ -115,6 +127,9 @@ export interface Plan {
   probability: number;
   /** Those that hang on it. */
   maps: number[];
+  places: PlanPlace[];
+  /** Its walls, in its own metres; null where its file was not at hand. */
+  grid: PackedGrid | null;
 }
 
 export interface Report {
@@ -151,6 +166,11 @@ export function expandRefused(report: Report): void {
   report.refused = { count: report.refused.count - report.refused.rows.length, rows: [] };
 }
 
+/** Whether maps hang on a plan, which is shown from the start then. */
+export function isPlanBelieved(report: Report): boolean {
+  return report.plan !== undefined && report.plan.maps.length > 0;
+}
+
 /** Whether it is told what the two maps have in common: it is not of refused joins of many maps. */
 export function hasFigures(join: Join): boolean {
   return join.agreement + join.disagreement > 0;
@@ -163,6 +183,7 @@ export function isUsed(join: Join): boolean {
 
 /** How the merge went: a sentence, and one of the plan if there is one. */
 export function summary(report: Report): string {
+  if (report.maps.length === 1 && report.plan !== undefined) return planSummary(report.plan, 1);
   const joined = report.components.reduce((sum, component) => sum + component.members.length, 0);
   const into = report.components.length === 0 ? "" : ` into ${count(report.components.length, "merged map")}`;
   const merged = `${count(report.maps.length, "map")}: ${joined} joined${into}, ${report.left_out.length} left out.`;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Deformation } from "./deformation";
-import type { Report } from "./report";
+import type { PlanPlace, Report } from "./report";
 import { type SE2, identity } from "./se2";
 import { shortNames } from "./text";
 
@@ -76,6 +76,13 @@ export function makeScene(report: Report, id: SceneId): Scene {
         component: null,
       };
   }
+}
+
+/** Where the merge's plan lies in a scene, if it has a place there. */
+export function planPlace(report: Report, id: SceneId): PlanPlace | null {
+  const isThere = ({ component, map }: PlanPlace) =>
+    id.kind === "component" ? component === id.component : id.kind === "map" && map === id.map;
+  return report.plan?.places.find(isThere) ?? null;
 }
 
 /** What is shown first: the largest merged map, or if nothing joined, the first map. */

@@ -37,6 +37,7 @@ export class SharedState {
     state.show(view.scene);
     set(state.merged, view.merged);
     set(state.agreement, view.agreement);
+    set(state.plan, view.plan);
     state.looks.forEach((look, map) => {
       set(look, view.maps.get(map) ?? 1);
       look.color = view.colors.get(map) ?? state.report.maps[map].color;
@@ -63,6 +64,7 @@ export class SharedState {
       tab: this.tabs.selected,
       merged: strengthOf(state.merged),
       agreement: strengthOf(state.agreement),
+      plan: strengthOf(state.plan),
       maps: new Map(state.looks.map((look, map) => [map, strengthOf(look)])),
       colors: new Map(state.looks.map(({ color }, map) => [map, color])),
       placed: state.byHand(),

@@ -64,6 +64,8 @@ export class Stage {
   fit(): void {
     const corners = this.state.placed().flatMap((placed) => this.state.gridOf(placed)?.corners(placed.T_scene_map) ?? []);
     const points = corners.length > 0 ? corners : this.mergedGrid()?.corners() ?? [];
+    const plan = this.state.plan.visible ? this.state.placedPlan() : null;
+    if (plan) points.push(...plan.grid.corners(plan.T_scene_map));
     this.look(fit(boxAround(points), this.view.width, this.view.height));
     this.touched = false;
   }
@@ -191,6 +193,8 @@ export class Stage {
     }
     const grid = this.mergedGrid();
     parts.push(grid !== null);
+    const plan = state.plan.visible ? state.placedPlan() : null;
+    parts.push(plan !== null && state.plan.opacity);
     // A map in hand is no part of the picture: while it moves, nothing has to be painted anew.
     const shown = JSON.stringify(parts);
     if (shown === this.shown) return;
@@ -199,6 +203,7 @@ export class Stage {
       merged: grid && state.merged.visible ? { grid, opacity: state.merged.opacity } : null,
       layers,
       agreement: state.agreement.visible ? state.agreement.opacity : 0,
+      plan: plan && { ...plan, opacity: state.plan.opacity },
     };
     const resolutions = layers.map((layer) => layer.grid.finest.resolution);
     if (grid) resolutions.push(grid.finest.resolution);

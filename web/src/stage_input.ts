@@ -19,6 +19,7 @@ export interface KeyActions {
   toggleMap(map: number): void;
   toggleMerged(): void;
   toggleAgreement(): void;
+  togglePlan(): void;
   toggleRuler(): void;
   help(): void;
   refine(): void;
@@ -225,6 +226,7 @@ export class StageInput {
     if (/^[1-9]$/.test(key)) this.actions.toggleMap(Number(key) - 1);
     else if (key === "m") this.actions.toggleMerged();
     else if (key === "a") this.actions.toggleAgreement();
+    else if (key === "p") this.actions.togglePlan();
     else if (key === "?") this.actions.help();
     else return false;
     return true;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import { bentGrid } from "./deformation";
 import type { Grid } from "./grid";
-import type { Report } from "./report";
+import { type PlanPlace, type Report, isPlanBelieved } from "./report";
 import type { Ruler } from "./ruler";
-import { type Placed, type Scene, type SceneId, firstScene, makeScene } from "./scene";
+import { type Placed, type Scene, type SceneId, firstScene, makeScene, planPlace } from "./scene";
 import type { Point, SE2 } from "./se2";
 import { shortNames } from "./text";
 
@@ -41,6 +41,9 @@ export class State {
   readonly looks: MapLook[];
   readonly merged: Look = { visible: false, opacity: 1 };
   readonly agreement: Look = { visible: true, opacity: 1 };
+  /** In its own metres; null until it is unpacked, and for good where there is none. */
+  planGrid: Grid | null = null;
+  readonly plan: Look;
   /** By which share bent maps are bent: 0 shows them as they were read, 1 as they are merged. */
   bent = 1;
   /** Whether arrows show where bending moves them. */
@@ -65,6 +68,7 @@ export class State {
   private offered: SE2 | null = null;
   /** By scene: poses given by hand, in its frame. */
   private readonly handPoses = new Map<string, Map<number, SE2>>();
+  private scaledPlan: { scale: number; grid: Grid } | null = null;
   private readonly bentGrids = new Map<number, { of: Grid; share: number; grid: Grid }>();
   private readonly listeners = new Map<Topic, (() => void)[]>();
 
@@ -74,6 +78,7 @@ export class State {
     this.grids = report.maps.map(() => null);
     this.mergedGrids = report.components.map(() => null);
     this.looks = report.maps.map((map) => ({ visible: true, opacity: 1, color: map.color }));
+    this.plan = { visible: isPlanBelieved(report), opacity: 1 };
     this.whole = firstScene(report);
     this.scene = makeScene(report, this.whole);
   }
@@ -125,6 +130,21 @@ export class State {
   /** Whether the scene has maps that the merge has bent. */
   hasBent(): boolean {
     return this.scene.placed.some(({ deformation }) => deformation !== undefined);
+  }
+
+  /** Where the plan lies in the scene, if there is one to be drawn. */
+  planPlace(): PlanPlace | null {
+    return this.report.plan?.grid ? planPlace(this.report, this.scene.id) : null;
+  }
+
+  /** The plan as it lies in the scene, whether it is shown or not; null until it is there. */
+  placedPlan(): { grid: Grid; T_scene_map: SE2 } | null {
+    const place = this.planPlace();
+    if (!place || !this.planGrid || this.planGrid.finest.width === 0) return null;
+    if (this.scaledPlan?.scale !== place.scale) {
+      this.scaledPlan = { scale: place.scale, grid: this.planGrid.scaled(place.scale) };
+    }
+    return { grid: this.scaledPlan.grid, T_scene_map: place.transform };
   }
 
   setBent(share: number): void {

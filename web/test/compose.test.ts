@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type Rgb, disagreement, ink, white } from "../src/color";
+import { type Rgb, disagreement, ink, sepia, white } from "../src/color";
 import { type Layer, type Picture, type Square, extentOf, paint } from "../src/compose";
 import { Cell, Grid } from "../src/grid";
 import { type SE2, apply, identity, inverse } from "../src/se2";
@@ -124,4 +124,20 @@ test("a map that lies elsewhere than the merged map has it is seen above that", 
   const merged = { grid: one(Cell.free), opacity: 1 };
   assert.deepEqual(pixel({ merged, layers: [layer(one(Cell.occupied))] }), [...white, 255]);
   assert.deepEqual(pixel({ merged, layers: [{ ...layer(one(Cell.occupied)), above: true }] }), [...blue, 255]);
+});
+
+test("a plan's walls lie over floor and under the walls of maps", () => {
+  const plan = { grid: one(Cell.occupied), T_scene_map: identity, opacity: 1 };
+  assert.deepEqual(pixel({ plan }), [...sepia, 255]);
+  assert.deepEqual(pixel({ plan, layers: [layer(one(Cell.free))] }), [...sepia, 255]);
+  assert.deepEqual(pixel({ plan, layers: [layer(one(Cell.occupied))] }), [...blue, 255]);
+  assert.deepEqual(pixel({ plan, merged: { grid: one(Cell.free), opacity: 1 } }), [...sepia, 255]);
+  assert.deepEqual(pixel({ plan, merged: { grid: one(Cell.occupied), opacity: 1 } }), [...ink, 255]);
+  assert.deepEqual(pixel({ plan: { ...plan, grid: one(Cell.free) } }), [0, 0, 0, 0], "its paper is not drawn");
+  assert.equal(pixel({ plan: { ...plan, opacity: 0.5 } })[3], 128);
+});
+
+test("the extent holds the plan too", () => {
+  const plan = { grid: one(Cell.occupied).scaled(3), T_scene_map: { x: -5, y: 2, theta: 0 }, opacity: 1 };
+  assert.deepEqual(extentOf({ merged: null, layers: [layer(one(Cell.free))], agreement: 0, plan }), { left: -5, right: 1, bottom: 0, top: 5 });
 });

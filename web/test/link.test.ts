@@ -26,7 +26,7 @@ test("any view comes back from its link", () => {
     const isAimed = random() < 0.8;
     const view: SharedView = {
       scene: scenes[Math.floor(random() * 4)], center: isAimed ? point() : null, metres: isAimed ? 0.001 + share() * 100 : 0,
-      tab: tabs[Math.floor(random() * 4)], merged: share(), agreement: share(),
+      tab: tabs[Math.floor(random() * 4)], merged: share(), agreement: share(), plan: share(),
       maps: new Map(random() < 0.5 ? [[0, share() / 2], [2, 0]] : []), grid: random() < 0.5,
       bent: Math.floor(random() * 11) / 10, arrows: random() < 0.5,
       colors: new Map(random() < 0.5 ? [[1, "#0a00ff"]] : []),

@@ -26,9 +26,11 @@ test("the summary counts", () => {
 });
 
 test("the summary tells of a plan", () => {
-  const report = { ...reportOf([identity, identity]), plan: { name: "floor.png", scale: 1.25, probability: 0.9996, maps: [0] } };
+  const report = { ...reportOf([identity, identity]), plan: { name: "floor.png", scale: 1.25, probability: 0.9996, maps: [0], places: [], grid: null } };
   assert.match(summary(report), /left out\. 1 of 2 hang on the plan floor\.png, enlarged by 1\.2500 \(probability > 0\.999\)\.$/);
   assert.match(summary({ ...report, plan: { ...report.plan, maps: [] } }), /left out\. No map hangs on the plan floor\.png\.$/);
+  const alone = { ...reportOf([identity]), components: [], plan: { ...report.plan, maps: [0] } };
+  assert.match(summary(alone), /^1 of 1 hang on the plan floor\.png, /, "of one map there is no more to tell");
 });
 
 test("a probability is never rounded to certainty", () => {

@@ -23,8 +23,9 @@ GRIDMERGE_EXPORT const char* name_of(Verdict verdict);
 enum class Reason {
   none,                ///< it was accepted
   nothing_to_compare,  ///< a map has nothing to go by, or no pose speaks for the maps
-  ambiguous,      ///< another hypothesis explains the maps nearly as well, or the maps slide along each other
-  contradiction,  ///< the maps disagree where they know the same places
+  ambiguous,  ///< another hypothesis explains the maps nearly as well, or the maps slide along each other; of
+              ///< unknown scales: or they agree on so few walls that one may, by chance
+  contradiction,       ///< the maps disagree where they know the same places
   too_little_overlap,  ///< they agree, but on too little
   several,             ///< more than one of these
   contradicts_others,  ///< of a merge: believed by itself, but not with what the other maps say

@@ -140,6 +140,7 @@ struct PlanPlacement {
   /// metres, lies in the frame of the component on the plan. 1 if no part is on the plan.
   double scale = 1.0;
   std::vector<PlanPart> parts;  ///< in the order of their first maps
+  double resolution = 0.0;  ///< of the plan, in its own metres per cell; 0 = not told by an earlier version
 
   /// Indices of the input maps that hang on it, part by part.
   std::vector<std::size_t> maps_on_plan() const {

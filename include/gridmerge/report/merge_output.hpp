@@ -17,12 +17,14 @@
 
 namespace gridmerge {
 
-/// A merge as outputs show it: with its maps, and what they are called. Not owned: all three outlive it. What
-/// takes one throws std::out_of_range when a map that it speaks of has no name.
+/// A merge as outputs show it: with its maps, and what they are called. Not owned: all of it outlives this.
+/// What takes one throws std::out_of_range when a map that it speaks of has no name.
 struct NamedMerge {
   const std::vector<std::string>& names;   ///< `names[i]` is what to call map i
   const std::vector<OccupancyGrid>& maps;  ///< as given to merge()
   const MergeResult& result;               ///< as merge() returned it
+  /// As given to place_on_plan(): the report draws it. Null: no plan, or one that is not at hand.
+  const OccupancyGrid* plan = nullptr;
 };
 
 /// Makes sure, before long work, that a merge can be written to `directory`: throws FileError when it is not
