@@ -10,7 +10,12 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "support/effort.hpp"
 
@@ -194,6 +199,32 @@ TEST_F(Faults, AnEndedMergeLeavesNothingBehind) {
 
 TEST_F(Faults, AMergeWhoseTerminalIsClosedLeavesNothingBehind) {
   signal_at_each_call(Over::nothing, SIGHUP);
+}
+
+TEST_F(Faults, AFolderThatIsMadeIsFlushedInItsParent) {
+  RunOptions logged;
+  logged.faulty = true;
+  logged.environment = {"GRIDMERGE_FAULT_LOG=" + directory.file("log")};
+  ASSERT_NE(
+      run({"merge", a, b, "-o", directory.file("made/for/o"), "--cache", directory.file("made/matches")},
+          logged)
+          .exit_code,
+      1);
+  ASSERT_EQ(run({"simulate", "--size", "12x8", "--robots", "1", "--others", "0", "-o", directory.file("s/t")},
+                logged)
+                .exit_code,
+            0);
+  std::ifstream log(directory.file("log"));
+  std::map<std::filesystem::path, bool>
+      flushed;  // of folders that were made: whether their parents were since
+  for (std::string call, path; log >> call && std::getline(log >> std::ws, path);) {
+    if (call == "mkdir" && std::filesystem::exists(path)) flushed[std::filesystem::canonical(path)] = false;
+    for (auto& [folder, is_flushed] : flushed) is_flushed |= call == "fsync" && path == folder.parent_path();
+  }
+  for (const char* folder : {"made", "made/for", "made/for/o", "made/matches", "s", "s/t"})
+    EXPECT_EQ(flushed.count(directory.file(folder)), 1u) << folder;
+  EXPECT_GT(flushed.size(), 6u) << "matches are in folders of their own";
+  for (const auto& [folder, is_flushed] : flushed) EXPECT_TRUE(is_flushed) << folder;
 }
 
 TEST_F(Faults, WithoutLinksFilesAreReplacedOneByOne) {

@@ -112,7 +112,7 @@ TEST_F(ViewUnderAttack, BodiesThatGiveWayTakeNoMemory) {
     if (i % 50 == 7) expect_served_within(kSecond);
   }
   for (int look = 0; look < 10; ++look) {  // what they have sent comes as the server finds the time
-    expect_memory_below(before + 50000);
+    expect_memory_below(before + 40000);
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
   expect_served_within(kSecond);
