@@ -332,5 +332,46 @@ TEST_F(Faults, AGeoTiffIsReplacedWhole) {
   }
 }
 
+TEST_F(Faults, TheGeoTiffsOfAllMergedMapsAreReplacedTogether) {
+  const std::string c = write_map(directory, "c", map_part(draw_building(2), {0, 0, 5, 5}, {}));
+  const std::string copy = write_map(directory, "copy", map_part(draw_building(2), {0, 0, 5, 5}, {}));
+  std::vector<std::string> merge = merge_into("o");
+  merge.insert(merge.begin() + 3, {c, copy});
+  ASSERT_NE(run(merge).exit_code, 1);
+  ASSERT_TRUE(std::filesystem::exists(directory.file("o/merged_2.yaml")));
+  const auto export_it = [&](const std::string& fault) {
+    return run({"report", directory.file("o"), "--export", "geotiff=" + directory.file("t/m.tif")},
+               with_fault(fault));
+  };
+  const auto prepare = [&] {
+    std::filesystem::remove_all(directory.file("t"));
+    for (const char* name : {"t/m.tif", "t/m_2.tif"}) directory.write(name, "old");
+  };
+  prepare();
+  const Files before = files_in(directory.file("t"));
+  ASSERT_EQ(export_it("none 0").exit_code, 0);
+  const Files whole = files_in(directory.file("t"));
+  ASSERT_EQ(names_in("t"), (std::set<std::string>{"m.tif", "m_2.tif"}));
+  const int calls = counts().calls;
+  bool was_old = false, was_new = false;
+  for (int call = 1; call <= calls; call += kStep) {
+    SCOPED_TRACE(call);
+    for (const std::string& fault : {fmt::format("kill {}", call), fmt::format("fail {} {}", call, ENOSPC)}) {
+      prepare();
+      export_it(fault);
+      Files after = files_in(directory.file("t"));
+      std::erase_if(after, [](const auto& file) { return file.first.starts_with("."); });
+      EXPECT_TRUE(after == before || after == whole) << fault << ": a mixed set";
+      (after == before ? was_old : was_new) = true;
+    }
+    if (call % 9 == 1) {
+      ASSERT_EQ(export_it("none 0").exit_code, 0);
+      EXPECT_EQ(names_in("t"), (std::set<std::string>{"m.tif", "m_2.tif"}))
+          << "leftovers are cleared by the next";
+    }
+  }
+  EXPECT_TRUE(was_old && was_new);
+}
+
 }  // namespace
 }  // namespace gridmerge::test
