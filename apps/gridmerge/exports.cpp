@@ -10,6 +10,8 @@
 #include "console.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/report/merge_output.hpp"
+#include "merge_summary.hpp"
+#include "report/interchange.hpp"
 #include "report/output_names.hpp"
 
 namespace gridmerge::cli {
@@ -144,8 +146,10 @@ std::string write_exports(const std::vector<Export>& exports,
   std::string text;
   with_threads(threads, [&] {
     for (const Export& one : exports) {
-      for (const std::filesystem::path& file : write_export(one.format, one.file, inputs, merge))
+      const internal::ExportedFiles files = internal::write_export_files(one.format, one.file, inputs, merge);
+      for (const std::filesystem::path& file : files.written)
         text += fmt::format("{}: {}\n", name_of(one.format), escape_controls(file.string()));
+      text += describe_removed(files.removed);
     }
   });
   return text;

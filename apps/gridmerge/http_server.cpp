@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <limits>
 #include <new>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -125,11 +126,15 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
                       });
   }
 
+  // Piece by piece: give_way() between two reads is not heard by an operation that consists of both.
   void read_body() {
-    http::async_read(stream_, buffer_, parser_, [self = shared_from_this()](error_code error, std::size_t) {
-      if (self->state_ == State::giving_way) return self->say_busy();
-      error ? self->refuse(error) : self->wait_for_answer();
-    });
+    if (parser_.is_done()) return wait_for_answer();
+    parser_.eager(true);
+    http::async_read_some(stream_, buffer_, parser_,
+                          [self = shared_from_this()](error_code error, std::size_t) {
+                            if (self->state_ == State::giving_way) return self->say_busy();
+                            error ? self->refuse(error) : self->read_body();
+                          });
   }
 
   void say_busy() { respond(server_.answers_.to_fault(http::status::service_unavailable)); }
@@ -150,8 +155,16 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
     });
   }
 
+  // A client may take its time for the answer, and many may.
+  void drop_request() {
+    std::string().swap(parser_.get().body());
+    buffer_.clear();
+    buffer_.shrink_to_fit();
+  }
+
   void respond(HttpResponse response) {
     state_ = State::answering;
+    drop_request();
     body_ = std::move(response.body);
     message_.result(response.status);
     message_.version(11);

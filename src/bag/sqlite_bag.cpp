@@ -164,6 +164,12 @@ void SqliteBag::check_tables() {
     if (!tables.contains(needed))
       throw ParseError(
           fmt::format("is an SQLite database, and no rosbag2 file: it has no table '{}'", needed));
+    constexpr int kHidden = 6;  // not 0 of a column that is computed, with the word VIRTUAL or without
+    const Statement columns = prepare(fmt::format("PRAGMA table_xinfo({})", needed));
+    while (step(columns.get())) {
+      if (sqlite3_column_int(columns.get(), kHidden) != 0)
+        throw ParseError(fmt::format("is no rosbag2 file: its table '{}' computes a column", needed));
+    }
   }
 }
 

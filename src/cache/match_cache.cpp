@@ -14,6 +14,7 @@
 #include "gridmerge/io/file_error.hpp"
 #include "io/atomic_file.hpp"
 #include "io/file_reader.hpp"
+#include "io/made_directories.hpp"
 
 namespace gridmerge {
 
@@ -24,17 +25,12 @@ namespace {
 constexpr std::size_t kFolderDigits = 2;
 constexpr std::size_t kMaxBytes = std::size_t{1} << 24;  // of thousands of hypotheses
 
-void make_directory(const std::filesystem::path& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw FileError(directory, "cannot be made: " + error.message());
-}
-
 }  // namespace
 
 MatchCache::MatchCache(std::filesystem::path directory, Warn warn)
-    : directory_(std::move(directory)), warn_(std::move(warn)) {
-  make_directory(directory_);
+    : directory_(std::move(directory)),
+      made_(std::make_shared<MadeDirectories>(directory_)),
+      warn_(std::move(warn)) {
   if (!std::filesystem::is_directory(directory_)) throw FileError(directory_, "is no directory");
   // Whether it can be written to is known for sure when something was.
   const std::filesystem::path trial = directory_ / fmt::format("trial-{}", ::getpid());
@@ -66,7 +62,7 @@ std::optional<MatchResult> MatchCache::find(const std::string& key) {
 
 void MatchCache::keep(const std::string& key, const MatchResult& match) const {
   const std::filesystem::path file = file_of(key);
-  make_directory(file.parent_path());
+  const MadeDirectories made(file.parent_path());
   write_file_atomically(file, format_match_file(match, key));
 }
 

@@ -81,6 +81,41 @@ std::vector<std::string> read_peers(const Environment& environment) {
   return peers;
 }
 
+/// What a list of Cyclone DDS's settings holds that is no XML: names of files. XML goes on to a comma behind
+/// a tag.
+std::vector<std::string> files_in(const std::string& uri) {
+  constexpr const char* kSpace = " \t\n\v\f\r";
+  constexpr const char* kBetween = " \t\n\v\f\r,";
+  std::vector<std::string> files;
+  for (std::size_t begin = uri.find_first_not_of(kBetween); begin < uri.size();) {
+    std::size_t end = begin;
+    if (uri[begin] == '<') {
+      do {
+        end = uri.find_first_not_of(kSpace, std::min(uri.find('>', end), uri.size() - 1) + 1);
+      } while (end < uri.size() && uri[end] != ',');
+    } else {
+      end = uri.find(',', begin);
+      files.push_back(uri.substr(begin, end - begin));
+    }
+    begin = uri.find_first_not_of(kBetween, std::min(end, uri.size()));
+  }
+  return files;
+}
+
+/// Cyclone DDS opens whatever bears the name, and would wait for good for who writes to a pipe.
+std::string read_cyclone_uri(const Environment& environment) {
+  constexpr const char* kName = "CYCLONEDDS_URI";
+  constexpr std::string_view kScheme = "file://";
+  std::string uri = value_of(environment, kName);
+  for (std::string file : files_in(uri)) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error) && file.starts_with(kScheme)) file.erase(0, kScheme.size());
+    if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+      refuse(kName, uri, fmt::format("{} is not a regular file", file));
+  }
+  return uri;
+}
+
 /// Where the enclave's files are; all of them are there.
 std::filesystem::path find_enclave(const Environment& environment, const std::string& enclave) {
   constexpr const char* kKeystore = "ROS_SECURITY_KEYSTORE";
@@ -94,6 +129,10 @@ std::filesystem::path find_enclave(const Environment& environment, const std::st
       refuse(kKeystore, keystore,
              fmt::format("the enclave {} has no file {}", enclave, (folder / file.name).string()));
   }
+  const std::filesystem::path revoked = folder / kRevokedCertificates.name;
+  std::error_code error;
+  if (std::filesystem::exists(revoked, error) && !std::filesystem::is_regular_file(revoked, error))
+    refuse(kKeystore, keystore, fmt::format("{} is not a regular file", revoked.string()));
   return folder;
 }
 
@@ -132,7 +171,7 @@ RosEnvironment read_ros_environment(const Environment& environment, const std::s
     read.enclave_files = find_enclave(environment, read.enclave);
   }
   read.domain = read_domain(environment);
-  read.cyclone_uri = value_of(environment, "CYCLONEDDS_URI");
+  read.cyclone_uri = read_cyclone_uri(environment);
   if (is_localhost_only(environment)) {
     read.range = DiscoveryRange::localhost;
     return read;

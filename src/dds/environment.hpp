@@ -50,8 +50,9 @@ inline constexpr EnclaveFile kRevokedCertificates{"crl.pem", "org.eclipse.cyclon
 /// the two that replace it. With ROS_SECURITY_ENABLE=true also ROS_SECURITY_KEYSTORE and
 /// ROS_SECURITY_ENCLAVE_OVERRIDE, which counts for more than `enclave`, a name such as "/robots/merger".
 /// Throws std::runtime_error that names the variable for a value that ROS would not take; for
-/// ROS_AUTOMATIC_DISCOVERY_RANGE=OFF, with which no robot can be found; and where a file of the enclave is
-/// missing, whatever ROS_SECURITY_STRATEGY says: a node that is to be secure does not speak openly.
+/// ROS_AUTOMATIC_DISCOVERY_RANGE=OFF, with which no robot can be found; where CYCLONEDDS_URI names a pipe or
+/// anything else but a file; and where a file of the enclave is missing, whatever ROS_SECURITY_STRATEGY says:
+/// a node that is to be secure does not speak openly.
 RosEnvironment read_ros_environment(const Environment& environment, const std::string& enclave = "/");
 
 /// Whether a node's enclave can be called so: "/", or levels of letters, digits and '_', each with a slash

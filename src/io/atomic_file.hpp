@@ -38,8 +38,13 @@ class GRIDMERGE_INTERNAL_EXPORT StagedFile {
   /// it is the new file.
   void commit();
 
+  /// In the place of commit(): gives its bytes, flushed, to this name on the same disk, at which nothing is.
+  /// Throws FileError.
+  void hand_over(const std::filesystem::path& name);
+
  private:
   void flush();
+  void rename_to(const std::filesystem::path& name);
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;  // empty once it is gone

@@ -121,6 +121,14 @@ void FileSet::add(const std::string& name, std::string_view bytes) {
   added_.push_back(name);
 }
 
+void FileSet::add(StagedFile& file) {
+  throw_if_cancelled();
+  const std::string name = file.path().filename().string();
+  check_destination(directory_ / name);
+  file.hand_over(directory_ / kWork / kNew / name);
+  added_.push_back(name);
+}
+
 void FileSet::remove(const std::string& name) {
   removed_.push_back(name);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "internal_export.hpp"
+#include "io/atomic_file.hpp"
 #include "io/directory_lock.hpp"
 
 namespace gridmerge::internal {
@@ -43,6 +44,8 @@ class GRIDMERGE_INTERNAL_EXPORT FileSet {
   /// A file of the new set; a link of its name is replaced, not followed. Each name once. Throws FileError,
   /// and Cancelled.
   void add(const std::string& name, std::string_view bytes);
+  /// The same of a file that was staged in this directory, and is not committed then.
+  void add(StagedFile& file);
   /// A file of the old set that has no successor.
   void remove(const std::string& name);
   /// Once only. Throws FileError: then the set is the old one, or, if it could not be tidied up after the

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "gridmerge/io/file_error.hpp"
+#include "io/durable.hpp"
 
 namespace gridmerge::internal {
 
@@ -17,6 +18,7 @@ MadeDirectories::MadeDirectories(const fs::path& directory) {
   for (fs::path part = directory; !part.empty() && !fs::exists(part, error); part = part.parent_path())
     made_.push_back(part);
   fs::create_directories(directory, error);
+  if (!error) error = flush_parents();
   if (error) {
     remove_empty();
     throw FileError(directory, "cannot be created: " + error.message());
@@ -25,6 +27,16 @@ MadeDirectories::MadeDirectories(const fs::path& directory) {
 
 MadeDirectories::~MadeDirectories() {
   remove_empty();
+}
+
+// The outermost first: a directory is of no use before its parent lasts. Another program that has made the
+// same ones may have removed them again by now.
+std::error_code MadeDirectories::flush_parents() const {
+  for (auto part = made_.rbegin(); part != made_.rend(); ++part) {
+    const int error = flush_path(part->parent_path());
+    if (error != 0 && error != ENOENT) return {error, std::generic_category()};
+  }
+  return {};
 }
 
 void MadeDirectories::remove_empty() const {

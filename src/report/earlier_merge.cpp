@@ -47,6 +47,8 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(status) || fs::is_symlink(status);
 }
 
+}  // namespace
+
 bool holds(const fs::path& file, std::string_view mark) {
   try {
     FileReader reader(file, NamedBy::file);
@@ -55,8 +57,6 @@ bool holds(const fs::path& file, std::string_view mark) {
     return false;
   }
 }
-
-}  // namespace
 
 std::vector<std::string> earlier_outputs(const fs::path& directory) {
   const std::size_t merged_maps = merged_maps_of(directory / kTransforms);

@@ -3,21 +3,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "gridmerge/grid/execution.hpp"
 #include "io/atomic_file.hpp"
+#include "io/directory_names.hpp"
+#include "io/file_set.hpp"
 #include "merge/fused_windows.hpp"
 #include "merge/joins.hpp"
+#include "report/earlier_merge.hpp"
 #include "report/fused_places.hpp"
 #include "report/interchange.hpp"
 #include "report/output_names.hpp"
 #include "report/tiff_pyramid.hpp"
 
 namespace gridmerge::internal {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -72,26 +82,79 @@ FusedWindows windows_of(const NamedMerge& merge, std::size_t component) {
   return FusedWindows(std::move(placed.maps), resolution, std::move(placed.deformations));
 }
 
-std::vector<std::filesystem::path> write_geotiff(const std::filesystem::path& file, const NamedMerge& merge) {
+namespace {
+
+using StagedFiles = std::vector<std::unique_ptr<StagedFile>>;
+
+/// By what a file of further merged maps says of itself: that of another export has a number of its own.
+std::string further_map(std::size_t number) {
+  return fmt::format("merged map no. {}, of ", number);
+}
+
+std::string description_of(std::size_t component, std::size_t maps) {
+  return fmt::format("{}{}{}{} where nothing is known",
+                     component == 0 ? "merged map of " : further_map(component + 1), maps, kGeoTiffMark,
+                     TiffPyramid::kUnknown);
+}
+
+/// The files of an earlier export to `file` that had more merged maps.
+std::vector<fs::path> files_beyond(const fs::path& file, std::size_t components) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const std::string& name : names_in(file.parent_path(), error)) {
+    const std::optional<std::size_t> number = number_in(name, file.filename());
+    if (!number || *number <= components) continue;
+    const fs::path path = file.parent_path() / name;
+    if (fs::is_regular_file(fs::symlink_status(path, error)) && holds(path, further_map(*number)))
+      files.push_back(path);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// By which a folder is the same, whichever way it is named.
+fs::path folder_of(const fs::path& file) {
+  return fs::canonical(file.parent_path().empty() ? "." : file.parent_path());
+}
+
+/// In one step what is in one folder: links may lead to others.
+void commit(const StagedFiles& staged, const std::vector<fs::path>& removed) {
+  if (staged.size() == 1 && removed.empty()) return staged.front()->commit();
+  std::map<fs::path, FileSet> sets;
+  const auto set_of = [&](const fs::path& file) -> FileSet& {
+    return sets.try_emplace(folder_of(file), file.parent_path()).first->second;
+  };
+  for (const auto& one : staged) set_of(one->path()).add(*one);
+  for (const fs::path& file : removed) set_of(file).remove(file.filename().string());
+  for (auto& [folder, set] : sets) set.commit();
+}
+
+}  // namespace
+
+ExportedFiles write_geotiff(const fs::path& file, const std::vector<fs::path>& inputs,
+                            const NamedMerge& merge) {
   const std::vector<Component>& components = merge.result.components;
-  std::vector<std::filesystem::path> files;
-  std::vector<std::unique_ptr<StagedFile>> staged;
+  ExportedFiles files;
   for (std::size_t i = 0; i < components.size(); ++i) {
-    files.push_back(numbered(file, i));
-    staged.push_back(std::make_unique<StagedFile>(files.back()));
+    files.written.push_back(numbered(file, i));
+    protect_inputs(files.written.back(), inputs);
+  }
+  StagedFiles staged;
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    staged.push_back(std::make_unique<StagedFile>(files.written[i]));
     const FusedWindows windows = windows_of(merge, i);
     const Lattice& lattice = windows.lattice();
     TiffPyramid picture(staged.back()->path(), lattice.width, lattice.height);
     draw(windows, picture);
     const std::string owner = plain(frame_owner(merge, components[i]));
-    picture.write(*staged.back(),
-                  {{lattice.corner.x, lattice.corner.y + lattice.height * lattice.resolution},
-                   lattice.resolution,
-                   "frame of " + owner,
-                   fmt::format("merged map of {}{}{} where nothing is known", components[i].members.size(),
-                               kGeoTiffMark, TiffPyramid::kUnknown)});
+    picture.write(*staged.back(), {{lattice.corner.x, lattice.corner.y + lattice.height * lattice.resolution},
+                                   lattice.resolution,
+                                   "frame of " + owner,
+                                   description_of(i, components[i].members.size())});
   }
-  for (const auto& one : staged) one->commit();
+  files.removed = files_beyond(file, components.size());
+  for (const fs::path& one : files.removed) protect_inputs(one, inputs);
+  commit(staged, files.removed);
   return files;
 }
 

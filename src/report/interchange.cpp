@@ -49,16 +49,16 @@ void check_placed(const NamedMerge& merge) {
   }
 }
 
-/// No file that the maps were read from is replaced.
-void protect(const std::filesystem::path& file, const std::vector<std::filesystem::path>& inputs) {
+}  // namespace
+
+void internal::protect_inputs(const std::filesystem::path& file,
+                              const std::vector<std::filesystem::path>& inputs) {
   for (const std::filesystem::path& input : inputs) {
     std::error_code absent;
     if (std::filesystem::equivalent(file, input, absent))
       throw FileError(file, "is an input and would be replaced: choose another file for the export");
   }
 }
-
-}  // namespace
 
 std::span<const ExportFormat> export_formats() {
   static const std::vector<ExportFormat> formats = [] {
@@ -99,19 +99,24 @@ std::string export_text(ExportFormat format, const NamedMerge& merge) {
   return of(format).text(merge);
 }
 
-std::vector<std::filesystem::path> write_export(ExportFormat format, const std::filesystem::path& file,
-                                                const std::vector<std::filesystem::path>& inputs,
-                                                const NamedMerge& merge) {
-  const std::size_t files = is_text(format) ? 1 : std::max<std::size_t>(1, merge.result.components.size());
-  for (std::size_t i = 0; i < files; ++i) protect(numbered(file, i), inputs);
+internal::ExportedFiles internal::write_export_files(ExportFormat format, const std::filesystem::path& file,
+                                                     const std::vector<std::filesystem::path>& inputs,
+                                                     const NamedMerge& merge) {
+  protect_inputs(file, inputs);
   try {
     check_placed(merge);
-    if (!is_text(format)) return write_geotiff(file, merge);
+    if (!is_text(format)) return write_geotiff(file, inputs, merge);
     write_file_atomically(file, export_text(format, merge));
   } catch (const std::invalid_argument& error) {
     throw FileError(file, std::string("is not written: ") + error.what());
   }
-  return {file};
+  return {{file}, {}};
+}
+
+std::vector<std::filesystem::path> write_export(ExportFormat format, const std::filesystem::path& file,
+                                                const std::vector<std::filesystem::path>& inputs,
+                                                const NamedMerge& merge) {
+  return write_export_files(format, file, inputs, merge).written;
 }
 
 std::string internal::frame_owner(const NamedMerge& merge, const Component& component) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gridmerge/report/merge_output.hpp"
+#include "internal_export.hpp"
 #include "merge/fused_windows.hpp"
 
 namespace gridmerge::internal {
@@ -32,10 +33,28 @@ std::string g2o_text(const NamedMerge& merge);
 std::string open_rmf_text(const NamedMerge& merge);
 std::string geojson_text(const NamedMerge& merge);
 
-/// A GeoTIFF of each merged map: `file`, and for further components files beside it (numbered()). Returns all
-/// of them. Runs in the calling TBB arena. Throws FileError, and std::invalid_argument for a merged map that
-/// is too large even so; then no file is there that was not. O(cells).
-std::vector<std::filesystem::path> write_geotiff(const std::filesystem::path& file, const NamedMerge& merge);
+/// What an export did to files.
+struct ExportedFiles {
+  std::vector<std::filesystem::path> written;
+  /// GeoTIFFs of further merged maps that an earlier export to the same name had, and this one has not.
+  std::vector<std::filesystem::path> removed;
+};
+
+/// write_export() of the public header, for who tells what it removed, too.
+GRIDMERGE_INTERNAL_EXPORT ExportedFiles write_export_files(ExportFormat format,
+                                                           const std::filesystem::path& file,
+                                                           const std::vector<std::filesystem::path>& inputs,
+                                                           const NamedMerge& merge);
+
+/// Throws FileError if `file` is one that the maps were read from.
+void protect_inputs(const std::filesystem::path& file, const std::vector<std::filesystem::path>& inputs);
+
+/// A GeoTIFF of each merged map: `file`, and for further components files beside it (numbered()); those of an
+/// earlier export that has more are removed. All of that is one step, as far as it is in one folder. Runs in
+/// the calling TBB arena. Throws FileError, and std::invalid_argument for a merged map that is too large even
+/// so; then all is as it was. O(cells).
+ExportedFiles write_geotiff(const std::filesystem::path& file,
+                            const std::vector<std::filesystem::path>& inputs, const NamedMerge& merge);
 
 /// What a component's merged map is fused of, in the cells of its finest map. Refers to `merge`.
 FusedWindows windows_of(const NamedMerge& merge, std::size_t component);

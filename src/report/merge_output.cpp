@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -53,15 +54,23 @@ fs::path internal::numbered(const fs::path& file, std::size_t component) {
          fmt::format("{}_{}{}", file.stem().string(), component + 1, file.extension().string());
 }
 
-bool internal::is_numbered(const fs::path& name, const fs::path& file) {
-  if (name == file) return true;
-  if (name.extension() != file.extension()) return false;
+std::optional<std::size_t> internal::number_in(const fs::path& name, const fs::path& file) {
+  if (name == file) return 1;
+  if (name.extension() != file.extension()) return std::nullopt;
   constexpr std::size_t kMostDigits = 6;  // what is longer is a date
   const std::string stem = name.stem().string(), first = file.stem().string() + "_";
-  if (!stem.starts_with(first)) return false;
-  const std::string_view number = std::string_view(stem).substr(first.size());
-  return !number.empty() && number.size() <= kMostDigits && number != "1" && number.front() != '0' &&
-         number.find_first_not_of("0123456789") == std::string_view::npos;
+  if (!stem.starts_with(first)) return std::nullopt;
+  const std::string_view digits = std::string_view(stem).substr(first.size());
+  if (digits.empty() || digits.size() > kMostDigits || digits == "1" || digits.front() == '0' ||
+      digits.find_first_not_of("0123456789") != std::string_view::npos)
+    return std::nullopt;
+  std::size_t number = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  return number;
+}
+
+bool internal::is_numbered(const fs::path& name, const fs::path& file) {
+  return number_in(name, file).has_value();
 }
 
 namespace {

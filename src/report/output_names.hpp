@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 
 #include "internal_export.hpp"
 
@@ -17,6 +18,9 @@ GRIDMERGE_INTERNAL_EXPORT bool is_merge_output(const std::filesystem::path& name
 /// What a file is called that each merged map has one of, for merged map `component`, from 0 on: the first
 /// has the name itself, the next is file_2, as the merged maps are.
 std::filesystem::path numbered(const std::filesystem::path& file, std::size_t component);
+
+/// Of which merged map, from 1 on, `name` is the file, both without folders; none where it is no such name.
+std::optional<std::size_t> number_in(const std::filesystem::path& name, const std::filesystem::path& file);
 
 /// Whether numbered(file, ...) may be `name`, both without folders.
 GRIDMERGE_INTERNAL_EXPORT bool is_numbered(const std::filesystem::path& name,

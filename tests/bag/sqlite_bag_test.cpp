@@ -115,6 +115,26 @@ TEST_F(SqliteBagTest, WhatIsNoBagIsRefused) {
   EXPECT_TRUE(contains(error_of(path_), "SQLite cannot read it: no such column"));
 }
 
+TEST_F(SqliteBagTest, ColumnsThatAreComputedAreNotRead) {
+  const std::string topics =
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT);"
+      "INSERT INTO topics VALUES (1, '/map', 'nav_msgs/msg/OccupancyGrid', 'cdr');";
+  int file = 0;
+  for (const char* kind : {"", " STORED"}) {
+    const std::string path = directory_.file(std::to_string(file++) + ".db3");
+    run_sql(path, topics +
+                      "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, "
+                      "data AS (printf('%.*c', 100, 'x'))" +
+                      kind + "); INSERT INTO messages(topic_id, timestamp) VALUES (1, 2);");
+    EXPECT_TRUE(contains(error_of(path), "its table 'messages' computes a column"));
+  }
+  run_sql(
+      path_,
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name AS ('/map'), type TEXT, serialization_format TEXT);"
+      "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB);");
+  EXPECT_TRUE(contains(error_of(path_), "its table 'topics' computes a column"));
+}
+
 TEST_F(SqliteBagTest, AViewThatNeverEndsIsNotRun) {
   run_sql(path_,
           "CREATE TABLE topics(id INTEGER, name TEXT, type TEXT, serialization_format TEXT);"

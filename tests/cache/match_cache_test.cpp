@@ -108,6 +108,22 @@ TEST_F(MatchCacheTest, NeedsADirectoryThatCanBeWrittenTo) {
   }
 }
 
+TEST_F(MatchCacheTest, LeavesNoFolderInWhichNothingWasKept) {
+  {
+    MatchCache cache = open();
+    const MatchCache copy = cache;
+    EXPECT_EQ(directory.names(), std::vector<std::string>{"matches"});
+    EXPECT_FALSE(cache.find(key));
+    std::filesystem::create_directories(file_of(key));  // in the way of the match
+    EXPECT_THROW(copy.keep(key, some_match(1.0)), FileError);
+    std::filesystem::remove(file_of(key));
+    std::filesystem::remove(std::filesystem::path(file_of(key)).parent_path());
+  }
+  EXPECT_TRUE(directory.names().empty());
+  open().keep(key, some_match(1.0));
+  EXPECT_TRUE(open().find(key));
+}
+
 TEST_F(MatchCacheTest, MakesWhatIsMissingOnce) {
   MatchCache cache = open();
   int made = 0;

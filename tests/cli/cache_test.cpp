@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <map>
 #include <regex>
 #include <thread>
 
@@ -178,6 +179,30 @@ TEST_F(CacheTest, ADirectoryThatCannotBeWrittenToIsToldBeforeTheWork) {
     EXPECT_FALSE(std::filesystem::exists(directory.file("o")));
     expect_error(run({"merge", left, right, "--cache", bad, "--shard", "1/2"}), bad, "cannot be");
   }
+}
+
+TEST_F(CacheTest, AFailedRunLeavesNoFolderThatItMade) {
+  const std::string bad = directory.write("bad.yaml", "image: none.pgm\n");
+  for (const auto& [folder, calls] : std::map<std::string, int>{{"matches", 5}, {"deep/matches", 7}}) {
+    const std::string cache = directory.file(folder);
+    expect_error(run({"merge", left, bad, "--cache", cache, "-o", directory.file("o")}), bad, "");
+    expect_error(run({"merge", left, bad, "--cache", cache, "--shard", "1/2"}), bad, "");
+    EXPECT_FALSE(std::filesystem::exists(cache));
+    // The calls that make the folder, and a file in it on trial: each fails once.
+    RunOptions faulty;
+    faulty.faulty = true;
+    for (int call = 1; call <= calls; ++call) {
+      faulty.environment = {fmt::format("GRIDMERGE_FAULT=fail {} {}", call, ENOSPC)};
+      expect_error(run({"merge", left, bad, "--cache", cache, "-o", directory.file("o")}, faulty), cache,
+                   "No space left on device");
+      EXPECT_FALSE(std::filesystem::exists(cache));
+      EXPECT_FALSE(std::filesystem::exists(directory.file("deep")));
+    }
+  }
+  std::filesystem::create_directory(directory.file("matches"));
+  expect_error(run({"merge", left, bad, "--cache", directory.file("matches"), "-o", directory.file("o")}),
+               bad, "");
+  EXPECT_TRUE(std::filesystem::exists(directory.file("matches"))) << "it is the user's own";
 }
 
 TEST_F(CacheTest, UsageErrors) {

@@ -45,6 +45,22 @@ TEST_F(Export, OfAnEarlierMergeIsRemoved) {
   EXPECT_EQ(read_file(fresh + "/merged.g2o"), "mine");
 }
 
+TEST_F(Export, OfFurtherMergedMapsIsRemovedWithAnyName) {
+  // A copy lies on its original, so that there are two merged maps.
+  const std::string copy = directory.file("copy.yaml"), site = directory.file("site.tif");
+  std::filesystem::copy_file(other, copy);
+  ASSERT_EQ(merge({other, copy, "--export", "geotiff", "--export", "geotiff=" + site}).exit_code, 3);
+  for (const char* name : {"site_2.tif", "out/merged_2.tif", "out/merged_2.yaml"})
+    ASSERT_TRUE(std::filesystem::exists(directory.file(name))) << name;
+  const Outcome outcome = merge({"--export", "geotiff=" + site});
+  ASSERT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.out.find("geotiff: " + site + "\nremoved: site_2.tif (of an earlier merge)\n"),
+            std::string::npos)
+      << outcome.out;
+  for (const char* name : {"site_2.tif", "out/merged_2.tif", "out/merged_2.yaml", "out/merged.tif"})
+    EXPECT_FALSE(std::filesystem::exists(directory.file(name))) << name;
+}
+
 TEST_F(Export, AMergeOfNothingNamesWhatItRemoves) {
   ASSERT_EQ(merge({"--export", "g2o"}).exit_code, 0);
   const Outcome outcome = run({"merge", left, other, "-o", output});

@@ -10,7 +10,12 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "support/effort.hpp"
 
@@ -222,6 +227,32 @@ TEST_F(Faults, AMergeWhoseTerminalIsClosedLeavesNothingBehind) {
   signal_at_each_call(Over::nothing, SIGHUP);
 }
 
+TEST_F(Faults, AFolderThatIsMadeIsFlushedInItsParent) {
+  RunOptions logged;
+  logged.faulty = true;
+  logged.environment = {"GRIDMERGE_FAULT_LOG=" + directory.file("log")};
+  ASSERT_NE(
+      run({"merge", a, b, "-o", directory.file("made/for/o"), "--cache", directory.file("made/matches")},
+          logged)
+          .exit_code,
+      1);
+  ASSERT_EQ(run({"simulate", "--size", "12x8", "--robots", "1", "--others", "0", "-o", directory.file("s/t")},
+                logged)
+                .exit_code,
+            0);
+  std::ifstream log(directory.file("log"));
+  std::map<std::filesystem::path, bool>
+      flushed;  // of folders that were made: whether their parents were since
+  for (std::string call, path; log >> call && std::getline(log >> std::ws, path);) {
+    if (call == "mkdir" && std::filesystem::exists(path)) flushed[std::filesystem::canonical(path)] = false;
+    for (auto& [folder, is_flushed] : flushed) is_flushed |= call == "fsync" && path == folder.parent_path();
+  }
+  for (const char* folder : {"made", "made/for", "made/for/o", "made/matches", "s", "s/t"})
+    EXPECT_EQ(flushed.count(directory.file(folder)), 1u) << folder;
+  EXPECT_GT(flushed.size(), 6u) << "matches are in folders of their own";
+  for (const auto& [folder, is_flushed] : flushed) EXPECT_TRUE(is_flushed) << folder;
+}
+
 TEST_F(Faults, WithoutLinksFilesAreReplacedOneByOne) {
   // FAT, and folders that virtual machines share with their hosts.
   for (const int error : {EPERM, EROFS, EPROTO}) {
@@ -325,6 +356,47 @@ TEST_F(Faults, AGeoTiffIsReplacedWhole) {
     EXPECT_EQ(export_it("none 0").exit_code, 0);
     EXPECT_EQ(names_in("t"), std::set<std::string>{"m.tif"}) << "leftovers are cleared by the next";
   }
+}
+
+TEST_F(Faults, TheGeoTiffsOfAllMergedMapsAreReplacedTogether) {
+  const std::string c = write_map(directory, "c", map_part(draw_building(2), {0, 0, 5, 5}, {}));
+  const std::string copy = write_map(directory, "copy", map_part(draw_building(2), {0, 0, 5, 5}, {}));
+  std::vector<std::string> merge = merge_into("o");
+  merge.insert(merge.begin() + 3, {c, copy});
+  ASSERT_NE(run(merge).exit_code, 1);
+  ASSERT_TRUE(std::filesystem::exists(directory.file("o/merged_2.yaml")));
+  const auto export_it = [&](const std::string& fault) {
+    return run({"report", directory.file("o"), "--export", "geotiff=" + directory.file("t/m.tif")},
+               with_fault(fault));
+  };
+  const auto prepare = [&] {
+    std::filesystem::remove_all(directory.file("t"));
+    for (const char* name : {"t/m.tif", "t/m_2.tif"}) directory.write(name, "old");
+  };
+  prepare();
+  const Files before = files_in(directory.file("t"));
+  ASSERT_EQ(export_it("none 0").exit_code, 0);
+  const Files whole = files_in(directory.file("t"));
+  ASSERT_EQ(names_in("t"), (std::set<std::string>{"m.tif", "m_2.tif"}));
+  const int calls = counts().calls;
+  bool was_old = false, was_new = false;
+  for (int call = 1; call <= calls; call += kStep) {
+    SCOPED_TRACE(call);
+    for (const std::string& fault : {fmt::format("kill {}", call), fmt::format("fail {} {}", call, ENOSPC)}) {
+      prepare();
+      export_it(fault);
+      Files after = files_in(directory.file("t"));
+      std::erase_if(after, [](const auto& file) { return file.first.starts_with("."); });
+      EXPECT_TRUE(after == before || after == whole) << fault << ": a mixed set";
+      (after == before ? was_old : was_new) = true;
+    }
+    if (call % 9 == 1) {
+      ASSERT_EQ(export_it("none 0").exit_code, 0);
+      EXPECT_EQ(names_in("t"), (std::set<std::string>{"m.tif", "m_2.tif"}))
+          << "leftovers are cleared by the next";
+    }
+  }
+  EXPECT_TRUE(was_old && was_new);
 }
 
 }  // namespace

@@ -4,7 +4,8 @@
 // "kill 3" kills the program at the third one that changes the disk, "fail 3 28" lets it fail with an errno,
 // "signal 3 15" sends a signal first; "memory 3" lets the third allocation fail, "thread 3" the third start.
 // "refuse 1" lets every symbolic link fail with errno 1, as FAT does; with "hang 0" no connection is ever
-// ended. The numbers of calls are written to the file that GRIDMERGE_FAULT_COUNT names when main() ends.
+// ended. The numbers of calls are written to the file that GRIDMERGE_FAULT_COUNT names when main() ends. The
+// file that GRIDMERGE_FAULT_LOG names gets a line for each folder that is made, and for what is flushed.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -82,6 +83,16 @@ void tell_counts() {
   if (path == nullptr) return;
   if (std::FILE* file = std::fopen(path, "w")) {
     std::fprintf(file, "%d %d %d", calls.load(), allocations.load(), threads.load());
+    std::fclose(file);
+  }
+}
+
+/// A folder that was made, or what was flushed.
+void log_call(const char* name, const char* path) {
+  const char* log = std::getenv("GRIDMERGE_FAULT_LOG");
+  if (log == nullptr) return;
+  if (std::FILE* file = std::fopen(log, "a")) {
+    std::fprintf(file, "%s %s\n", name, path);
     std::fclose(file);
   }
 }
@@ -171,7 +182,12 @@ ssize_t write(int descriptor, const void* bytes, size_t count) {
 }
 
 int fsync(int descriptor) {
-  return call("fsync", descriptor);
+  const int result = call("fsync", descriptor);
+  char link[32];
+  char path[4096] = "";
+  std::snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
+  if (result == 0 && ::readlink(link, path, sizeof path - 1) > 0) log_call("fsync", path);
+  return result;
 }
 int rename(const char* from, const char* to) noexcept {
   return call("rename", from, to);
@@ -187,7 +203,9 @@ int symlink(const char* text, const char* path) noexcept {
   return call("symlink", text, path);
 }
 int mkdir(const char* path, mode_t mode) noexcept {
-  return call("mkdir", path, mode);
+  const int result = call("mkdir", path, mode);
+  if (result == 0) log_call("mkdir", path);
+  return result;
 }
 int rmdir(const char* path) noexcept {
   return call("rmdir", path);

@@ -102,6 +102,26 @@ TEST_F(ViewUnderAttack, SlowClientsKeepNobodyWaiting) {
   expect_memory_below(before + 30000);
 }
 
+TEST_F(ViewUnderAttack, BodiesThatGiveWayTakeNoMemory) {
+  const long before = memory();
+  const std::string start = head() + "Content-Length: 1048576\r\n\r\n" + std::string(1'040'000, 'x');
+  std::vector<Connection> clients;
+  for (int i = 0; i < 250; ++i) {
+    clients.push_back(connect());
+    (void)clients.back().send(start);
+    if (i % 50 == 7) expect_served_within(kSecond);
+  }
+  for (int look = 0; look < 10; ++look) {  // what they have sent comes as the server finds the time
+    expect_memory_below(before + 40000);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  expect_served_within(kSecond);
+}
+
+TEST_F(ViewUnderAttack, ABodyOfNothingIsAnsweredAtOnce) {
+  EXPECT_EQ(exchange(head() + "Content-Length: 0\r\n\r\n").substr(0, 12), "HTTP/1.1 400");
+}
+
 TEST_F(ViewUnderAttack, ARequestHasTenSecondsHoweverItIsSpread) {
   const Connection connection = connect();
   const std::string request = request_line();

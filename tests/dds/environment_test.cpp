@@ -2,6 +2,7 @@
 #include "dds/environment.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <map>
 #include <stdexcept>
@@ -140,6 +141,34 @@ TEST(RosEnvironment, CyclonesOwnSettingsComeLast) {
   const std::string text = configuration({{"CYCLONEDDS_URI", uri}, {"ROS_LOCALHOST_ONLY", "1"}});
   EXPECT_TRUE(text.ends_with("," + uri));
   EXPECT_FALSE(has(text, "NetworkInterface"));  // they could not be taken away again
+}
+
+TEST(RosEnvironment, WaitsForNoPipe) {
+  const test::TemporaryDirectory folder;
+  const std::string pipe = folder.file("pipe"), file = folder.write("dds.xml", "<CycloneDDS/>");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const std::string xml = "<Domain><General><AllowMulticast>a,b</AllowMulticast></General></Domain>";
+  for (const std::string& uri : {pipe, "file://" + pipe, " ," + pipe, file + "," + pipe + "," + file,
+                                 xml + " ,\n" + pipe, xml + "," + xml + ",file://" + pipe})
+    EXPECT_EQ(refusal({{"CYCLONEDDS_URI", uri}}),
+              "CYCLONEDDS_URI='" + uri + "': " + pipe + " is not a regular file");
+  EXPECT_TRUE(has(refusal({{"CYCLONEDDS_URI", folder.path().string()}}), " is not a regular file"));
+  // What is missing, or is no XML, is for Cyclone DDS to tell.
+  for (const std::string& uri :
+       {file, "file://" + file, xml + "," + file, folder.file("none"), xml, std::string("<"),
+        std::string(","), "<a>" + pipe + "</a>", "<a/>" + pipe, "<" + pipe + ","})
+    EXPECT_EQ(read({{"CYCLONEDDS_URI", uri}}).cyclone_uri, uri);
+}
+
+TEST(RosEnvironment, WaitsForNoPipeOfRevokedCertificates) {
+  const test::TemporaryDirectory keystore;
+  for (const EnclaveFile& file : kEnclaveFiles) keystore.write(std::string("enclaves/") + file.name, "");
+  const Variables variables{{"ROS_SECURITY_ENABLE", "true"},
+                            {"ROS_SECURITY_KEYSTORE", keystore.path().string()}};
+  EXPECT_EQ(refusal(variables), "taken");
+  const std::string revoked = keystore.file("enclaves/crl.pem");
+  ASSERT_EQ(::mkfifo(revoked.c_str(), 0600), 0);
+  EXPECT_TRUE(has(refusal(variables), revoked + " is not a regular file")) << refusal(variables);
 }
 
 }  // namespace

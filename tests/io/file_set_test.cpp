@@ -46,6 +46,32 @@ TEST(FileSet, ReplacesTheOldFilesAndRemovesThoseWithoutSuccessor) {
   EXPECT_FALSE(std::filesystem::exists(directory.file("b")));
 }
 
+TEST(FileSet, TakesFilesThatWereStagedBefore) {
+  const TemporaryDirectory directory;
+  for (const char* name : {"a", "b"}) directory.write(name, "old");
+  {
+    StagedFile a(directory.file("a"), "new a"), b(directory.file("b"));
+    b.append("new ");
+    FileSet files(directory.path());
+    b.append("b");
+    files.add(a);
+    files.add(b);
+    files.add("c", "new c");
+    EXPECT_EQ(read_file(directory.file("a")) + read_file(directory.file("b")), "oldold");
+    files.commit();
+  }
+  EXPECT_EQ(read_file(directory.file("a")), "new a");
+  EXPECT_EQ(read_file(directory.file("b")), "new b");
+  EXPECT_EQ(directory.names(), (Names{"a", "b", "c"}));
+  {
+    StagedFile staged(directory.file("a"), "newer");
+    FileSet files(directory.path());
+    files.add(staged);
+  }
+  EXPECT_EQ(read_file(directory.file("a")), "new a");
+  EXPECT_EQ(directory.names(), (Names{"a", "b", "c"}));
+}
+
 TEST(FileSet, WithoutCommitNothingHasHappened) {
   const TemporaryDirectory directory;
   directory.write("a", "old");

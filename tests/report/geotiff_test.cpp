@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <random>
 #include <stdexcept>
@@ -290,6 +291,41 @@ TEST(GeoTiff, IsAsLargeAsItHasToBe) {
                }),
                "n.tif: is not written: the merged map would exceed 2^36 cells"));
   EXPECT_EQ(directory.names(), std::vector<std::string>{"m.tif"});
+}
+
+TEST(GeoTiff, FilesOfAnEarlierExportThatHadMoreAreRemoved) {
+  const TemporaryDirectory directory;
+  const Fleet two = two_fleets(), one(9);
+  const auto write = [&](const std::string& name, const Fleet& fleet,
+                         const std::vector<std::filesystem::path>& inputs = {}) {
+    return write_export_files(ExportFormat::geotiff, directory.file(name), inputs, fleet.named());
+  };
+  EXPECT_TRUE(write("m.tif", two).removed.empty());
+  write("m_3.tif", one);  // an export of its own
+  std::filesystem::copy_file(directory.file("m_2.tif"), directory.file("m_4.tif"));
+  std::filesystem::copy_file(directory.file("m_2.tif"), directory.file("other_2.tif"));
+  const std::vector<std::string> mine{"m.tif", "m_3.tif", "m_4.tif", "other_2.tif"};
+  const std::string first = read_file(directory.file("m.tif"));
+  EXPECT_TRUE(contains(message_of<FileError>([&] { write("m.tif", one, {directory.file("m_2.tif")}); }),
+                       "m_2.tif: is an input"));
+  EXPECT_TRUE(read_file(directory.file("m.tif")) == first);
+  const ExportedFiles files = write("m.tif", one);
+  EXPECT_EQ(files.written, std::vector<std::filesystem::path>{directory.file("m.tif")});
+  EXPECT_EQ(files.removed, std::vector<std::filesystem::path>{directory.file("m_2.tif")});
+  EXPECT_EQ(directory.names(), mine);
+  EXPECT_FALSE(read_file(directory.file("m.tif")) == first);
+}
+
+TEST(GeoTiff, FollowsLinksToOtherFolders) {
+  const TemporaryDirectory directory;
+  directory.write("there/n.tif", "old");
+  std::filesystem::create_symlink("there/n.tif", directory.file("m.tif"));
+  const Fleet fleet = two_fleets();
+  write_export(ExportFormat::geotiff, directory.file("m.tif"), {}, fleet.named());
+  EXPECT_TRUE(std::filesystem::is_symlink(directory.file("m.tif")));
+  EXPECT_EQ(read_file(directory.file("there/n.tif")).substr(0, 2), "II");
+  EXPECT_EQ(read_file(directory.file("m_2.tif")).substr(0, 2), "II");
+  EXPECT_EQ(directory.names(), (std::vector<std::string>{"m.tif", "m_2.tif", "there"}));
 }
 
 TEST(GeoTiff, NoneOfItsFilesReplacesAnInput) {

@@ -5,6 +5,7 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,10 @@
 #include "gridmerge/merge/merger.hpp"
 
 namespace gridmerge {
+
+namespace internal {
+class MadeDirectories;
+}
 
 /// Matches on disk, by what they are matches of: match_key(). A file of a few kilobytes holds one, in one of
 /// 256 folders, with a digest of all that it holds. Several processes may use a directory at once, on one
@@ -27,8 +32,8 @@ class GRIDMERGE_EXPORT MatchCache {
   /// Takes a line for the user.
   using Warn = std::function<void(const std::string&)>;
 
-  /// The directory is made if need be. Throws FileError, an error that names it, when it cannot be written
-  /// to.
+  /// The directory is made if need be, and goes with this object and its copies if nothing was kept. Throws
+  /// FileError, an error that names it, when it cannot be written to.
   explicit MatchCache(std::filesystem::path directory, Warn warn = {});
 
   /// The match of this key if there is one. Of the first file that is damaged it warns.
@@ -54,6 +59,7 @@ class GRIDMERGE_EXPORT MatchCache {
   std::filesystem::path file_of(const std::string& key) const;
 
   std::filesystem::path directory_;
+  std::shared_ptr<const internal::MadeDirectories> made_;
   Warn warn_;
   std::size_t damaged_ = 0;
   bool has_kept_all_ = true;

@@ -101,8 +101,9 @@ GRIDMERGE_EXPORT const char* export_file(ExportFormat format);
 GRIDMERGE_EXPORT std::string export_text(ExportFormat format, const NamedMerge& merge);
 
 /// Writes it to a file, which is replaced as a whole, and returns the files that it wrote: of `geotiff` one
-/// for each component, `file`, then file_2 and so on beside it. Throws FileError, also if no map was placed,
-/// or if such a file is one of `inputs`: files that the maps were read from. Runs in the calling TBB arena
+/// for each component, `file`, then file_2 and so on beside it. These are replaced together, and those that
+/// an earlier export to `file` had more of are removed. Throws FileError, also if no map was placed, or if
+/// such a file is one of `inputs`: files that the maps were read from. Runs in the calling TBB arena
 /// (with_threads()). O(cells + joins); of `geotiff` also O(cells of the merged maps).
 GRIDMERGE_EXPORT std::vector<std::filesystem::path> write_export(
     ExportFormat format, const std::filesystem::path& file, const std::vector<std::filesystem::path>& inputs,
