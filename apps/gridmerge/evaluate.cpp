@@ -71,7 +71,9 @@ Evaluation evaluate_files(const EvaluateCommandOptions& options) {
     console.progress("evaluating", static_cast<double>(done) / static_cast<double>(total));
   };
   engine.warn = [&](const std::string& warning) { console.warn(warning); };
-  return evaluate(truth, engine);
+  Evaluation evaluation = evaluate(truth, engine);
+  cached.tell_of_use();
+  return evaluation;
 }
 
 int run_evaluate(const EvaluateCommandOptions& options) {

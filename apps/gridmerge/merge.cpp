@@ -193,6 +193,7 @@ int run_merge(const MergeCommandOptions& options) {
     require_not_exported(exports, options.search.trace, "--export and --trace");
   MergeResult result =
       merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
+  cached.tell_of_use();
   if (inputs.plan)
     result = inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
   console.progress("writing the result");
@@ -243,7 +244,8 @@ constexpr const char* kFooter =
     "see one directory. Pairs are looked at in two rounds: quickly, and thoroughly those whose maps that\n"
     "leaves apart. A shard needs no other for the first round, and all others for the second. So run "
     "every\n"
-    "shard, wait for all, and run every shard once more; the merge itself makes what is missing. Of more\n"
+    "shard, wait for all, and run every shard once more; the merge itself makes what is missing, says how\n"
+    "much that was, and warns of shards with another N, other maps, options or versions. Of more\n"
     "than 50 maps there may be more rounds: --max-missed chooses pairs by what was found before. A shard's\n"
     "exit code is 3 while matches of the merge are missing, and 0 when all are there:\n"
     "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (and 2/2 elsewhere)\n"

@@ -237,7 +237,7 @@ def evaluate(
         if told is not None:
             told(1.0)
     _inputs.warn(core.warnings)
-    _cache.warn(kept)
+    _cache.close(kept)
     return _to_evaluation(core)
 
 

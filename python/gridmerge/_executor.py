@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import CancelledError, Executor, Future
 from dataclasses import dataclass, field
 
-from . import _arguments, _bag, _core, _tasks
+from . import _arguments, _bag, _cache, _core, _tasks
 from ._grid import OccupancyGrid
 from ._repr import count
 from ._tasks import MapSpec
@@ -111,9 +111,15 @@ class MatchingExecutor:
         self._cache = cache
         self._rates = defaultdict(lambda: _OTHER_GUESS, _FIRST_GUESS)
 
-    def make(self, wanted: Iterable[Wanted], progress: Callable[[int], object] | None = None) -> None:
+    def make(
+        self,
+        wanted: Iterable[Wanted],
+        progress: Callable[[int], object] | None = None,
+        before: Callable[[_core.MatchCache], object] | None = None,
+    ) -> None:
         """Makes all that the cache does not have; `take` of each is called in this thread, in any order. `progress` is
-        told how many are there. When it ends early, by an error or Ctrl-C, what no worker has begun is cancelled."""
+        told how many are there. `before` is called once a match is missing in the cache. When it ends early, by an
+        error or Ctrl-C, what no worker has begun is cancelled."""
         waiting: deque[Wanted] = deque()
         found = 0
         for one in wanted:
@@ -126,6 +132,11 @@ class MatchingExecutor:
         if progress is not None and found > 0:
             progress(found)
         total = len(waiting)
+        if waiting and self._cache is not None:
+            self._cache.announce(self._accept)
+            if before is not None:
+                before(self._cache)
+            _cache.warn(self._cache)  # before the work, which may take long
         again: deque[_Task] = deque()
         running: dict[Future[_tasks.Answer], _Task] = {}
         done: queue.SimpleQueue[Future[_tasks.Answer]] = queue.SimpleQueue()
@@ -273,6 +284,14 @@ def match_due(
 ) -> None:
     """Hands mergers the matches that are due, round after round, until none is."""
     rounds = _core.RoundsShare()
+    told = False
+
+    def before(cache: _core.MatchCache) -> None:
+        nonlocal told
+        for merger, _ in () if told else mergers:
+            merger.warn_of_other_shards(cache)
+        told = True
+
     while True:
         wanted = [
             Wanted(maps[fixed], maps[moving], search, _hand_in(merger, fixed, moving, search))
@@ -281,7 +300,8 @@ def match_due(
         ]
         if not wanted:
             return
-        executor.make(wanted, None if progress is None else _share_of(rounds, len(wanted), progress))
+        share = None if progress is None else _share_of(rounds, len(wanted), progress)
+        executor.make(wanted, share, before)
 
 
 def _share_of(

@@ -147,7 +147,7 @@ def merge(
             matching = _executor.MatchingExecutor(executor, *merger.match_options(), kept)
             _executor.match_due(matching, [(merger, shared)], told)
         merged = merger.solve(None if executor is not None else kept, told)
-        _cache.warn(kept)
+        _cache.close(kept)
     if chosen is not None:
         drawing, scales = chosen
         merged = _core.place_on_plan(

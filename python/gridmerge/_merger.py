@@ -182,7 +182,7 @@ class Merger:
             merged = self._core.solve(None if executor is not None else kept, told)
             grids = [grid for grid, _ in self._maps.values()]
             names = [name for _, name in self._maps.values()]
-        _cache.warn(kept)
+        _cache.close(kept)
         return to_merge_result(merged, grids, names, ())
 
     def __getstate__(self) -> dict[str, Any]:

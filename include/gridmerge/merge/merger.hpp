@@ -71,6 +71,12 @@ class GRIDMERGE_EXPORT Merger {
   /// place in this list.
   std::vector<MapId> maps() const;
 
+  /// Those that it was given; its matches keep as many hypotheses as a merge needs.
+  const MergeOptions& options() const;
+
+  /// What is known of a map's pose. Throws std::out_of_range for an unknown id.
+  std::optional<KnownPose> known_pose(MapId id) const;
+
   /// The matches that solve() would make next, the most worthwhile first, for who makes them elsewhere: on
   /// other machines, say. They come in rounds, because pairs are looked at quickly first, and thoroughly
   /// where that leaves their maps apart:
