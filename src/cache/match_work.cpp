@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "cache/comparison_file.hpp"
 #include "cache/shard_record.hpp"
 #include "grid/parallel.hpp"
 #include "gridmerge/cache/match_cache.hpp"
@@ -75,6 +76,20 @@ void warn_of_misfits(const MatchCache& cache, const std::vector<ShardRecord>& re
   if (!text.empty()) cache.warn(fmt::format("{}: {}", cache.directory().string(), text));
 }
 
+/// While it lives.
+class KeptComparisons {
+ public:
+  KeptComparisons(Merger& merger, ComparisonStore store) : merger_(merger) {
+    merger.keep_comparisons(std::move(store));
+  }
+  ~KeptComparisons() { merger_.keep_comparisons({}); }
+  KeptComparisons(const KeptComparisons&) = delete;
+  KeptComparisons& operator=(const KeptComparisons&) = delete;
+
+ private:
+  Merger& merger_;
+};
+
 /// Keeps its record, and warns of others if it has to wait for them.
 void end_shard(MatchCache& cache, const ShardRecord& record, const MatchWork& done,
                const MatchWorkOptions& options) {
@@ -103,6 +118,7 @@ MatchWork match_with_cache(Merger& merger, const std::vector<OccupancyGrid>& map
   const std::vector<Merger::MapId> ids = merger.maps();
   std::map<Merger::MapId, std::string> contents;
   for (std::size_t i = 0; i < ids.size(); ++i) contents[ids[i]] = told_apart[i];
+  const KeptComparisons kept(merger, comparisons_in(cache, options.shard, options.goes_on_when_full));
   const bool is_shard = options.shard.count > 1;
   bool is_told = false;  // what the user should know before matches are made
   MatchWork work;

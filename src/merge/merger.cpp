@@ -92,6 +92,8 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     return store_.known_pose(id);
   }
 
+  void keep_comparisons(ComparisonStore store) { choice_.keep_comparisons(std::move(store)); }
+
   MatchOptions match_options(SearchMethod search) const { return looks_.match_options(search); }
 
   std::vector<DueMatch> due() {
@@ -308,6 +310,10 @@ const MergeOptions& Merger::options() const {
 
 std::optional<KnownPose> Merger::known_pose(MapId id) const {
   return state_->known_pose(id);
+}
+
+void Merger::keep_comparisons(ComparisonStore store) {
+  state_->keep_comparisons(std::move(store));
 }
 
 std::vector<DueMatch> Merger::due() {
