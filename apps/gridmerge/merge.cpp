@@ -109,7 +109,8 @@ MergeOptions merge_options(const MergeCommandOptions& options, Console& console)
 void tell_of_all_pairs(const MergeCommandOptions& options, std::size_t maps, const MergeOptions& engine,
                        Console& console) {
   if (options.search.up_the_tree() || options.all_pairs) return;
-  const std::string text = describe_all_pairs(maps, engine, options.cache.shards());
+  const std::string text =
+      describe_all_pairs(maps, engine, options.cache.shards(), "--max-missed 0.25 matches likely pairs only");
   if (!text.empty()) console.tell(text);
 }
 
@@ -303,7 +304,8 @@ CLI::Option* add_choice_of_pairs(CLI::App& command, MergeCommandOptions& options
       command
           .add_option("--max-missed", options.max_missed,
                       "Of more than 50 maps match likely pairs only: the others may hide this share of all "
-                      "joins, 0.25 or so. Up to 0.2 all pairs are matched")
+                      "joins, 0.25 or so. Up to 0.2 all pairs are matched, as signatures of maps do not show "
+                      "one join in five")
           ->type_name("SHARE")
           ->check(kProbability)
           ->capture_default_str();
