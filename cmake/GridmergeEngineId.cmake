@@ -1,6 +1,6 @@
-# What tells engines apart whose matches may differ: the version, and a digest of the sources of the rooms that match pairs.
+# What tells engines apart whose matches may differ: the version, and a digest of the sources of the rooms that compare and match pairs.
 # Included, it writes ${GRIDMERGE_ENGINE_ID_SOURCE} when the project is built; run as a script (cmake -P), it is what writes.
-set(engine_rooms grid similarity search match)
+set(engine_rooms grid similarity search match preselect)
 
 if(CMAKE_SCRIPT_MODE_FILE)
   set(digests "")

@@ -88,14 +88,26 @@ MergeResult CachedEngine::merge(const std::vector<OccupancyGrid>& maps, const Me
   MatchWorkOptions work;
   work.progress = options.progress;
   const MatchWork done = match_with_cache(merger, maps, *cache_, work);
-  console_.remark(fmt::format("{} of the cache, {} made", matches(done.found), done.made));
+  work_.found += done.found;
+  work_.made += done.made;
   return merger.solve();
 }
 
 MatchResult CachedEngine::match(const OccupancyGrid& fixed, const OccupancyGrid& moving,
                                 const MatchOptions& options, const std::function<MatchResult()>& make) {
   if (!cache_) return make();
-  return cache_->find_or_make(match_key(content_id(fixed), content_id(moving), options), make);
+  bool is_made = false;
+  MatchResult result = cache_->find_or_make(match_key(content_id(fixed), content_id(moving), options), [&] {
+    cache_->announce(options.accept_probability);
+    is_made = true;
+    return make();
+  });
+  ++(is_made ? work_.made : work_.found);
+  return result;
+}
+
+void CachedEngine::tell_of_use() {
+  if (cache_) console_.tell(fmt::format("{} of the cache, {} made", matches(work_.found), work_.made));
 }
 
 ShardOutcome CachedEngine::make_shard(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,

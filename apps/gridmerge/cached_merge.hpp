@@ -53,9 +53,13 @@ class CachedEngine {
   ShardOutcome make_shard(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,
                           const std::vector<std::optional<KnownPose>>& known_poses);
 
+  /// Tells how many matches the cache had, and how many were made; nothing without a cache.
+  void tell_of_use();
+
  private:
   CacheOptions options_;
   Console& console_;
+  MatchWork work_;                     // so far
   std::unique_ptr<MatchCache> cache_;  // none if none is asked for
 };
 

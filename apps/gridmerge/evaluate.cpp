@@ -12,6 +12,7 @@
 #include "evaluate/tables.hpp"
 #include "exports.hpp"
 #include "io/atomic_file.hpp"
+#include "merge_notices.hpp"
 #include "search_options.hpp"
 
 namespace gridmerge::cli {
@@ -65,13 +66,18 @@ Evaluation evaluate_files(const EvaluateCommandOptions& options) {
     if (options.search.up_the_tree()) return merge_up_tree(maps, engine.matcher);
     MergeOptions joint;
     joint.match = match_options(options.common, options.search);
+    const std::string all_pairs =
+        describe_all_pairs(maps.size(), joint, 1, "evaluate has no --max-missed, as merge has");
+    if (!all_pairs.empty()) console.tell(all_pairs);
     return cached.merge(maps, joint);
   };
   engine.progress = [&](std::size_t done, std::size_t total) {
     console.progress("evaluating", static_cast<double>(done) / static_cast<double>(total));
   };
   engine.warn = [&](const std::string& warning) { console.warn(warning); };
-  return evaluate(truth, engine);
+  Evaluation evaluation = evaluate(truth, engine);
+  cached.tell_of_use();
+  return evaluation;
 }
 
 int run_evaluate(const EvaluateCommandOptions& options) {
@@ -97,7 +103,11 @@ void add_evaluate(CLI::App& app, Action& action) {
       ->type_name("FILE");
   command->add_option("--negatives", options->negatives, "Table of pairs with no common place")
       ->type_name("FILE");
-  command->add_option("--sets", options->sets, "Table of sets of maps to merge, with true poses")
+  command
+      ->add_option(
+          "--sets", options->sets,
+          "Table of sets of maps to merge, with true poses. All pairs of a set are matched: there is no "
+          "--max-missed as that of merge")
       ->type_name("FILE");
   command->add_option("--json", options->json, "Write JSON to this file; - prints it instead of the summary")
       ->type_name("FILE");

@@ -110,7 +110,8 @@ MergeOptions merge_options(const MergeCommandOptions& options, Console& console)
 void tell_of_all_pairs(const MergeCommandOptions& options, std::size_t maps, const MergeOptions& engine,
                        Console& console) {
   if (options.search.up_the_tree() || options.all_pairs) return;
-  const std::string text = describe_all_pairs(maps, engine, options.cache.shards());
+  const std::string text =
+      describe_all_pairs(maps, engine, options.cache.shards(), "--max-missed 0.25 matches likely pairs only");
   if (!text.empty()) console.tell(text);
 }
 
@@ -216,6 +217,7 @@ int run_merge(const MergeCommandOptions& options) {
   std::vector<std::filesystem::path> removed;
   const auto merge_and_write = [&] {
     result = merge_maps(inputs.maps, known_poses.poses(), options, matcher, cached, coarser, console);
+    cached.tell_of_use();
     if (inputs.plan)
       result = inputs.plan->place(inputs.maps, std::move(result), merge_options(options, console), console);
     console.progress("writing the result");
@@ -267,7 +269,8 @@ constexpr const char* kFooter =
     "see one directory. Pairs are looked at in two rounds: quickly, and thoroughly those whose maps that\n"
     "leaves apart. A shard needs no other for the first round, and all others for the second. So run "
     "every\n"
-    "shard, wait for all, and run every shard once more; the merge itself makes what is missing. Of more\n"
+    "shard, wait for all, and run every shard once more; the merge itself makes what is missing, says how\n"
+    "much that was, and warns of shards with another N, other maps, options or versions. Of more\n"
     "than 50 maps there may be more rounds: --max-missed chooses pairs by what was found before. A shard's\n"
     "exit code is 3 while matches of the merge are missing, and 0 when all are there:\n"
     "  gridmerge merge --cache matches --shard 1/2 robot*.yaml   (and 2/2 elsewhere)\n"
@@ -326,7 +329,8 @@ CLI::Option* add_choice_of_pairs(CLI::App& command, MergeCommandOptions& options
       command
           .add_option("--max-missed", options.max_missed,
                       "Of more than 50 maps match likely pairs only: the others may hide this share of all "
-                      "joins, 0.25 or so. Up to 0.2 all pairs are matched")
+                      "joins, 0.25 or so. Up to 0.2 all pairs are matched, as signatures of maps do not show "
+                      "one join in five")
           ->type_name("SHARE")
           ->check(kProbability)
           ->capture_default_str();

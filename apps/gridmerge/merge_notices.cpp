@@ -60,7 +60,8 @@ void tell_of_copies(const GivenMaps& maps, const SearchOptions& search, bool is_
     console.warn(fmt::format("copies, which count {}: {}", count, fmt::join(copies, ", ")));
 }
 
-std::string describe_all_pairs(std::size_t maps, const MergeOptions& options, std::size_t shards) {
+std::string describe_all_pairs(std::size_t maps, const MergeOptions& options, std::size_t shards,
+                               const std::string& what_helps) {
   if (maps <= kFewMaps || !takes_all_pairs(maps, options.max_missed)) return {};
   const std::size_t pairs = maps * (maps - 1) / 2;
   const double one =
@@ -68,10 +69,10 @@ std::string describe_all_pairs(std::size_t maps, const MergeOptions& options, st
   const int threads = thread_count(options.match.threads);
   const double seconds = static_cast<double>(pairs) * one / (static_cast<double>(shards) * threads);
   return fmt::format(
-      "all {} pairs of {} maps are matched, which takes about {} of {}{}: --max-missed 0.25 matches likely "
-      "pairs only",
-      pairs, maps, describe_duration(seconds), threads == 1 ? "a thread" : fmt::format("{} threads", threads),
-      shards == 1 ? "" : fmt::format(" for each of {} shards", shards));
+      "all {} pairs of {} maps are matched{}, which takes about {} of {}{}: {}", pairs, maps,
+      options.max_missed > 0.0 ? fmt::format(", as --max-missed is not above {}", kHiddenShare) : "",
+      describe_duration(seconds), threads == 1 ? "a thread" : fmt::format("{} threads", threads),
+      shards == 1 ? "" : fmt::format(" for each of {} shards", shards), what_helps);
 }
 
 }  // namespace gridmerge::cli

@@ -24,8 +24,9 @@ struct GivenMaps {
 /// once for names and once for copies. Maps of which both have known poses count each, equal or not.
 void tell_of_copies(const GivenMaps& maps, const SearchOptions& search, bool is_any_fixed, Console& console);
 
-/// How many pairs are matched and how long that takes, if that is all pairs of many maps, and what option
-/// spares them; "" otherwise. `shards` share the matches.
-std::string describe_all_pairs(std::size_t maps, const MergeOptions& options, std::size_t shards);
+/// How many pairs are matched and how long that takes, if that is all pairs of many maps, and what the user
+/// may do about it; "" otherwise. `shards` share the matches.
+std::string describe_all_pairs(std::size_t maps, const MergeOptions& options, std::size_t shards,
+                               const std::string& what_helps);
 
 }  // namespace gridmerge::cli

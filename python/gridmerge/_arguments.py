@@ -10,6 +10,8 @@ import os
 from collections.abc import Callable
 from typing import TypeAlias
 
+from . import _core
+
 PathLike: TypeAlias = str | os.PathLike[str]
 Progress: TypeAlias = Callable[[float], object]
 
@@ -78,8 +80,8 @@ def scales(name: str, value: object, search: str) -> tuple[float, float]:
     if not isinstance(value, (tuple, list)) or len(value) != 2:
         raise TypeError(f"{name}: must be a pair of numbers, is {kind_of(value)}")
     least, most = (number(name, one) for one in value)
-    if search == "random-walk":
-        raise ValueError(f"{name}: is not searched by the random walk")
+    if search not in _core.joint_search_methods():
+        raise ValueError(f"{name}: does not go with the search {search!r}")
     if not 1e-3 <= least <= most <= 1e3 or most > 20.0 * least:
         raise ValueError(
             f"{name}: must go from a smaller to a larger one within [0.001, 1000], at most 20 times as large, "

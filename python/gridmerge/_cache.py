@@ -3,13 +3,19 @@
 
 from __future__ import annotations
 
+import logging
 import os
 
 from . import _arguments, _core, _inputs
+from ._repr import count
+
+_logger = logging.getLogger("gridmerge")
 
 
 class CacheWarning(UserWarning):
-    """A match that was kept is damaged, or one cannot be kept: it is made again, or not kept, and the work goes on."""
+    """A match that was kept is damaged, or one cannot be kept: it is made again, or not kept, and the work goes on.
+    Or the directory holds matches or shards that do not fit, which are not used: of another version of gridmerge, of
+    other options, maps or numbers of shards."""
 
 
 def to_cache(directory: _arguments.PathLike | None) -> _core.MatchCache | None:
@@ -20,7 +26,14 @@ def to_cache(directory: _arguments.PathLike | None) -> _core.MatchCache | None:
     return _core.MatchCache(os.path.abspath(_arguments.path("cache", directory)))
 
 
-def warn(cache: _core.MatchCache | None) -> None:
-    """Issues what the cache has to tell."""
+def warn(cache: _core.MatchCache) -> None:
+    """Issues what the cache has to tell by now."""
+    _inputs.warn(cache.take_warnings(), CacheWarning)
+
+
+def close(cache: _core.MatchCache | None) -> None:
+    """Issues the rest, and logs how much of the work the cache has spared."""
     if cache is not None:
-        _inputs.warn(cache.take_warnings(), CacheWarning)
+        found, made = cache.counted()
+        _logger.info("%s of the cache, %d made", count(found, "match", "matches"), made)
+        warn(cache)

@@ -10,7 +10,7 @@ from typing import TypeAlias, cast
 from . import _arguments, _cache, _core, _executor, _inputs
 from ._arguments import Progress
 from ._grid import to_resolution
-from ._match import RANDOM_WALK, Reason, Verdict
+from ._match import Reason, Verdict, is_joint
 from ._merge import Strategy
 from ._repr import count, probability, shortened
 
@@ -185,7 +185,8 @@ def evaluate(
     Args:
         pairs: table (TSV) of pairs of maps with true transforms.
         negatives: table of pairs with no common place.
-        sets: table of sets of maps to merge, with true poses. At least one of the three is needed.
+        sets: table of sets of maps to merge, with true poses. At least one of the three is needed. All pairs of a set
+            are matched, however many maps it has: there is no `max_missed` as that of merge().
         strategy, threads, accept, search: as for merge().
         resolution, literal_thresholds: how map files are read, as for load(); the resolution is that of bare images.
         executor: makes the matches, as for merge(): workers read the maps under the same paths. Needs "joint".
@@ -203,10 +204,10 @@ def evaluate(
     if _executor.check(executor) is not None and up_the_tree:
         raise ValueError("executor: needs the strategy 'joint': a tree's matches wait for each other")
     search = _arguments.choice("search", search, tuple(_core.search_methods()))
-    if search == RANDOM_WALK and not up_the_tree:
-        raise ValueError("search: 'random-walk' needs the strategy 'tree': it has no probability")
-    if search == RANDOM_WALK and cache is not None:
-        raise ValueError("cache: does not go with the search 'random-walk'")
+    if not is_joint(search) and not up_the_tree:
+        raise ValueError(f"search: {search!r} needs the strategy 'tree': it has no probability")
+    if not is_joint(search) and cache is not None:
+        raise ValueError(f"cache: does not go with the search {search!r}")
     paths = [
         None if table is None else _arguments.path(name, table)
         for name, table in (("pairs", pairs), ("negatives", negatives), ("sets", sets))
@@ -237,7 +238,7 @@ def evaluate(
         if told is not None:
             told(1.0)
     _inputs.warn(core.warnings)
-    _cache.warn(kept)
+    _cache.close(kept)
     return _to_evaluation(core)
 
 

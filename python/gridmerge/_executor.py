@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import os
 import queue
-from collections import defaultdict, deque
+from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import CancelledError, Executor, Future
 from dataclasses import dataclass, field
 
-from . import _arguments, _bag, _core, _tasks
+from . import _arguments, _bag, _cache, _core, _tasks
 from ._grid import OccupancyGrid
 from ._repr import count
 from ._tasks import MapSpec
@@ -20,10 +20,9 @@ TASK_SECONDS = 0.4
 MOST_ATTEMPTS = 3
 """At a task whose worker dies, or with which the engine fails."""
 _MOST_WAITING = 1024  # tasks that the engine has at a time: it may have hundreds of workers
+_MOST_BYTES_WAITING = 2**29  # of the maps that are sent with these tasks, unless one task has more
 _MOST_PAIRS = 500  # of a task
-_MOST_CELLS = 2**24  # of the maps that are sent with a task, unless one pair has more
-_FIRST_GUESS = {"quick": 3e-7}  # seconds a cell of both maps, by search
-_OTHER_GUESS = 1.5e-6
+_MOST_BYTES = 2**24  # of the maps that are sent with a task, unless one pair has more
 
 
 class ExecutorError(RuntimeError):
@@ -37,19 +36,19 @@ class SharedMap:
 
     spec: MapSpec
     cells: int
+    sent_bytes: int = 0
+    """With each task that needs it; a path counts as nothing."""
 
     @property
     def content(self) -> str:
         return self.spec[-1]
 
-    @property
-    def sent_cells(self) -> int:
-        return self.cells if self.spec[0] == "grid" else 0
-
 
 def of_grid(grid: OccupancyGrid) -> SharedMap:
     """Sent with each task that needs it."""
-    return SharedMap(("grid", grid, _core.content_id(grid._core)), grid.width * grid.height)
+    cells = grid.width * grid.height
+    bytes_per_cell = 1 if grid.probability is None else 5
+    return SharedMap(("grid", grid, _core.content_id(grid._core)), cells, cells * bytes_per_cell)
 
 
 def of_map(grid: OccupancyGrid, is_file: bool) -> SharedMap:
@@ -90,6 +89,7 @@ class _Task:
     wanted: list[Wanted]
     attempts: int = 0
     guess: float = 0.0
+    sent_bytes: int = 0
     failures: list[str] = field(default_factory=list)
 
 
@@ -109,11 +109,17 @@ class MatchingExecutor:
         self._accept = accept
         self._hypotheses = hypotheses
         self._cache = cache
-        self._rates = defaultdict(lambda: _OTHER_GUESS, _FIRST_GUESS)
+        self._rates: dict[str, float] = {}  # seconds per cell of both maps, by search
 
-    def make(self, wanted: Iterable[Wanted], progress: Callable[[int], object] | None = None) -> None:
+    def make(
+        self,
+        wanted: Iterable[Wanted],
+        progress: Callable[[int], object] | None = None,
+        before: Callable[[_core.MatchCache], object] | None = None,
+    ) -> None:
         """Makes all that the cache does not have; `take` of each is called in this thread, in any order. `progress` is
-        told how many are there. When it ends early, by an error or Ctrl-C, what no worker has begun is cancelled."""
+        told how many are there. `before` is called once a match is missing in the cache. When it ends early, by an
+        error or Ctrl-C, what no worker has begun is cancelled."""
         waiting: deque[Wanted] = deque()
         found = 0
         for one in wanted:
@@ -126,10 +132,15 @@ class MatchingExecutor:
         if progress is not None and found > 0:
             progress(found)
         total = len(waiting)
+        if waiting and self._cache is not None:
+            self._cache.announce(self._accept)
+            if before is not None:
+                before(self._cache)
+            _cache.warn(self._cache)  # before the work, which may take long
         again: deque[_Task] = deque()
         running: dict[Future[_tasks.Answer], _Task] = {}
         done: queue.SimpleQueue[Future[_tasks.Answer]] = queue.SimpleQueue()
-        number = made = 0
+        number = made = sent_bytes = 0
         try:
             while waiting or again or running:
                 while (waiting or again) and len(running) < _MOST_WAITING:
@@ -138,11 +149,15 @@ class MatchingExecutor:
                     else:
                         task = self._next_task(number, waiting)
                         number += 1
+                    if running and sent_bytes + task.sent_bytes > _MOST_BYTES_WAITING:
+                        again.appendleft(task)
+                        break
                     try:
                         future = self._start(task)
                     except Exception as error:
                         raise self._error(f"takes no task: {_describe(error)}", made, total) from error
                     running[future] = task
+                    sent_bytes += task.sent_bytes
                     future.add_done_callback(done.put)
                 try:
                     future = done.get(timeout=1.0)
@@ -151,6 +166,7 @@ class MatchingExecutor:
                 if future not in running:
                     continue  # told twice
                 task = running.pop(future)
+                sent_bytes -= task.sent_bytes
                 try:
                     matches = self._matches_of(task, future)
                 except _Failure as failure:
@@ -189,12 +205,14 @@ class MatchingExecutor:
         sent: dict[str, int] = {}
         while waiting and len(task.wanted) < _MOST_PAIRS:
             one = waiting[0]
-            guess = self._rates[one.search] * one.cells
-            sent |= {map.content: map.sent_cells for map in (one.fixed, one.moving)}
-            if task.wanted and (task.guess + guess > TASK_SECONDS or sum(sent.values()) > _MOST_CELLS):
+            guess = self._rate(one.search) * one.cells
+            with_it = sent | {map.content: map.sent_bytes for map in (one.fixed, one.moving)}
+            if task.wanted and (task.guess + guess > TASK_SECONDS or sum(with_it.values()) > _MOST_BYTES):
                 break
+            sent = with_it
             task.wanted.append(waiting.popleft())
             task.guess += guess
+        task.sent_bytes = sum(sent.values())
         return task
 
     def _start(self, task: _Task) -> Future[_tasks.Answer]:
@@ -250,7 +268,11 @@ class MatchingExecutor:
         search = task.wanted[0].search
         cells = sum(one.cells for one in task.wanted)
         if cells > 0 and seconds > 0.0:
-            self._rates[search] += 0.2 * (seconds / cells - self._rates[search])
+            rate = self._rate(search)
+            self._rates[search] = rate + 0.2 * (seconds / cells - rate)
+
+    def _rate(self, search: str) -> float:
+        return self._rates.setdefault(search, _core.seconds_per_cell(search))
 
     def _error(self, what: str, made: int, total: int) -> ExecutorError:
         return ExecutorError(
@@ -273,6 +295,14 @@ def match_due(
 ) -> None:
     """Hands mergers the matches that are due, round after round, until none is."""
     rounds = _core.RoundsShare()
+    told = False
+
+    def before(cache: _core.MatchCache) -> None:
+        nonlocal told
+        for merger, _ in () if told else mergers:
+            merger.warn_of_other_shards(cache)
+        told = True
+
     while True:
         wanted = [
             Wanted(maps[fixed], maps[moving], search, _hand_in(merger, fixed, moving, search))
@@ -281,7 +311,8 @@ def match_due(
         ]
         if not wanted:
             return
-        executor.make(wanted, None if progress is None else _share_of(rounds, len(wanted), progress))
+        share = None if progress is None else _share_of(rounds, len(wanted), progress)
+        executor.make(wanted, share, before)
 
 
 def _share_of(

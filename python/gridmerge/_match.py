@@ -26,9 +26,6 @@ Reason: TypeAlias = Literal[
 """Why a pair was refused: what, were it otherwise, would let the best hypothesis be accepted."""
 
 
-RANDOM_WALK = "random-walk"
-
-
 @dataclass(frozen=True, slots=True)
 class Hypothesis:
     """One way in which the moving map may lie on the fixed one."""
@@ -146,9 +143,12 @@ def match(
 
 def to_joint_search(search: object) -> str:
     """A search that gives each pose a probability, which is what a joint merge weighs."""
-    return _arguments.choice(
-        "search", search, tuple(one for one in _core.search_methods() if one != RANDOM_WALK)
-    )
+    return _arguments.choice("search", search, tuple(_core.joint_search_methods()))
+
+
+def is_joint(search: str) -> bool:
+    """Whether a search that there is gives each pose a probability."""
+    return search in _core.joint_search_methods()
 
 
 def pair_pose(core: _core.PairPose) -> dict[str, Any]:

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from typing import Literal, TypeAlias
 
-from . import _arguments, _cache, _core, _executor
+from . import _arguments, _cache, _core, _executor, _inputs
 from ._arguments import Progress
 from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_maps_and_files
 from ._known_poses import InitialPoses, MapKey, NamedMaps, to_known_poses
-from ._match import RANDOM_WALK
+from ._match import is_joint
 from ._merge_result import MergeResult, to_merge_result
 from ._plan import choose_plan
 
@@ -56,7 +56,7 @@ def merge(
         max_false_joins: so many joins of the whole merge may be expected to be false, or of more than 50 maps for every
             50; those that are least sure are not made. It holds beside `accept`. "tree" does not use it.
         max_missed: of more than 50 maps match likely pairs only: the others may hide this share of all joins, 0.25 or
-            so. Up to 0.2 all pairs are matched. "tree" does not use it.
+            so. Up to 0.2 all pairs are matched, as signatures do not see one join in five. "tree" does not use it.
         output_resolution: of the merged maps [m]; None = the finest of the maps', or so much coarser, up to 16 times,
             that it has at most 2^28 cells.
         transform: what may be done to maps so that walls that several have seen come to lie on each other: "rigid",
@@ -92,9 +92,10 @@ def merge(
     up_the_tree = _arguments.choice("strategy", strategy, ("joint", "tree")) == "tree"
     if up_the_tree and (init is not None or fix is not None):
         raise ValueError("strategy: init and fix need 'joint'")
-    if search == RANDOM_WALK and not up_the_tree:
+    search = _arguments.choice("search", search, tuple(_core.search_methods()))
+    if not is_joint(search) and not up_the_tree:
         raise ValueError(
-            "search: 'random-walk' needs the strategy 'tree': it has one pose per pair, no probability"
+            f"search: {search!r} needs the strategy 'tree': it has one pose per pair, no probability"
         )
     chosen_transform = to_transform(transform, elastic)
     if chosen_transform != "rigid" and up_the_tree:
@@ -113,7 +114,8 @@ def merge(
     max_false_joins = _arguments.not_negative("max_false_joins", max_false_joins)
     max_missed = _arguments.share("max_missed", max_missed)
     resolution = to_output_resolution(output_resolution)
-    search = _arguments.choice("search", search, tuple(_core.search_methods()))
+    if not up_the_tree:
+        warn_of_all_pairs(max_missed, len(grids))
     told = _arguments.progress(progress)
     kept = _cache.to_cache(cache)
     if executor is None and kept is None:
@@ -148,7 +150,7 @@ def merge(
             matching = _executor.MatchingExecutor(executor, *merger.match_options(), kept)
             _executor.match_due(matching, [(merger, shared)], told)
         merged = merger.solve(None if executor is not None else kept, told)
-        _cache.warn(kept)
+        _cache.close(kept)
     if chosen is not None:
         drawing, scales = chosen
         merged = _core.place_on_plan(
@@ -164,6 +166,18 @@ def merge(
         )
         more_inputs += tuple(drawing._core.files)
     return to_merge_result(merged, grids, called, more_inputs)
+
+
+def warn_of_all_pairs(max_missed: float, maps: int) -> None:
+    """Of a share that spares no pair, although it was asked for."""
+    if 0.0 < max_missed <= _core.HIDDEN_SHARE and maps > _core.FEW_MAPS:
+        _inputs.warn(
+            [
+                f"max_missed: {max_missed:g} means that all pairs are matched, as signatures do not see one join in "
+                f"five: more than {_core.HIDDEN_SHARE:g} matches likely pairs only"
+            ],
+            UserWarning,
+        )
 
 
 def to_names(names: Sequence[str] | None, grids: Sequence[OccupancyGrid]) -> list[str]:

@@ -16,7 +16,7 @@ from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map
 from ._known_poses import CoreKnown, InitialPose, to_core
 from ._match import to_joint_search
-from ._merge import to_output_resolution, to_transform
+from ._merge import to_output_resolution, to_transform, warn_of_all_pairs
 from ._merge_result import MergeResult, to_merge_result
 from ._repr import count
 from ._transform import PoseLike, Transform
@@ -172,6 +172,7 @@ class Merger:
         kept = _cache.to_cache(cache)
         with self._alone():
             told = _arguments.progress(progress)
+            warn_of_all_pairs(self._options[3], len(self._maps))
             if executor is not None:
                 shared = {
                     map_id: _executor.of_map(grid, map_id in self._files)
@@ -182,7 +183,7 @@ class Merger:
             merged = self._core.solve(None if executor is not None else kept, told)
             grids = [grid for grid, _ in self._maps.values()]
             names = [name for _, name in self._maps.values()]
-        _cache.warn(kept)
+        _cache.close(kept)
         return to_merge_result(merged, grids, names, ())
 
     def __getstate__(self) -> dict[str, Any]:

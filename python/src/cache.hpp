@@ -22,9 +22,18 @@ class Cache {
 
   MatchCache& matches() { return matches_; }
 
+  /// How many matches it had, and how many were made.
+  void count(std::size_t found, std::size_t made) {
+    found_ += found;
+    made_ += made;
+  }
+  std::pair<std::size_t, std::size_t> counted() const { return {found_, made_}; }
+
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
  private:
+  std::size_t found_ = 0;
+  std::size_t made_ = 0;
   std::vector<std::string> warnings_;
   MatchCache matches_;
 };

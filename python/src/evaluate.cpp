@@ -27,19 +27,29 @@ std::string path_or_empty(const std::optional<nb::bytes>& path) {
   return path ? to_string(*path) : std::string();
 }
 
-EvaluateOptions make_options(const MatchOptions& match_options, bool up_the_tree, MatchCache* cache) {
+EvaluateOptions make_options(const MatchOptions& match_options, bool up_the_tree, Cache* cache) {
   EvaluateOptions options;
   options.matcher = [=](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
-    const auto make = [&] { return match(fixed, moving, match_options); };
-    if (cache == nullptr) return make();
-    return cache->find_or_make(match_key(content_id(fixed), content_id(moving), match_options), make);
+    if (cache == nullptr) return match(fixed, moving, match_options);
+    std::size_t made = 0;
+    const std::string key = match_key(content_id(fixed), content_id(moving), match_options);
+    MatchResult result = cache->matches().find_or_make(key, [&] {
+      cache->matches().announce(match_options.accept_probability);
+      ++made;
+      return match(fixed, moving, match_options);
+    });
+    cache->count(1 - made, made);
+    return result;
   };
   options.merger = [=, matcher = options.matcher](const std::vector<OccupancyGrid>& maps) {
     if (up_the_tree) return merge_up_tree(maps, matcher);
     MergeOptions joint;
     joint.match = match_options;
     Merger merger(maps, joint);
-    if (cache != nullptr) match_with_cache(merger, maps, *cache);
+    if (cache != nullptr) {
+      const MatchWork done = match_with_cache(merger, maps, cache->matches());
+      cache->count(done.found, done.made);
+    }
     return merger.solve();
   };
   return options;
@@ -99,9 +109,8 @@ Evaluated evaluate_here(const Truth& truth, int threads, std::optional<double> a
   const double accepted_from = match_options.search == SearchMethod::random_walk
                                    ? match_options.random_walk.accept_acceptance_index
                                    : match_options.accept_probability;
-  return evaluate_truth(
-      truth, make_options(match_options, up_the_tree, cache == nullptr ? nullptr : &cache->matches()),
-      accepted_from, resolution, literal_thresholds, progress);
+  return evaluate_truth(truth, make_options(match_options, up_the_tree, cache), accepted_from, resolution,
+                        literal_thresholds, progress);
 }
 
 Evaluated evaluate_answers(const Truth& truth, const std::vector<nb::bytes>& matches,

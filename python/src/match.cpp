@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <stdexcept>
+
 #include "bindings.hpp"
 #include "gridmerge/merge/merge.hpp"
+#include "merge/pair_choice.hpp"
 #include "worker.hpp"
 
 namespace gridmerge::python {
+
+using namespace internal;
 
 namespace {
 
@@ -21,6 +26,18 @@ MatchResult match_maps(const Map& fixed, const Map& moving, int threads, std::op
   });
 }
 
+/// Whether a joint merge takes it.
+bool is_joint(SearchMethod method) {
+  MergeOptions options;
+  options.match.search = method;
+  try {
+    validate(options);
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void set_search(MatchOptions& options, const std::string& search, std::optional<double> accept) {
@@ -33,6 +50,8 @@ void bind_match(nb::module_& module) {
   module.attr("DEFAULT_MAX_HYPOTHESES") = MatchOptions{}.max_hypotheses;
   module.attr("DEFAULT_MAX_FALSE_JOINS") = MergeOptions{}.max_false_joins;
   module.attr("DEFAULT_MAX_MISSED") = MergeOptions{}.max_missed;
+  module.attr("FEW_MAPS") = kFewMaps;
+  module.attr("HIDDEN_SHARE") = kHiddenShare;
   nb::class_<Hypothesis>(module, "Hypothesis")
       .def_prop_ro("transform", [](const Hypothesis& it) { return to_pose(it.T_fixed_moving); })
       .def_ro("score", &Hypothesis::score)
@@ -57,6 +76,13 @@ void bind_match(nb::module_& module) {
   module.def("search_methods", [] {
     std::vector<std::string> names;
     for (const SearchMethodName& one : search_methods()) names.emplace_back(one.name);
+    return names;
+  });
+  module.def("joint_search_methods", [] {
+    std::vector<std::string> names;
+    for (const SearchMethodName& one : search_methods()) {
+      if (is_joint(one.method)) names.emplace_back(one.name);
+    }
     return names;
   });
   module.def("match", &match_maps, nb::arg("fixed"), nb::arg("moving"), nb::arg("threads"),

@@ -89,13 +89,19 @@ class MapMerger {
     return {options.accept_probability, options.max_hypotheses};
   }
 
+  /// Before matches that the cache lacks are made elsewhere.
+  void warn_of_other_shards(Cache& cache) const {
+    const OthersRun meanwhile;
+    gridmerge::warn_of_other_shards(merger_, grids(), cache.matches());
+  }
+
   /// With a cache, matches are those that it has, or are kept there.
   Merged solve(Cache* cache, const nb::object& progress) {
     MergeResult result = compute_in_worker(progress, [&](const Report& report) {
       *progress_ = [&report, rounds = RoundsShare()](std::size_t done, std::size_t total) mutable {
         report(rounds.of(done, total));
       };
-      if (cache != nullptr) match_with_cache(cache->matches());
+      if (cache != nullptr) match_with_cache(*cache);
       return merger_.solve();
     });
     std::vector<Map> maps;
@@ -107,13 +113,18 @@ class MapMerger {
  private:
   using Progress = std::function<void(std::size_t, std::size_t)>;
 
-  void match_with_cache(MatchCache& cache) {
+  void match_with_cache(Cache& cache) {
+    MatchWorkOptions work;
+    work.progress = *progress_;
+    const MatchWork done = gridmerge::match_with_cache(merger_, grids(), cache.matches(), work);
+    cache.count(done.found, done.made);
+  }
+
+  std::vector<OccupancyGrid> grids() const {
     std::vector<OccupancyGrid> grids;
     grids.reserve(maps_.size());
     for (const auto& [id, map] : maps_) grids.push_back(*map.grid);
-    MatchWorkOptions work;
-    work.progress = *progress_;
-    gridmerge::match_with_cache(merger_, grids, cache, work);
+    return grids;
   }
 
   void replace(std::size_t id, const Map& map, void (Merger::*put)(Merger::MapId, OccupancyGrid)) {
@@ -169,6 +180,7 @@ void bind_merger(nb::module_& module) {
            nb::arg("match"))
       .def("matches", &MapMerger::matches)
       .def("match_options", &MapMerger::match_options)
+      .def("warn_of_other_shards", &MapMerger::warn_of_other_shards, nb::arg("cache"))
       .def("solve", &MapMerger::solve, nb::arg("cache").none(), nb::arg("progress").none());
 }
 

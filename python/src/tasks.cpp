@@ -36,6 +36,12 @@ nb::bytes match_prepared(const Prepared& fixed, const Prepared& moving, const st
   return to_nb_bytes(bytes);
 }
 
+/// About how long a match takes, until it is known better [s per cell of both maps].
+double seconds_per_cell(const std::string& search) {
+  constexpr double kQuick = 3e-7, kOther = 1.5e-6;
+  return search_method(search) == SearchMethod::quick ? kQuick : kOther;
+}
+
 Map load_regular(const nb::bytes& path, double resolution, bool literal_thresholds) {
   const std::filesystem::path file = to_string(path);
   LoadOptions options;
@@ -64,6 +70,7 @@ void bind_tasks(nb::module_& module) {
   module.def("prepare", &prepare, nb::arg("map"));
   module.def("match_prepared", &match_prepared, nb::arg("fixed"), nb::arg("moving"), nb::arg("search"),
              nb::arg("accept"), nb::arg("max_hypotheses"));
+  module.def("seconds_per_cell", &seconds_per_cell, nb::arg("search"));
   module.def("load_regular", &load_regular, nb::arg("path"), nb::arg("resolution"),
              nb::arg("literal_thresholds"));
   module.def(

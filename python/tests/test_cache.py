@@ -101,7 +101,8 @@ def test_a_merge_that_was_ended_goes_on(
 def test_other_options_are_other_matches(four: list[str], tmp_path: Path) -> None:
     gridmerge.merge(four, cache=tmp_path)
     before = matches_in(tmp_path)
-    gridmerge.merge(four, cache=tmp_path, accept=0.9)
+    with pytest.warns(gridmerge.CacheWarning, match="they were made with accept 0.95"):
+        gridmerge.merge(four, cache=tmp_path, accept=0.9)
     assert matches_in(tmp_path) > before
 
 
@@ -116,6 +117,63 @@ def test_the_command_line_shares_it(four: list[str], cli: Cli, tmp_path: Path) -
     gridmerge.merge(four, cache=other, executor=counting)
     assert counting.matches == 0
     assert {path.name for path in matches_in(other)} == {path.name for path in matches_in(folder)}
+
+
+@pytest.mark.parametrize("how", ["here", "executor", "merger"])
+def test_shards_that_do_not_fit_are_named(how: str, four: list[str], cli: Cli, tmp_path: Path) -> None:
+    folder = tmp_path / "matches"
+    for shard in ("1/3", "2/4"):
+        assert cli("merge", "--cache", folder, "--shard", shard, *four).returncode == 3
+    with pytest.warns(gridmerge.CacheWarning) as told:
+        merged_with(how, four, folder)
+    assert [str(one.message) for one in told] == [
+        f"{folder}: shards do not fit: 1/3, 2/4 are of different numbers of shards. Run all shards with the same N, "
+        "maps, options and version of gridmerge"
+    ]
+    assert told[0].filename == __file__
+    merged_with(how, four, folder)  # nothing is missing by now
+
+
+@pytest.mark.parametrize("how", ["here", "executor", "merger"])
+def test_matches_of_another_engine_are_named(how: str, four: list[str], tmp_path: Path) -> None:
+    (tmp_path / "made-with").mkdir()
+    (tmp_path / "made-with" / "0.0.9+0123456789abcdef_accept_0.95").touch()
+    with pytest.warns(gridmerge.CacheWarning, match=r"they are of gridmerge 0\.0\.9\+0123456789abcdef, and"):
+        merged_with(how, four, tmp_path)
+    merged_with(how, four, tmp_path)
+
+
+def test_an_evaluation_names_matches_of_other_options(tables: dict[str, Any], tmp_path: Path) -> None:
+    gridmerge.evaluate(pairs=tables["pairs"], cache=tmp_path)
+    for executor in (None, Counting()):
+        accept = 0.9 if executor is None else 0.8
+        with pytest.warns(gridmerge.CacheWarning, match="they were made with accept 0.9"):
+            gridmerge.evaluate(pairs=tables["pairs"], cache=tmp_path, accept=accept, executor=executor)
+
+
+@pytest.mark.parametrize("how", ["here", "executor", "merger"])
+def test_how_much_was_there_is_logged(
+    how: str, four: list[str], tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level("INFO", "gridmerge")
+    merged_with(how, four[:2], tmp_path)
+    merged_with(how, four, tmp_path)
+    assert [record.getMessage() for record in caplog.records] == [
+        "0 matches of the cache, 1 made",
+        "1 match of the cache, 8 made",
+    ]
+
+
+def test_an_evaluation_logs_how_much_was_there(
+    tables: dict[str, Any], tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level("INFO", "gridmerge")
+    gridmerge.evaluate(**tables, cache=tmp_path)
+    gridmerge.evaluate(**tables, cache=tmp_path, executor=Counting())
+    gridmerge.evaluate(**tables, cache=tmp_path)
+    told = [record.getMessage() for record in caplog.records]
+    assert told[0].startswith("0 matches of the cache") or not told[0].endswith(" 0 made")
+    assert all(message.endswith(" of the cache, 0 made") for message in told[1:]) and len(told) == 3
 
 
 def test_an_evaluation_keeps_its_matches(tables: dict[str, Any], cli: Cli, tmp_path: Path) -> None:

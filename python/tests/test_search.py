@@ -5,10 +5,13 @@ from __future__ import annotations
 
 import json
 import pickle
+import warnings
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import gridmerge
+import numpy as np
 import pytest
 from conftest import Cli, to_bits
 from test_evaluate import without_times
@@ -65,6 +68,39 @@ def test_a_team_searches_quickly(robots: list[str]) -> None:
     expected = gridmerge.merge(robots, search="quick")
     joins = team.merge_result().joins
     assert [join.match.hypotheses for join in joins] == [join.match.hypotheses for join in expected.joins]
+
+
+def test_a_share_that_spares_no_pair_is_told() -> None:
+    unseen = gridmerge.OccupancyGrid(np.full((2, 2), -1, np.int8), 1.0)
+    merger = gridmerge.Merger(max_missed=0.1)
+    for _ in range(51):
+        merger.add(unseen)
+    calls: list[tuple[Callable[[], object], str]] = [
+        (lambda: gridmerge.merge([unseen] * 51, max_missed=0.2), "0.2"),
+        (merger.solve, "0.1"),
+    ]
+    for call, share in calls:
+        with pytest.warns(
+            UserWarning, match=f"^max_missed: {share} means that all pairs are matched"
+        ) as told:
+            call()
+        assert len(told) == 1 and told[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        gridmerge.merge([unseen] * 51, max_missed=0.25)
+        gridmerge.merge([unseen] * 51)
+        gridmerge.merge([unseen] * 50, max_missed=0.2)
+
+
+def test_searches_are_those_of_the_engine(robots: list[str]) -> None:
+    searches = gridmerge._core.search_methods()
+    assert set(JOINT) == set(gridmerge._core.joint_search_methods()) == set(searches) - {"random-walk"}
+    with pytest.raises(ValueError, match="^scale: does not go with the search 'random-walk'$"):
+        gridmerge.match(*robots[:2], search="random-walk", scale=(0.5, 2.0))
+    with pytest.raises(ValueError, match="^search: 'random-walk' needs the strategy 'tree'"):
+        gridmerge.merge(robots, search="random-walk")
+    with pytest.raises(ValueError, match="^search: must be one of"):
+        gridmerge.merge(robots, search="slow")
 
 
 def test_what_is_no_search_is_refused(robots: list[str], team_folder: Path) -> None:

@@ -4,15 +4,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "cache/match_file.hpp"
 #include "gridmerge/io/file_error.hpp"
+#include "gridmerge/match/stored_match.hpp"
 #include "io/atomic_file.hpp"
+#include "io/directory_names.hpp"
 #include "io/file_reader.hpp"
 #include "io/made_directories.hpp"
 
@@ -23,7 +27,31 @@ using namespace internal;
 namespace {
 
 constexpr std::size_t kFolderDigits = 2;
+constexpr const char* kMadeWith = "made-with";  // a file for each engine and probability
+constexpr std::string_view kAccept = "_accept_";
 constexpr std::size_t kMaxBytes = std::size_t{1} << 24;  // of thousands of hypotheses
+
+/// What is told of matches that were made with other engines or probabilities, which are not of use here.
+std::string describe_unused(std::vector<std::string> made_with) {
+  std::sort(made_with.begin(), made_with.end());
+  std::vector<std::string> engines, accepts;
+  for (const std::string& one : made_with) {
+    const std::string engine = one.substr(0, one.find(kAccept));
+    if (engine == engine_id()) {
+      accepts.push_back(one.substr(one.find(kAccept) + kAccept.size()));
+    } else if (engines.empty() || engines.back() != engine) {
+      engines.push_back(engine);
+    }
+  }
+  if (!accepts.empty())
+    return fmt::format(
+        "its matches are not used, as they were made with accept {}: give the same to use them",
+        fmt::join(accepts, ", "));
+  return fmt::format(
+      "its matches are not used, as they are of gridmerge {}, and this is {}: use that again, or delete the "
+      "directory when it is of no use any more",
+      fmt::join(engines, ", "), engine_id());
+}
 
 }  // namespace
 
@@ -72,6 +100,25 @@ void MatchCache::keep_if_possible(const std::string& key, const MatchResult& mat
   } catch (const FileError& error) {
     warn_not_kept(error);
   }
+}
+
+void MatchCache::announce(double accept_probability) {
+  const std::string name = fmt::format("{}{}{}", engine_id(), kAccept, accept_probability);
+  if (!announced_.insert(name).second) return;
+  const std::filesystem::path folder = directory_ / kMadeWith;
+  std::error_code unreadable;
+  std::vector<std::string> others = names_in(folder, unreadable);
+  if (std::find(others.begin(), others.end(), name) != others.end()) return;
+  std::erase_if(others, [](const std::string& other) {
+    return other.starts_with('.') || other.find(kAccept) == std::string::npos;
+  });
+  try {
+    const MadeDirectories made(folder);
+    write_file_atomically(folder / name, name + "\n");
+  } catch (const FileError& error) {
+    warn_not_kept(error);
+  }
+  if (!others.empty()) warn(fmt::format("{}: {}", directory_.string(), describe_unused(std::move(others))));
 }
 
 MatchResult MatchCache::find_or_make(const std::string& key, const std::function<MatchResult()>& make) {

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <map>
 #include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "cache/comparison_file.hpp"
+#include "cache/shard_record.hpp"
 #include "grid/parallel.hpp"
 #include "gridmerge/cache/match_cache.hpp"
 #include "gridmerge/grid/execution.hpp"
@@ -57,15 +61,66 @@ class Round {
   const MatchWorkOptions& options_;
 };
 
+std::vector<std::string> contents_of(const Merger& merger, const std::vector<OccupancyGrid>& maps) {
+  if (merger.maps().size() != maps.size())
+    throw std::invalid_argument("these are not the maps that were added");
+  std::vector<std::string> contents;
+  contents.reserve(maps.size());
+  for (const OccupancyGrid& map : maps) contents.push_back(content_id(map));
+  return contents;
+}
+
+void warn_of_misfits(const MatchCache& cache, const std::vector<ShardRecord>& records, const MergeWork& work,
+                     AskedBy asked) {
+  const std::string text = describe_other_shards(records, work, asked);
+  if (!text.empty()) cache.warn(fmt::format("{}: {}", cache.directory().string(), text));
+}
+
+/// While it lives.
+class KeptComparisons {
+ public:
+  KeptComparisons(Merger& merger, ComparisonStore store) : merger_(merger) {
+    merger.keep_comparisons(std::move(store));
+  }
+  ~KeptComparisons() { merger_.keep_comparisons({}); }
+  KeptComparisons(const KeptComparisons&) = delete;
+  KeptComparisons& operator=(const KeptComparisons&) = delete;
+
+ private:
+  Merger& merger_;
+};
+
+/// Keeps its record, and warns of others if it has to wait for them.
+void end_shard(MatchCache& cache, const ShardRecord& record, const MatchWork& done,
+               const MatchWorkOptions& options) {
+  try {
+    keep_shard_record(cache.directory(), record);
+  } catch (const FileError& error) {
+    if (!options.goes_on_when_full) throw;
+    cache.warn_not_kept(error);
+  }
+  if (done.missing > 0)
+    warn_of_misfits(cache, find_shard_records(cache.directory()), record.work, AskedBy::shard);
+}
+
 }  // namespace
+
+void warn_of_other_shards(const Merger& merger, const std::vector<OccupancyGrid>& maps, MatchCache& cache) {
+  const std::vector<ShardRecord> records = find_shard_records(cache.directory());
+  if (!records.empty())
+    warn_of_misfits(cache, records, work_of(merger, contents_of(merger, maps)), AskedBy::merge);
+}
 
 MatchWork match_with_cache(Merger& merger, const std::vector<OccupancyGrid>& maps, MatchCache& cache,
                            const MatchWorkOptions& options) {
   if (options.shard.index >= options.shard.count) throw std::invalid_argument("there is no such shard");
+  const std::vector<std::string> told_apart = contents_of(merger, maps);
   const std::vector<Merger::MapId> ids = merger.maps();
-  if (ids.size() != maps.size()) throw std::invalid_argument("these are not the maps that were added");
   std::map<Merger::MapId, std::string> contents;
-  for (std::size_t i = 0; i < ids.size(); ++i) contents[ids[i]] = content_id(maps[i]);
+  for (std::size_t i = 0; i < ids.size(); ++i) contents[ids[i]] = told_apart[i];
+  const KeptComparisons kept(merger, comparisons_in(cache, options.shard, options.goes_on_when_full));
+  const bool is_shard = options.shard.count > 1;
+  bool is_told = false;  // what the user should know before matches are made
   MatchWork work;
   while (work.missing == 0) {
     const std::vector<DueMatch> due = merger.due();
@@ -85,11 +140,19 @@ MatchWork match_with_cache(Merger& merger, const std::vector<OccupancyGrid>& map
         ++work.missing;
       }
     }
+    if (!missing.empty() && !is_told) {
+      cache.announce(how.accept_probability);
+      if (!is_shard)
+        warn_of_misfits(cache, find_shard_records(cache.directory()), work_of(merger, told_apart),
+                        AskedBy::merge);
+      is_told = true;
+    }
     if (options.progress) options.progress(found, due.size());
     with_threads(how.threads, [&] { Round(merger, cache, options).make(missing, found, due.size()); });
     work.found += found;
     work.made += missing.size();
   }
+  if (is_shard) end_shard(cache, {options.shard, work_of(merger, told_apart)}, work, options);
   return work;
 }
 

@@ -31,6 +31,6 @@ class GRIDMERGE_INTERNAL_EXPORT Sha256 {
 };
 
 /// Two lower-case digits a byte.
-std::string to_hex(const Sha256::Digest& digest);
+GRIDMERGE_INTERNAL_EXPORT std::string to_hex(const Sha256::Digest& digest);
 
 }  // namespace gridmerge::internal

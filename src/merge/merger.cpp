@@ -85,6 +85,15 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
 
   std::vector<MapId> ids() const { return store_.ids(); }
 
+  const MergeOptions& options() const { return options_; }
+
+  std::optional<KnownPose> known_pose(MapId id) const {
+    store_.require(id);
+    return store_.known_pose(id);
+  }
+
+  void keep_comparisons(ComparisonStore store) { choice_.keep_comparisons(std::move(store)); }
+
   MatchOptions match_options(SearchMethod search) const { return looks_.match_options(search); }
 
   std::vector<DueMatch> due() {
@@ -293,6 +302,18 @@ void Merger::remove(MapId id) {
 
 std::vector<Merger::MapId> Merger::maps() const {
   return state_->ids();
+}
+
+const MergeOptions& Merger::options() const {
+  return state_->options();
+}
+
+std::optional<KnownPose> Merger::known_pose(MapId id) const {
+  return state_->known_pose(id);
+}
+
+void Merger::keep_comparisons(ComparisonStore store) {
+  state_->keep_comparisons(std::move(store));
 }
 
 std::vector<DueMatch> Merger::due() {

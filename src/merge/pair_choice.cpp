@@ -9,6 +9,8 @@
 
 #include "grid/logistic.hpp"
 #include "grid/parallel.hpp"
+#include "gridmerge/match/stored_match.hpp"
+#include "merge/comparisons.hpp"
 #include "merge/prior.hpp"
 #include "preselect/compare.hpp"
 
@@ -93,16 +95,14 @@ void PairChoice::prepare(const MapStore& store, const std::vector<MapId>& maps) 
     *missing[i] =
         std::make_unique<const Signature>(make_signature(store.at(missing_ids[i]).prepared.known()));
   });
-  const std::size_t count = maps.size();
-  std::vector<float> log_odds(count * (count - 1) / 2);
-  parallel_for(count, [&](std::size_t a) {
-    for (std::size_t b = a + 1; b < count; ++b) {
-      const Signature &moving = **signatures[a], &fixed = **signatures[b];  // the smaller map moves
-      log_odds[place_of_pair(a, b, count)] =
-          static_cast<float>(log_odds_of_joining(compare(fixed, moving), fixed, moving));
-    }
+  std::vector<const Signature*> all;  // the smaller map of a pair comes first, and moves
+  all.reserve(maps.size());
+  for (const std::unique_ptr<const Signature>* signature : signatures) all.push_back(signature->get());
+  log_odds_ = compare_all(all, comparisons_, [&] {
+    std::vector<std::string> contents(maps.size());
+    parallel_for(maps.size(), [&](std::size_t i) { contents[i] = content_id(*store.at(maps[i]).grid); });
+    return contents;
   });
-  log_odds_ = std::move(log_odds);
   shift_ = shift_to_this_set(log_odds_);
   maps_ = maps;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gridmerge/merge/merge_result.hpp"
+#include "gridmerge/merge/merger.hpp"
 #include "merge/consistent_set.hpp"
 #include "merge/map_store.hpp"
 #include "merge/pair_looks.hpp"
@@ -45,6 +46,9 @@ class PairChoice {
 
   /// The map is another one, or gone.
   void forget(MapId id);
+
+  /// Where prepare() finds and keeps comparisons.
+  void keep_comparisons(ComparisonStore store) { comparisons_ = std::move(store); }
 
   /// Makes the signatures that are missing, and compares them. `maps` are in canonical order. Runs in the
   /// calling TBB arena. O(maps^2) comparisons of signatures, kept until a map changes.
@@ -92,6 +96,7 @@ class PairChoice {
                                        const ConsistentSet& consistent_set) const;
   bool known_to_meet(const MapStore& store, std::size_t a, std::size_t b) const;
 
+  ComparisonStore comparisons_;
   double max_missed_;
   double max_shown_;         // share of all joins that may be missed although signatures show them
   std::vector<MapId> maps_;  // of prepare()

@@ -145,6 +145,43 @@ TEST_F(MatchCacheTest, WhatCannotBeKeptIsToldOnce) {
       << warned[0];
 }
 
+TEST_F(MatchCacheTest, TellsOfOtherEnginesAndOptionsOnce) {
+  open().announce(0.95);
+  EXPECT_TRUE(warned.empty());
+  open().announce(0.95);
+  EXPECT_TRUE(warned.empty());
+  MatchCache cache = open();
+  cache.announce(0.9);
+  cache.announce(0.9);
+  ASSERT_EQ(warned.size(), 1u);
+  EXPECT_EQ(warned[0],
+            directory.file("matches") +
+                ": its matches are not used, as they were made with accept 0.95: give the same to use them");
+  open().announce(0.95);
+  open().announce(0.9);
+  EXPECT_EQ(warned.size(), 1u);
+}
+
+TEST_F(MatchCacheTest, NamesOtherEngines) {
+  directory.write("matches/made-with/0.0.8+12_accept_0.95", "");
+  directory.write("matches/made-with/0.0.9+34_accept_0.95", "");
+  directory.write("matches/made-with/0.0.9+34_accept_0.9", "");
+  directory.write("matches/made-with/notes", "somebody's own");
+  open().announce(0.95);
+  ASSERT_EQ(warned.size(), 1u);
+  EXPECT_EQ(warned[0],
+            directory.file("matches") +
+                ": its matches are not used, as they are of gridmerge 0.0.8+12, 0.0.9+34, and this is " +
+                engine_id() + ": use that again, or delete the directory when it is of no use any more");
+}
+
+TEST_F(MatchCacheTest, WhatIsToldCannotBeKeptIsToldAsWell) {
+  directory.write("matches/made-with", "a file");
+  open().announce(0.95);
+  ASSERT_EQ(warned.size(), 1u);
+  EXPECT_NE(warned[0].find("made-with"), std::string::npos) << warned[0];
+}
+
 TEST_F(MatchCacheTest, SeveralMayWriteAtOnce) {
   MatchCache cache = open();
   std::vector<std::thread> writers;

@@ -44,7 +44,7 @@ class CacheTest : public CliTest {
     std::vector<std::filesystem::path> files;
     if (!std::filesystem::exists(directory.file("matches"))) return files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(directory.file("matches")))
-      if (entry.is_regular_file()) files.push_back(entry.path());
+      if (entry.is_regular_file() && entry.path().extension() == ".match") files.push_back(entry.path());
     return files;
   }
 
@@ -55,12 +55,13 @@ class CacheTest : public CliTest {
 };
 
 TEST_F(CacheTest, AMergeThroughItIsThatWithoutIt) {
-  const Outcome first = run(with_cache({"-o", directory.file("first"), "--verbose"}));
+  const Outcome first = run(with_cache({"-o", directory.file("first")}));
   EXPECT_EQ(first.exit_code, 3) << first.err;
-  EXPECT_NE(first.err.find("0 matches of the cache, 9 made"), std::string::npos) << first.err;
+  EXPECT_EQ(first.err, "gridmerge: 0 matches of the cache, 9 made\n");
   expect_answer_of_one_machine("first");
-  const Outcome second = run(with_cache({"-o", directory.file("second"), "--verbose"}));
-  EXPECT_NE(second.err.find("9 matches of the cache, 0 made"), std::string::npos) << second.err;
+  const Outcome second = run(with_cache({"-o", directory.file("second")}));
+  EXPECT_EQ(second.err, "gridmerge: 9 matches of the cache, 0 made\n");
+  EXPECT_EQ(run(with_cache({"-o", directory.file("third"), "--quiet"})).err, "");
   expect_answer_of_one_machine("second");
   EXPECT_EQ(read_file(directory.file("second/transforms.json")),
             read_file(directory.file("first/transforms.json")))
@@ -80,17 +81,38 @@ TEST_F(CacheTest, ShardsAndAMergeAreOneMachine) {
     }
   }
   EXPECT_EQ(kept().size(), kMatches);
-  const Outcome last = run(with_cache({"-o", directory.file("o"), "--verbose"}));
-  EXPECT_NE(last.err.find("9 matches of the cache, 0 made"), std::string::npos) << last.err;
+  const Outcome last = run(with_cache({"-o", directory.file("o")}));
+  EXPECT_EQ(last.err, "gridmerge: 9 matches of the cache, 0 made\n");
   expect_answer_of_one_machine("o");
 }
 
 TEST_F(CacheTest, TheMergeMakesWhatShardsHaveLeft) {
   EXPECT_EQ(run(with_cache({"--shard", "2/3"})).exit_code, 3);
   EXPECT_EQ(kept().size(), 2u);
-  EXPECT_EQ(run(with_cache({"-o", directory.file("o")})).exit_code, 3);
+  const Outcome merged = run(with_cache({"-o", directory.file("o")}));
+  EXPECT_EQ(merged.exit_code, 3);
+  EXPECT_EQ(merged.err, fmt::format("gridmerge: warning: {}: shards that have not ended here: 1/3, 3/3\n"
+                                    "gridmerge: 2 matches of the cache, 7 made\n",
+                                    directory.file("matches")));
   EXPECT_EQ(kept().size(), kMatches);
   expect_answer_of_one_machine("o");
+}
+
+TEST_F(CacheTest, ShardsThatDoNotFitAreNamed) {
+  const std::string told =
+      fmt::format("gridmerge: warning: {}: shards do not fit: ", directory.file("matches"));
+  const std::string helps = ". Run all shards with the same N, maps, options and version of gridmerge\n";
+  EXPECT_EQ(run(with_cache({"--shard", "1/3"})).err, "");
+  const std::string numbers = told + "1/3, 2/4 are of different numbers of shards" + helps;
+  EXPECT_EQ(run(with_cache({"--shard", "2/4"})).err, numbers) << "a shard waits in vain";
+  EXPECT_EQ(run({"merge", left, right, "--cache", directory.file("matches"), "--shard", "2/3"}).exit_code, 0);
+  EXPECT_EQ(run(with_cache({"-o", directory.file("o")})).err,
+            told +
+                "1/3, 2/4 are of different numbers of shards; 2/3 was made with 2 maps, of which 2 are among "
+                "the 4 here" +
+                helps + "gridmerge: 4 matches of the cache, 5 made\n");
+  expect_answer_of_one_machine("o");
+  EXPECT_EQ(run(with_cache({"-o", directory.file("p")})).err, "gridmerge: 9 matches of the cache, 0 made\n");
 }
 
 TEST_F(CacheTest, ShardsOfOtherMapsOrOptionsAreNotUsed) {
@@ -98,8 +120,12 @@ TEST_F(CacheTest, ShardsOfOtherMapsOrOptionsAreNotUsed) {
       run({"merge", left, right, "--cache", directory.file("matches"), "--shard", "1/1", "--accept", "0.9"})
           .exit_code,
       0);
-  const Outcome outcome = run(with_cache({"-o", directory.file("o"), "--verbose"}));
-  EXPECT_NE(outcome.err.find("0 matches of the cache, 9 made"), std::string::npos) << outcome.err;
+  const Outcome outcome = run(with_cache({"-o", directory.file("o")}));
+  EXPECT_EQ(
+      outcome.err,
+      fmt::format("gridmerge: warning: {}: its matches are not used, as they were made with accept 0.9: give "
+                  "the same to use them\ngridmerge: 0 matches of the cache, 9 made\n",
+                  directory.file("matches")));
   // A map by another name, of another folder, is the same map.
   std::filesystem::create_directories(directory.file("copy"));
   for (const char* name : {"left.yaml", "left.pgm"})
@@ -112,7 +138,7 @@ TEST_F(CacheTest, ShardsOfOtherMapsOrOptionsAreNotUsed) {
 TEST_F(CacheTest, AKilledRunGoesOn) {
   RunOptions kill;
   kill.faulty = true;
-  kill.environment = {"GRIDMERGE_FAULT=kill 17"};  // the 17th call that changes what is on the disk
+  kill.environment = {"GRIDMERGE_FAULT=kill 24"};  // the 24th call that changes what is on the disk
   for (int round = 0; round < 3; ++round) {
     EXPECT_EQ(run(with_cache({"-o", directory.file("killed")}), kill).signal, SIGKILL);
   }
@@ -129,8 +155,9 @@ TEST_F(CacheTest, TwoAtOnceDisturbNobody) {
   std::thread beside([&] { one = run(with_cache({"-o", directory.file("one")})); });
   two = run(with_cache({"-o", directory.file("two")}));
   beside.join();
-  EXPECT_EQ(one.err, "");
-  EXPECT_EQ(two.err, "");
+  for (const Outcome* each : {&one, &two})
+    EXPECT_TRUE(std::regex_match(each->err, std::regex("gridmerge: \\d matches? of the cache, \\d made\n")))
+        << each->err;
   expect_answer_of_one_machine("one");
   expect_answer_of_one_machine("two");
 }
@@ -165,7 +192,7 @@ TEST_F(CacheTest, AFullDiskCostsTheCacheAndNotTheMerge) {
   faulty.environment = {fmt::format("GRIDMERGE_FAULT=fail 12 {}", ENOSPC)};
   const Outcome merged = run(with_cache({"-o", directory.file("o")}), faulty);
   EXPECT_EQ(merged.exit_code, 3) << merged.err;
-  EXPECT_EQ(count_lines(merged.err), 1u) << merged.err;
+  EXPECT_EQ(count_lines(merged.err), 2u) << merged.err;
   EXPECT_NE(merged.err.find("No space left on device"), std::string::npos) << merged.err;
   // The call that fails may be the one that makes a rename last: the match is kept then.
   EXPECT_GE(kept().size(), kMatches - 1);

@@ -94,13 +94,32 @@ TEST_F(ManyMapsTest, SayHowLongAllPairsTake) {
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
     return outcome.err;
   };
+  const std::string all = "gridmerge: all 1326 pairs of 52 maps are matched";
   const std::string text =
-      "gridmerge: all 1326 pairs of 52 maps are matched, which takes about 1 second of a thread for each of "
-      "1326 shards: --max-missed 0.25 matches likely pairs only\n";
-  EXPECT_EQ(err({}), text);
-  EXPECT_EQ(err({"--max-missed", "0.2"}), text);
+      ", which takes about 1 second of a thread for each of 1326 shards: --max-missed 0.25 matches likely "
+      "pairs "
+      "only\n";
+  EXPECT_EQ(err({}), all + text);
+  EXPECT_EQ(err({"--max-missed", "0.2"}), all + ", as --max-missed is not above 0.2" + text);
   EXPECT_EQ(err({"--quiet"}), "");
   EXPECT_EQ(err({"--all-pairs"}), "");
+}
+
+TEST_F(ManyMapsTest, AnEvaluationSaysThatItMatchesAllPairsOfASet) {
+  const std::string image = "P5 2 2 255\n\xcd\xcd\xcd\xcd";  // nobody has seen anything
+  std::string table = "set\tmap\tx\ty\ttheta\ttolerance\n";
+  for (int i = 0; i < 51; ++i) {
+    directory.write(fmt::format("unseen_{}.pgm", i), image);
+    table += fmt::format("one\tunseen_{}.pgm\t{}\t0\t0\t1\n", i, i);
+  }
+  const Outcome outcome = run({"evaluate", "--sets", directory.write("sets.tsv", table), "--resolution",
+                               "0.1", "--threads", "1", "--search", "quick"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(
+      outcome.err.find("gridmerge: all 1275 pairs of 51 maps are matched, which takes about 41 seconds of a "
+                       "thread: evaluate has no --max-missed, as merge has\n"),
+      std::string::npos)
+      << outcome.err;
 }
 
 }  // namespace

@@ -6,10 +6,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "gridmerge/grid/resample.hpp"
@@ -144,6 +147,67 @@ TEST(PairChoice, FewerPairsMakeTheSameMapsWhateverTheOrderAndTheThreads) {
   ASSERT_TRUE(other.not_compared);
   EXPECT_EQ(other.not_compared->pairs, result.not_compared->pairs);
   EXPECT_EQ(other.not_compared->expected_joins, result.not_compared->expected_joins);
+}
+
+/// What a merge of the maps, with comparisons of this store, would match first.
+std::vector<DueMatch> first_due(const Fleet& fleet, const ComparisonStore& store) {
+  Merger merger(fleet.maps, options(0.5));
+  merger.keep_comparisons(store);
+  return merger.due();
+}
+
+void expect_same_due(const std::vector<DueMatch>& a, const std::vector<DueMatch>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].fixed, b[i].fixed);
+    EXPECT_EQ(a[i].moving, b[i].moving);
+  }
+}
+
+TEST(PairChoice, ComparisonsThatAreKeptAreNotMadeAgain) {
+  const Fleet fleet(internal::kFewMaps + 2);
+  std::map<std::string, std::vector<float>> kept;
+  std::vector<std::string> made;
+  ComparisonStore store;
+  store.find = [&](const std::string& name) {
+    const auto part = kept.find(name);
+    return part == kept.end() ? std::nullopt : std::optional(part->second);
+  };
+  store.keep = [&](const std::string& name, const std::vector<float>& log_odds) {
+    kept[name] = log_odds;
+    made.push_back(name);
+  };
+  const std::vector<DueMatch> plain = first_due(fleet, {});
+  ASSERT_GT(plain.size(), 5u);
+  expect_same_due(first_due(fleet, store), plain);
+  const std::vector<std::string> in_turn = made;
+  EXPECT_GT(in_turn.size(), 8u);
+  std::size_t pairs = 0;
+  for (const auto& [name, log_odds] : kept) pairs += log_odds.size();
+  EXPECT_EQ(pairs, fleet.maps.size() * (fleet.maps.size() - 1) / 2);
+
+  made.clear();
+  expect_same_due(first_due(fleet, store), plain);
+  EXPECT_TRUE(made.empty());
+
+  kept.erase(in_turn[3]);
+  kept[in_turn[5]].pop_back();  // none of this size is due
+  store.begin = 0.9;            // another process begins elsewhere, and finds the others all the same
+  expect_same_due(first_due(fleet, store), plain);
+  EXPECT_EQ(made, (std::vector<std::string>{in_turn[3], in_turn[5]}));
+  kept.clear();
+  made.clear();
+  expect_same_due(first_due(fleet, store), plain);
+  EXPECT_NE(made.front(), in_turn.front());
+  EXPECT_TRUE(std::is_permutation(made.begin(), made.end(), in_turn.begin(), in_turn.end()));
+
+  for (auto& [name, log_odds] : kept)
+    for (float& one : log_odds) one = -one;
+  EXPECT_NE(first_due(fleet, store).size(), plain.size()) << "they are used";
+  made.clear();
+  const Fleet others(internal::kFewMaps + 4);
+  first_due(others, store);
+  EXPECT_FALSE(made.empty()) << "of other maps";
 }
 
 TEST(PairChoice, ManyMapsHaveABudgetOfFalseJoinsForEveryFifty) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@ class MadeDirectories;
 /// machine or on a shared file system: files are written whole, and renamed into place.
 ///
 /// A file that is damaged, or that somebody else has put there, counts as missing. Matches of other maps,
-/// options or engines have other names, and so are never found.
+/// options or engines have other names, and so are never found; announce() tells of them.
 class GRIDMERGE_EXPORT MatchCache {
  public:
   /// Takes a line for the user.
@@ -48,6 +49,16 @@ class GRIDMERGE_EXPORT MatchCache {
   /// The match of this key: the one that is there, or what `make` gives, which is kept if possible.
   MatchResult find_or_make(const std::string& key, const std::function<MatchResult()>& make);
 
+  /// Before matches are made from whose probability `accept_probability` on maps are joined. Warns if none of
+  /// this engine and of this probability was made here yet, but others were, which are not used.
+  void announce(double accept_probability);
+
+  /// Where it is.
+  const std::filesystem::path& directory() const { return directory_; }
+
+  /// Tells the user a line.
+  void warn(const std::string& message) const;
+
   /// How many damaged files were found.
   std::size_t damaged() const { return damaged_; }
 
@@ -55,7 +66,6 @@ class GRIDMERGE_EXPORT MatchCache {
   void warn_not_kept(const std::exception& why);
 
  private:
-  void warn(const std::string& message) const;
   std::filesystem::path file_of(const std::string& key) const;
 
   std::filesystem::path directory_;
@@ -63,6 +73,7 @@ class GRIDMERGE_EXPORT MatchCache {
   Warn warn_;
   std::size_t damaged_ = 0;
   bool has_kept_all_ = true;
+  std::set<std::string> announced_;
 };
 
 /// A part of the matches of a merge: of each round, in the order in which they are due, every `count`th.
@@ -89,11 +100,20 @@ struct MatchWork {
   std::size_t missing = 0;
 };
 
+/// Warns of the records of shards in the cache, if they do not fit this merge: for who makes the matches that
+/// it lacks by other means than match_with_cache(). `maps` are as there.
+GRIDMERGE_EXPORT void warn_of_other_shards(const Merger& merger, const std::vector<OccupancyGrid>& maps,
+                                           MatchCache& cache);
+
 /// Hands the merger the matches that are due: those of the cache, and those of the shard that it makes and
 /// keeps there. Round by round, until nothing is due or the rest is for others to make. `maps` are those that
 /// were added, in the order of Merger::maps(). Threads as the merger's; may be cancelled, and then goes on
-/// where it was. Throws FileError, std::invalid_argument for a shard that there is not or another number of
-/// maps, and Cancelled.
+/// where it was.
+///
+/// A shard of several leaves a record of what it was a part of, once its run has ended. Where matches are
+/// missing, the cache warns of records that do not fit: of another number of shards, of other options or
+/// maps, or of another engine. Throws FileError, std::invalid_argument for a shard that there is not or
+/// another number of maps, and Cancelled.
 GRIDMERGE_EXPORT MatchWork match_with_cache(Merger& merger, const std::vector<OccupancyGrid>& maps,
                                             MatchCache& cache, const MatchWorkOptions& options = {});
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,6 +23,17 @@ struct DueMatch {
   std::size_t fixed = 0;                           ///< as Merger::add() called it
   std::size_t moving = 0;                          ///< likewise
   SearchMethod search = SearchMethod::exhaustive;  ///< how it is to be made
+};
+
+/// Where a merge of many maps keeps what it finds when it compares each two maps roughly, in parts: for
+/// processes that merge the same maps, and would each compare them. The functions are called by one thread.
+struct ComparisonStore {
+  /// The part of this name, which tells the maps and the engine, if it is there.
+  std::function<std::optional<std::vector<float>>(const std::string&)> find;
+  /// Takes a part that was not there.
+  std::function<void(const std::string&, const std::vector<float>&)> keep;
+  /// At which share of the parts to begin, in [0, 1): processes at work at once each make others first.
+  double begin = 0.0;
 };
 
 /// merge() for maps that come one after the other, or grow: pairs that have not changed are not matched
@@ -70,6 +83,16 @@ class GRIDMERGE_EXPORT Merger {
   /// The maps that are in it, in the order in which they were added: MergeResult speaks of them by their
   /// place in this list.
   std::vector<MapId> maps() const;
+
+  /// Those that it was given; its matches keep as many hypotheses as a merge needs.
+  const MergeOptions& options() const;
+
+  /// What is known of a map's pose. Throws std::out_of_range for an unknown id.
+  std::optional<KnownPose> known_pose(MapId id) const;
+
+  /// From now on comparisons of maps are taken from the store, and kept there; from no store if it has no
+  /// `find`.
+  void keep_comparisons(ComparisonStore store);
 
   /// The matches that solve() would make next, the most worthwhile first, for who makes them elsewhere: on
   /// other machines, say. They come in rounds, because pairs are looked at quickly first, and thoroughly
