@@ -184,5 +184,45 @@ TEST(Elsewhere, IsAnotherBuildingForEachNumber) {
   EXPECT_EQ(elsewhere(options, 5).seed, 7000027u);
 }
 
+TEST(BuildingLimits, AreFineThemselves) {
+  const Edge wall{{1.0, 1.0}, {2.0, 1.0}};
+  const auto told = [](const Building& building) { return complaint([&] { validate(building); }); };
+  EXPECT_EQ(told({BuildingKind::bare, 500.0, 1e-3, {wall}}), "");
+  EXPECT_TRUE(contains(told({BuildingKind::bare, 500.1, 20.0, {wall}}), "sides must be positive"));
+  // Edges may end as far beyond a side as the longest side is long.
+  for (const Point2 end : {Point2{-500.0, -500.0}, Point2{520.0, 510.0}})
+    EXPECT_EQ(told({BuildingKind::bare, 20.0, 10.0, {{wall.a, end}, {end, wall.a}}}), "");
+  for (const Point2 end : {Point2{-500.1, 0.0}, Point2{0.0, -500.1}, Point2{520.1, 0.0}, Point2{0.0, 510.1}})
+    EXPECT_TRUE(contains(told({BuildingKind::bare, 20.0, 10.0, {{wall.a, end}}}), "beyond its sides"));
+  for (const double echo : {0.0, 1.0})
+    EXPECT_EQ(told({BuildingKind::bare, 20.0, 10.0, {{wall.a, wall.b, echo}}}), "");
+  const Building small{BuildingKind::bare, 1.0, 1.0, {wall}};
+  for (const double resolution : {0.01, 1.0}) EXPECT_NO_THROW(draw_building(small, resolution));
+  for (const double resolution : {0.0099, 1.01})
+    EXPECT_TRUE(contains(complaint([&] { draw_building(small, resolution); }), "resolution"));
+  EXPECT_NO_THROW(make_building(BuildingKind::bare, 8.0, 8.0, 1));
+  EXPECT_NO_THROW(make_building(BuildingKind::bare, 500.0, 8.0, 1));
+}
+
+TEST(DrawBuilding, HasAMarginOfAMetre) {
+  Building square{BuildingKind::bare, 6.0, 4.0, {}};
+  square.edges = {
+      {{0.0, 0.0}, {6.0, 0.0}}, {{6.0, 0.0}, {6.0, 4.0}}, {{6.0, 4.0}, {0.0, 4.0}}, {{0.0, 4.0}, {0.0, 0.0}}};
+  const OccupancyGrid map = draw_building(square, 0.5);
+  EXPECT_EQ(map.width, 16);
+  EXPECT_EQ(map.height, 12);
+  EXPECT_EQ(map.origin, (SE2{-1.0, -1.0, 0.0}));
+  for (int row = 0; row < map.height; ++row) {
+    for (int column = 0; column < map.width; ++column) {
+      const bool is_outside = column < 2 || column > 14 || row < 2 || row > 10;
+      const bool is_wall = !is_outside && (column == 2 || column == 14 || row == 2 || row == 10);
+      EXPECT_EQ(map.at(column, row), is_outside ? Cell::unknown
+                                     : is_wall  ? Cell::occupied
+                                                : Cell::free)
+          << column << ' ' << row;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gridmerge
