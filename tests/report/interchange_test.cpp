@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "report/interchange.hpp"
+
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
@@ -10,7 +12,6 @@
 #include <vector>
 
 #include "gridmerge/report/merge_output.hpp"
-#include "report/interchange.hpp"
 #include "report/interchange_support.hpp"
 #include "report/results.hpp"
 #include "support/temporary_directory.hpp"
