@@ -86,6 +86,28 @@ TEST(Team, EachRobotHasItsErrand) {
   }
 }
 
+TEST(Team, StartsAreFarFromEachOther) {
+  const Floor floor;
+  Random random(3);
+  double spread = 0.0, anywhere = 0.0;
+  constexpr int kTeams = 40;
+  const auto any = [&] {
+    return floor.plan.free_cells()[static_cast<std::size_t>(random.pick(0, floor.plan.count_free() - 1))];
+  };
+  const auto apart = [&](int a, int b) {
+    const Point2 p = floor.plan.centre(a), q = floor.plan.centre(b);
+    return std::hypot(p.x - q.x, p.y - q.y) / kTeams;
+  };
+  for (std::uint64_t seed = 0; seed < kTeams; ++seed) {
+    const Team team = floor.team(robots(2), seed);
+    spread += apart(team.errands[0].start, team.errands[1].start);
+    const int one = any();
+    anywhere += apart(one, any());
+  }
+  // The farthest of six.
+  EXPECT_GT(spread, 1.4 * anywhere);
+}
+
 TEST(Team, StartsMayBeHalfAMetreFromWhereARobotCanStand) {
   const Floor floor;
   // On the line from a free place in the middle to the right, the last place where a robot can stand.
