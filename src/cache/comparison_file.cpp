@@ -12,6 +12,7 @@
 #include "gridmerge/io/file_error.hpp"
 #include "io/atomic_file.hpp"
 #include "io/file_reader.hpp"
+#include "io/made_directories.hpp"
 
 namespace gridmerge::internal {
 
@@ -40,9 +41,7 @@ std::optional<std::vector<float>> find(const std::filesystem::path& file, const 
 }
 
 void keep(const std::filesystem::path& file, const std::string& name, const std::vector<float>& log_odds) {
-  std::error_code error;
-  std::filesystem::create_directories(file.parent_path(), error);
-  if (error) throw FileError(file.parent_path(), "cannot be made: " + error.message());
+  const MadeDirectories made(file.parent_path());
   write_file_atomically(file, format_comparisons(log_odds, name));
 }
 

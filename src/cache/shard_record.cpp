@@ -15,6 +15,7 @@
 #include "io/atomic_file.hpp"
 #include "io/directory_names.hpp"
 #include "io/file_reader.hpp"
+#include "io/made_directories.hpp"
 #include "match/bytes.hpp"
 #include "merge/pair_choice.hpp"
 
@@ -191,9 +192,7 @@ std::optional<ShardRecord> parse_shard_record(std::string_view text) {
 
 void keep_shard_record(const std::filesystem::path& cache, const ShardRecord& record) {
   const std::filesystem::path folder = cache / "shards";
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw FileError(folder, "cannot be made: " + error.message());
+  const MadeDirectories made(folder);
   const std::string text = format_shard_record(record);
   write_file_atomically(folder / fmt::format("{}-of-{}-{}{}", record.shard.index + 1, record.shard.count,
                                              digest_of(text, kDigits), kEnding),

@@ -78,6 +78,38 @@ TEST_F(MatchCacheTest, WhatIsDamagedIsMissingAndToldOnce) {
   EXPECT_TRUE(cache.find(key));
 }
 
+TEST_F(MatchCacheTest, AFileIsReadUpToSixteenMebibytes) {
+  MatchCache cache = open();
+  cache.keep(key, some_match(1.0));
+  const std::string name = "matches/" + key.substr(0, 2) + "/" + key.substr(2) + ".match";
+  directory.write(name, std::string((std::size_t{1} << 24) + 1, 'x'));
+  EXPECT_FALSE(cache.find(key));
+  ASSERT_EQ(warned.size(), 1u);
+  EXPECT_NE(warned[0].find("larger than 16777216 bytes"), std::string::npos) << warned[0];
+  EXPECT_NE(warned[0].find("its maps are matched again"), std::string::npos) << warned[0];
+}
+
+TEST_F(MatchCacheTest, WhatIsDamagedIsToldByItsKind) {
+  const std::string name = "matches/" + key.substr(0, 2) + "/" + key.substr(2) + ".match";
+  const auto told = [&](const std::string& content) {
+    MatchCache cache = open();
+    directory.write(name, content);
+    warned.clear();
+    EXPECT_FALSE(cache.find(key));
+    return warned.size() == 1 ? warned[0] : std::string();
+  };
+  open().keep(key, some_match(1.0));
+  const std::string good = test::read_file(file_of(key));
+  EXPECT_NE(told("somebody's notes").find("is no match of this format"), std::string::npos);
+  // The format's line, the key's and a digest of 32 bytes are the least that there is.
+  const std::size_t least = std::string("gridmerge match 1\n").size() + key.size() + 1 + 32;
+  EXPECT_NE(told(good.substr(0, least - 1)).find("is cut short"), std::string::npos);
+  EXPECT_NE(told(good.substr(0, least)).find("its checksum is not that of its content"), std::string::npos);
+  open().keep(other_key, some_match(1.0));
+  EXPECT_NE(told(test::read_file(file_of(other_key))).find("is a match of something else"),
+            std::string::npos);
+}
+
 TEST_F(MatchCacheTest, AMatchUnderAnothersNameIsMissing) {
   MatchCache cache = open();
   cache.keep(key, some_match(1.0));

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gridmerge/cache/match_cache.hpp"
@@ -59,6 +60,43 @@ TEST_F(MatchWorkTest, ShardsMakeEachMatchOnceAndTheMergeIsThatOfOneMachine) {
   EXPECT_EQ(last.missing, 0u);
   expect_same(merger.solve(), merge(team.maps));
   EXPECT_EQ(matched, 0u);
+}
+
+TEST_F(MatchWorkTest, TellsHowManyOfARoundAreThere) {
+  using Told = std::vector<std::pair<std::size_t, std::size_t>>;
+  const auto told_by = [&] {
+    Told told;
+    MergeOptions one_thread;
+    one_thread.match.threads = 1;
+    Merger merger = filled(one_thread);
+    MatchCache cache(directory.file("matches"));
+    MatchWorkOptions options;
+    options.progress = [&](std::size_t done, std::size_t total) { told.emplace_back(done, total); };
+    match_with_cache(merger, team.maps, cache, options);
+    return told;
+  };
+  // Ten pairs, and then the four of the stranger: what is found, and each that is made.
+  Told expected;
+  for (const std::size_t total : {10u, 4u}) {
+    for (std::size_t done = 0; done <= total; ++done) expected.emplace_back(done, total);
+  }
+  EXPECT_EQ(told_by(), expected);
+  EXPECT_EQ(told_by(), (Told{{10, 10}, {4, 4}}));
+}
+
+TEST_F(MatchWorkTest, AShardMakesEveryCountthMatch) {
+  const MatchWork first = work(1, 4);  // of ten the second, sixth and tenth
+  EXPECT_EQ(first.made, 3u);
+  EXPECT_EQ(first.found, 0u);
+  EXPECT_EQ(first.missing, 7u);
+  const MatchWork again = work(1, 4);  // of the rest there is none for it
+  EXPECT_EQ(again.made, 0u);
+  EXPECT_EQ(again.found, 3u);
+  EXPECT_EQ(again.missing, 7u);
+  const MatchWork last = work(3, 4);
+  EXPECT_EQ(last.made, 2u);
+  EXPECT_EQ(last.found, 3u);
+  EXPECT_EQ(last.missing, 5u);
 }
 
 TEST_F(MatchWorkTest, GoesOnWhereItWasCancelled) {

@@ -144,6 +144,19 @@ TEST_F(TruthFiles, ARefusedFieldIsNamedWithItsLine) {
   EXPECT_EQ(pair("a\tb\t0\t0\t0\t0\tA\t0"), "truth.tsv:2: tolerance must be positive");
   EXPECT_EQ(pair("a\tb\t0\t0\t0\t-1\tA\t0"), "truth.tsv:2: tolerance must be positive");
   EXPECT_EQ(pair("a\tb\t0\t0\t0\t1\tA\t1.5"), "truth.tsv:2: overlap must be between 0 and 1");
+  EXPECT_EQ(pair("a\tb\t0\t0\t0\t1\tA\t1.001"), "truth.tsv:2: overlap must be between 0 and 1");
+  EXPECT_EQ(pair("a\tb\t0\t0\t0\t1\tA\t-0.001"), "truth.tsv:2: overlap must be between 0 and 1");
+}
+
+TEST_F(TruthFiles, LimitsThemselvesAreFine) {
+  const auto pairs = read_pairs(
+      directory_.write("p.tsv", std::string(kPairs) + "a\tb\t0\t0\t0\t1e-9\tA\t0\nc\td\t0\t0\t0\t1\tA\t1\n"));
+  ASSERT_EQ(pairs.size(), 2u);
+  EXPECT_EQ(pairs[0].tolerance, 1e-9);
+  EXPECT_EQ(pairs[0].overlap, 0.0);
+  EXPECT_EQ(pairs[1].overlap, 1.0);
+  const std::string head = "fixed\tmoving\tx\ty\ttheta\ttolerance\tshared_wall\n";
+  EXPECT_EQ(read_pairs(directory_.write("p.tsv", head + "a\tb\t0\t0\t0\t1\t0\n")).at(0).shared_wall, 0.0);
 }
 
 TEST_F(TruthFiles, ANameWithANulIsRefused) {

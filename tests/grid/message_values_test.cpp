@@ -104,5 +104,23 @@ TEST(MessageValues, QuaternionsThatAreNoTurnAreTold) {
   EXPECT_EQ(yaw_of({0.0002, 0.0002, 0, 1}).kind, Rotation::about_z) << "what floats leave of a flat pose";
 }
 
+TEST(MessageValues, QuaternionsMayBeALittleOff) {
+  // Their length by a thousandth.
+  for (const double length : {0.9991, 1.0009}) EXPECT_EQ(yaw_of({0, 0, 0, length}).kind, Rotation::about_z);
+  for (const double length : {0.9989, 1.0011}) EXPECT_EQ(yaw_of({0, 0, 0, length}).kind, Rotation::not_unit);
+  // Their axis by a twentieth of a degree, whichever way, and whichever way the map is turned.
+  const auto tilted = [](double degrees, bool about_y) {
+    const double half = 0.5 * degrees * std::numbers::pi / 180.0, s = std::sin(half), c = std::cos(half);
+    const double yaw = 0.7;  // half of it
+    return about_y ? yaw_of({-s * std::sin(yaw), s * std::cos(yaw), c * std::sin(yaw), c * std::cos(yaw)})
+                   : yaw_of({s * std::cos(yaw), s * std::sin(yaw), c * std::sin(yaw), c * std::cos(yaw)});
+  };
+  for (const bool about_y : {false, true}) {
+    EXPECT_EQ(tilted(0.050, about_y).kind, Rotation::about_z);
+    EXPECT_EQ(tilted(0.053, about_y).kind, Rotation::tilted);
+    EXPECT_NEAR(tilted(0.050, about_y).theta, 1.4, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace gridmerge

@@ -121,11 +121,21 @@ TEST_F(BadMap, BadImages) {
 
 TEST_F(BadMap, OtherKindsAreNamed) {
   const std::string nul(1, '\0');
-  const std::pair<std::string, std::string> kinds[] = {
-      {"GIF89a", "a GIF image"},          {"II*" + nul, "a TIFF image"},  {"MM" + nul + "*", "a TIFF image"},
-      {"P4\n8 1\n\xff", "a PBM image"},   {"P7\n", "a PAM image"},        {"RIFF....WEBP", "a WebP"},
-      {"<!DOCTYPE html>", "a web page"},  {"<svg>", "an SVG image"},      {"%PDF-1.4", "a PDF document"},
-      {"\x1f\x8b\x08", "a gzip archive"}, {"PK\x03\x04", "a ZIP archive"}};
+  const std::pair<std::string, std::string> kinds[] = {{"GIF89a", "a GIF image"},
+                                                       {"II*" + nul, "a TIFF image"},
+                                                       {"MM" + nul + "*", "a TIFF image"},
+                                                       {"P4\n8 1\n\xff", "a PBM image"},
+                                                       {"P7\n", "a PAM image"},
+                                                       {"RIFF....WEBP", "a WebP"},
+                                                       {"<!DOCTYPE html>", "a web page"},
+                                                       {"<svg>", "an SVG image"},
+                                                       {"%PDF-1.4", "a PDF document"},
+                                                       {"\x1f\x8b\x08", "a gzip archive"},
+                                                       {"PK\x03\x04", "a ZIP archive"},
+                                                       {"P1\n1 1\n1", "a PBM image"},
+                                                       {"<?xml version", "an XML file"},
+                                                       {"<!doctype html>", "a web page"},
+                                                       {"<html>", "a web page"}};
   for (const auto& [bytes, name] : kinds) {
     for (const std::string& message : {image_error(bytes), error_of(directory_.write("bare", bytes))}) {
       EXPECT_TRUE(contains(message, name));

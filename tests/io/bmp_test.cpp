@@ -77,6 +77,50 @@ TEST(Bmp, TheFourthByteIsAlphaOnlyWhereTheHeaderSaysSo) {
   EXPECT_EQ(decode(bmp).lightness, (Values{30, 60}));
 }
 
+TEST(Bmp, OfAPaletteNoMoreIsReadThanItsBitsCanName) {
+  // The header promises 300 colours, the bits can name two.
+  EXPECT_EQ(decode({.width = 2,
+                    .bits = 1,
+                    .colors = 300,
+                    .palette = kBlackGrayWhite.substr(0, 8),
+                    .rows = bytes({0b01000000, 0, 0, 0})})
+                .lightness,
+            (Values{0, 615}));
+}
+
+TEST(Bmp, ItsPaletteLiesBehindAHeaderOfAnySize) {
+  const std::string rest_of_header(16, '\7');  // of 56 bytes
+  EXPECT_EQ(decode({.width = 2,
+                    .bits = 8,
+                    .colors = 3,
+                    .palette = rest_of_header + kBlackGrayWhite,
+                    .rows = bytes({1, 2, 0, 0}),
+                    .header_size = 56})
+                .lightness,
+            (Values{615, 7}));
+}
+
+TEST(Bmp, RowsOfWholeWordsHaveNothingToFillThemUp) {
+  const std::string two_rows =
+      bytes({1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 5, 5, 5, 6, 6, 6, 7, 7, 7, 8, 8, 8});
+  EXPECT_EQ(decode({.width = 4, .height = 2, .palette = {}, .rows = two_rows}).lightness,
+            (Values{15, 18, 21, 24, 3, 6, 9, 12}));
+  const auto cut = [&](std::size_t size) {
+    return test::message_of<ParseError>(
+        [&] { decode({.width = 4, .height = 2, .palette = {}, .rows = two_rows.substr(0, size)}); });
+  };
+  EXPECT_TRUE(contains(cut(23), "end early"));
+}
+
+TEST(Bmp, TellsItsSizeWhicheverRowComesFirst) {
+  for (const std::int32_t height : {5, -5}) {
+    const ImageSize size =
+        bmp_size(BmpBuilder{.width = 7, .height = height, .palette = {}, .rows = {}}.build());
+    EXPECT_EQ(size.width, 7u);
+    EXPECT_EQ(size.height, 5u);
+  }
+}
+
 TEST(Bmp, IsToldByItsFirstBytes) {
   EXPECT_TRUE(looks_like_bmp(BmpBuilder{.palette = {}, .rows = {}}.build().substr(0, 18)));
   for (const std::string other : {"", "BM", "BM: 3\nimage: a.pgm\nresolution: 0.05\n"})

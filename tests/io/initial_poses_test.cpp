@@ -66,6 +66,39 @@ TEST(InitialPoses, ErrorsNameFileLineAndCause) {
   expect("map\tx\ty\ttheta\tsd_theta\na\t0\t0\t0\t-1\n", "poses.tsv:2", "sd_theta must be positive");
 }
 
+TEST(InitialPoses, LimitsThemselvesAreFine) {
+  const auto poses = parse_initial_poses(
+      "poses.tsv", "map\tx\ty\ttheta\tsd\tsd_theta\na\t1e7\t-1e7\t0\t0.000001\t0.000001\n");
+  ASSERT_EQ(poses.size(), 1u);
+  EXPECT_EQ(poses[0].T_world_map.x, 1e7);
+  EXPECT_EQ(poses[0].T_world_map.y, -1e7);
+  EXPECT_EQ(poses[0].sd_position, 1e-6);
+  EXPECT_EQ(poses[0].sd_theta, 1e-6);
+  for (const char* row :
+       {"10000001\t0\t0\t1\t1", "0\t-10000001\t0\t1\t1", "0\t0\t0\t9e-7\t1", "0\t0\t0\t1\t9e-7"})
+    EXPECT_THROW(
+        parse_initial_poses("poses.tsv", std::string("map\tx\ty\ttheta\tsd\tsd_theta\na\t") + row + "\n"),
+        FileError)
+        << row;
+}
+
+TEST(InitialPoses, OfColumnsThatSpacesPartTheErrorSaysSo) {
+  const auto error_of = [](const char* text) {
+    try {
+      parse_initial_poses("poses.tsv", text);
+    } catch (const FileError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string hint = "tabs separate columns, not spaces";
+  EXPECT_NE(error_of("map x y theta\n").find(hint), std::string::npos);
+  EXPECT_EQ(error_of("map\tx\ty\n").find(hint), std::string::npos);
+  EXPECT_EQ(error_of("map\n").find(hint), std::string::npos);
+  EXPECT_NE(error_of("map\tx\ty\ttheta\ttheta\n").find("names the column 'theta' twice"), std::string::npos);
+  EXPECT_NE(error_of("map\tx\ty\ttheta\na\t\t0\t0\n").find("x is empty"), std::string::npos);
+}
+
 TEST(InitialPoses, AMissingFileIsNamed) {
   try {
     read_initial_poses("nowhere/poses.tsv");

@@ -5,7 +5,9 @@
 #include <rapidcheck/gtest.h>
 
 #include <cstdlib>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "io/image_builder.hpp"
 #include "io/parse_error.hpp"
@@ -68,6 +70,31 @@ TEST(Jpeg, TellsItsSizeInItsFirstBytes) {
     EXPECT_EQ(size->height, 17U);
     EXPECT_EQ(decode_jpeg(image, kLimit).width, 33);
     for (const std::size_t length : {2U, 3U, 10U, 50000U}) EXPECT_FALSE(jpeg_size(image.substr(0, length)));
+  }
+}
+
+// What a part holds is passed over, even if it looks like a frame; some parts have no length.
+TEST(Jpeg, TheFirstFrameTellsTheSize) {
+  using std::string_view_literals::operator""sv;
+  const auto size_of = [](std::string_view parts) { return jpeg_size("\xff\xd8" + std::string(parts)); };
+  constexpr std::string_view kFrame = "\xff\xc2\x00\x11\x08\x01\x02\x03\x04"sv;
+  for (const std::string_view before :
+       {""sv, "\xff\xfe\x00\x0b\xff\xc0\x00\x11\x08\x00\x07\x00\x09"sv,  // a comment
+        "\xff\x02\x00\x0b\xff\xc0\x00\x11\x08\x00\x07\x00\x09"sv,        // the lowest kind with a length
+        "\xff\x01"sv, "\xff\x00"sv, "\xff\xd0"sv, "\xff\xd9"sv,
+        "\xff\xda\x00\x0b\xff\xc0\x00\x11\x08\x00\x07\x00\x09"sv,
+        "\xff\xc4\x00\x09\x08\x00\x07\x00\x09\x00\x00"sv, "\xff\xc8\x00\x09\x08\x00\x07\x00\x09\x00\x00"sv,
+        "\xff\xcc\x00\x09\x08\x00\x07\x00\x09\x00\x00"sv}) {
+    const std::optional<ImageSize> size = size_of(std::string(before).append(kFrame));
+    ASSERT_TRUE(size) << testing::PrintToString(before);
+    EXPECT_EQ(size->width, 0x304U) << testing::PrintToString(before);
+    EXPECT_EQ(size->height, 0x102U) << testing::PrintToString(before);
+    EXPECT_FALSE(size_of(std::string(before).append(kFrame.substr(0, kFrame.size() - 1))));
+  }
+  for (int kind = 0xc0; kind <= 0xcf; ++kind) {
+    std::string frame(kFrame);
+    frame[1] = static_cast<char>(kind);
+    EXPECT_EQ(size_of(frame).has_value(), kind != 0xc4 && kind != 0xc8 && kind != 0xcc) << kind;
   }
 }
 

@@ -57,10 +57,10 @@ TEST(MapYaml, ModeIsTrinaryUnlessSaid) {
 }
 
 TEST(MapYaml, NegateIsANumberOrABool) {
-  for (const char* yes : {"1", "true", "True", "yes", "on", "'1'"}) {
+  for (const char* yes : {"1", "true", "True", "yes", "on", "y", "Y", "'1'"}) {
     EXPECT_TRUE(parse_map_yaml(with("negate", std::string("negate: ") + yes)).negate) << yes;
   }
-  for (const char* no : {"0", "false", "FALSE", "no", "off"}) {
+  for (const char* no : {"0", "false", "FALSE", "no", "off", "n"}) {
     EXPECT_FALSE(parse_map_yaml(with("negate", std::string("negate: ") + no)).negate) << no;
   }
 }
@@ -108,6 +108,7 @@ TEST(MapYaml, LimitsThemselvesAreFine) {
   EXPECT_NO_THROW(parse_map_yaml(with("occupied_thresh", "occupied_thresh: 1.0")));
   EXPECT_NO_THROW(parse_map_yaml(with("free_thresh", "free_thresh: 0")));
   EXPECT_NO_THROW(parse_map_yaml(with("free_thresh", "free_thresh: 0.65")));
+  EXPECT_EQ(parse_map_yaml(with("origin", "origin: [1e9, -1e9, 0]")).origin.x, 1e9);
 }
 
 TEST(MapYaml, EveryKeyButModeIsRequired) {
@@ -185,6 +186,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadYaml{"InfiniteYaw", with("origin", "origin: [0, 0, inf]"), "not a finite number"},
         BadYaml{"OverflowingOrigin", with("origin", "origin: [1e999, 0, 0]"), "not a finite number"},
         BadYaml{"FarOrigin", with("origin", "origin: [0, -2e9, 0]"), "'origin' is further than 1000000000 m"},
+        BadYaml{"BarelyFarOrigin", with("origin", "origin: [1000000001, 0, 0]"), "'origin' is further than"},
+        BadYaml{"ResolutionAboveAll", with("resolution", "resolution: 1000.01"),
+                "resolution 1000.01 is not in"},
         BadYaml{"ListInOrigin", with("origin", "origin: [[0], 0, 0]"), "'origin' is not a single value"},
         BadYaml{"NegativeThreshold", with("free_thresh", "free_thresh: -0.1"),
                 "'free_thresh' is -0.1, not in 0..1"},
@@ -202,6 +206,12 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(MapYaml, LongValuesAreShortenedInMessages) {
   EXPECT_LT(error_of(with("resolution", "resolution: " + std::string(5000, 'x'))).size(), 200u);
+}
+
+TEST(MapYaml, ShowsValuesOfSixtyCharactersWhole) {
+  const std::string sixty(60, 'x');
+  EXPECT_TRUE(contains(error_of(with("resolution", "resolution: " + sixty)), "is '" + sixty + "',"));
+  EXPECT_TRUE(contains(error_of(with("resolution", "resolution: " + sixty + "x")), "is '" + sixty + "...',"));
 }
 
 TEST(MapYaml, DeepNestingIsRefused) {

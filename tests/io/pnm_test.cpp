@@ -89,6 +89,31 @@ TEST(Pgm, IgnoresWhatFollowsTheLastPixel) {
   EXPECT_EQ(decode("P2 1 1 255\n7\nP2 1 1 255 8").lightness, Values{7});
 }
 
+TEST(Pgm, SpacesAreThoseOfTheCLocale) {
+  EXPECT_EQ(decode("P2\t2\v1\f255\r7\n8").lightness, (Values{7, 8}));
+  EXPECT_TRUE(contains(error_of("P2 2 1 255 7\x0e"
+                                "8"),
+                       "not a whole number"));
+  EXPECT_TRUE(contains(error_of("P2 2 1 255 7\x08"
+                                "8"),
+                       "not a whole number"));
+  EXPECT_EQ(decode("P2 2 1 255 7#\n8").lightness, (Values{7, 8}));
+}
+
+TEST(Pgm, ASizeOf32BitsIsReadAndRefusedAsTooLarge) {
+  EXPECT_TRUE(contains(error_of("P5 4294967295 1 255\n"), "4294967295 x 1 pixels exceed"));
+}
+
+TEST(Pgm, OfAWindowsHeadersTwoCharactersOneIsAPixelWhereItIsNeeded) {
+  EXPECT_EQ(decode("P5 2 1 255\r\n" + bytes({8})).lightness, (Values{10, 8}));
+  EXPECT_EQ(decode("P5 2 1 255\r\n" + bytes({8, 9})).lightness, (Values{8, 9}));
+}
+
+TEST(Pgm, TakesPlainNumbersOfOneDigit) {
+  EXPECT_EQ(decode("P2 3 1 9 1 2 3").lightness, (Values{1, 2, 3}));
+  EXPECT_EQ(decode("P2 1 1 9 3").lightness, (Values{3}));
+}
+
 TEST(Ppm, LightnessIsTheSumOfTheColors) {
   const MapImage raw = decode("P6 2 1 255\n" + bytes({1, 2, 4, 255, 255, 255}));
   EXPECT_EQ(raw.white, 765);
@@ -190,6 +215,28 @@ TEST(Pnm, OfAPlainPictureEnoughIsRead) {
   EXPECT_GE(most_image_bytes("P3\n3000 3000\n65535\n", kPixels), kPixels * kLongest);
   EXPECT_GE(most_image_bytes("P2\n3000 3000\n65535\n", kPixels), kPixels * (sizeof("65535 ") - 1));
   EXPECT_LT(most_image_bytes("P6\n3000 3000\n65535\n", kPixels), kPixels * kLongest);
+}
+
+// Files end where their pixels do, but for what programs say of a picture: 64 MiB are enough for that.
+TEST(Image, OfAnyOtherPictureAsMuchIsRead) {
+  constexpr std::size_t kRest = std::size_t{64} << 20;
+  EXPECT_EQ(most_image_bytes("P5\n30 20\n255\n", 600), 600 * 8 + kRest);
+  EXPECT_EQ(most_image_bytes("P2\n30 20\n255\n", 600), 600 * 24 + kRest);
+  EXPECT_EQ(most_image_bytes("\xff\xd8\xff\xe0", 600), kRest);  // a JPEG whose size is not told yet
+  EXPECT_EQ(most_image_bytes("hello", 600), 5u);
+  EXPECT_THROW(most_image_bytes("P5\n30 21\n255\n", 600), ParseError);
+}
+
+TEST(Image, HasNoMorePixelsThanAllowed) {
+  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  EXPECT_NO_THROW(check_image_size(30, 20, 600));
+  EXPECT_THROW(check_image_size(30, 20, 599), ParseError);
+  EXPECT_NO_THROW(check_image_size(2147483647, 1, kAll));
+  EXPECT_NO_THROW(check_image_size(1, 2147483647, kAll));
+  EXPECT_THROW(check_image_size(2147483648, 1, kAll), ParseError);
+  EXPECT_THROW(check_image_size(1, 2147483648, kAll), ParseError);
+  EXPECT_THROW(check_image_size(0, 1, kAll), ParseError);
+  EXPECT_THROW(check_image_size(1, 0, kAll), ParseError);
 }
 
 }  // namespace

@@ -101,5 +101,28 @@ TEST(Climb, FindsTheScaleAndStaysInItsBounds) {
   EXPECT_LE(bound.evidence.score, free.evidence.score);
 }
 
+// Turned by one step about where the pivot is drawn, far from the origin, it is turned back by one step.
+TEST(Climb, TurnsAboutWhereThePivotIsDrawn) {
+  const OccupancyGrid building = test::draw_building(1);
+  constexpr double kCell = 0.1, kScale = 2.0, kStep = 8.0;
+  const LikelihoodField fixed = make_likelihood_field(scaled(building, kScale), kCell);
+  const LikelihoodField moving = make_likelihood_field(building, kCell);
+  const WallEvidence evidence(fixed, moving, std::numeric_limits<std::size_t>::max());
+  const PoseMetric metric = make_pose_metric(moving);
+  const SE2 &f = fixed.T_map_grid, &m = moving.T_map_grid;
+  const SE2 T{(kScale * m.x - f.x) / kCell, (kScale * m.y - f.y) / kCell, 0.0};
+  const PoseMetric drawn{{kScale * metric.pivot.x, kScale * metric.pivot.y}, metric.radius};
+  for (const double turn : {kStep, -kStep}) {
+    const SE2 turned = drawn.moved(T, 0.0, 0.0, turn / metric.radius);
+    const ScoredScaledPose found =
+        climb(evidence, metric, {turned, kScale}, kStep, kStep, kScale - 0.01, kScale + 0.01);
+    EXPECT_NEAR(found.pose.T.x, T.x, 1e-9);
+    EXPECT_NEAR(found.pose.T.y, T.y, 1e-9);
+    EXPECT_NEAR(found.pose.T.theta, 0.0, 1e-12);
+    EXPECT_EQ(found.pose.scale, kScale);
+    EXPECT_EQ(found.evidence.score, evidence(found.pose.T, 0.0, kScale).score);
+  }
+}
+
 }  // namespace
 }  // namespace gridmerge

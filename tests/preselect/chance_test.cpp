@@ -160,5 +160,31 @@ TEST(Chance, AFirstLookThatThinksMorePromisesMore) {
   EXPECT_TRUE(std::isfinite(log_odds_after_a_look(0.0, 1.0)));
 }
 
+TEST(Chance, AFirstLookIsNeverSure) {
+  EXPECT_EQ(log_odds_after_a_look(0.5, 0.0), log_odds_after_a_look(0.5, 1e-4));
+  EXPECT_EQ(log_odds_after_a_look(0.5, 1.0), log_odds_after_a_look(0.5, 0.999));
+  EXPECT_LT(log_odds_after_a_look(0.5, 1e-4), log_odds_after_a_look(0.5, 1.1e-4));
+  EXPECT_LT(log_odds_after_a_look(0.5, 0.9985), log_odds_after_a_look(0.5, 0.999));
+  // It is linear in the log-odds of either.
+  const auto of_both = [](double signature, double match) {
+    return log_odds_after_a_look(signature, logistic(match));
+  };
+  const double base = of_both(0.0, 0.0);
+  EXPECT_NEAR(of_both(3.0, -2.0) - base, 3.0 * (of_both(1.0, 0.0) - base) - 2.0 * (of_both(0.0, 1.0) - base),
+              1e-9);
+}
+
+TEST(Chance, OfNothingSeenOrTooLittleWallIsFinite) {
+  const Signature nothing;
+  const SignatureMatch none;
+  EXPECT_TRUE(std::isfinite(log_odds_of_joining(none, nothing, nothing)));
+  // What was seen is weighed against the smaller map's walls: the same of a small map says more.
+  Signature small, large;
+  small.wall_length = 70.0;
+  large.wall_length = 700.0;
+  const SignatureMatch match = usual_match();
+  EXPECT_NE(log_odds_of_joining(match, small, large), log_odds_of_joining(match, large, large));
+}
+
 }  // namespace
 }  // namespace gridmerge::internal

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "io/png.hpp"
@@ -61,6 +62,39 @@ TEST(DistancePicture, OfAMapWithoutTheValueIsWhite) {
   const DistanceMap none = make_distance_map(make_grid(50, 3, 1.0), Cell::free);
   const PngImage image = decode_png(distance_map_png(none));
   EXPECT_EQ(gray_at(image, 25, 1), 255);
+}
+
+TEST(DistancePicture, HoldsNumbersUpToFortyCellsASide) {
+  const auto size_of = [](int width, int height) {
+    OccupancyGrid map = make_grid(width, height, 1.0);
+    map.at(0, 0) = Cell::occupied;
+    const PngImage image = decode_png(distance_map_png(make_distance_map(map, Cell::occupied)));
+    return std::pair(image.width, image.height);
+  };
+  EXPECT_EQ(size_of(40, 2), std::pair(40 * 24 + 1, 2 * 24 + 1));
+  EXPECT_EQ(size_of(2, 40), std::pair(2 * 24 + 1, 40 * 24 + 1));
+  EXPECT_EQ(size_of(41, 2), std::pair(41, 2));
+  EXPECT_EQ(size_of(2, 41), std::pair(2, 41));
+}
+
+TEST(DistancePicture, ShadesGrowInProportion) {
+  OccupancyGrid map = make_grid(52, 1, 1.0);
+  map.at(0, 0) = Cell::occupied;
+  const DistanceMap distances = make_distance_map(map, Cell::occupied);
+  const PngImage image = decode_png(distance_map_png(distances));
+  for (int x = 0; x < 52; ++x)
+    EXPECT_EQ(gray_at(image, x, 0), 255 * distances.at(x, 0) / distances.at(51, 0));
+}
+
+TEST(DistancePicture, CellsOfASmallMapHaveALineAround) {
+  OccupancyGrid map = make_grid(2, 1, 1.0);
+  map.at(0, 0) = Cell::occupied;
+  const PngImage image = decode_png(distance_map_png(make_distance_map(map, Cell::occupied)));
+  for (int x = 0; x < image.width; ++x) {
+    EXPECT_EQ(gray_at(image, x, 0), 128);
+    EXPECT_EQ(gray_at(image, x, 24), 128);
+    EXPECT_EQ(gray_at(image, x, 1) == 128, x % 24 == 0) << x;
+  }
 }
 
 }  // namespace

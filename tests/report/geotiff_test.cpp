@@ -202,6 +202,38 @@ TEST(TiffPyramid, SaysWhereItLies) {
   EXPECT_EQ(palette[256 + 100], 0u);
 }
 
+// What readers go by, number by number, as the formats' documentation has it.
+TEST(TiffPyramid, SaysHowItIsToBeRead) {
+  using Values = std::vector<std::uint64_t>;
+  std::vector<std::uint8_t> pixels(std::size_t{600} * 2, 7);
+  const std::vector<Picture> pictures = drawn(600, 2, pixels);
+  ASSERT_EQ(pictures.size(), 2u);
+  for (const Picture& picture : pictures) {
+    EXPECT_EQ(picture.tags.at(258), Values{8});    // bits
+    EXPECT_EQ(picture.tags.at(259), Values{8});    // Adobe deflate
+    EXPECT_EQ(picture.tags.at(262), Values{3});    // of a palette
+    EXPECT_EQ(picture.tags.at(277), Values{1});    // channels
+    EXPECT_EQ(picture.tags.at(322), Values{512});  // a tile's width
+    EXPECT_EQ(picture.tags.at(339), Values{1});    // whole numbers from 0 on
+    const Values& palette = picture.tags.at(320);
+    ASSERT_EQ(palette.size(), 768u);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      for (std::size_t value = 0; value < 256; ++value) {
+        const std::uint64_t gray = 65535 - 65535 * value / 100;
+        EXPECT_EQ(palette[256 * channel + value], value <= 100 ? gray : channel == 2 ? 0xD2D2u : 0xCDCDu);
+      }
+    }
+  }
+  EXPECT_EQ(pictures[0].texts.at(305), "gridmerge");
+  for (const std::size_t i : {0u, 1u, 2u, 5u}) EXPECT_EQ(pictures[0].real(33922, i), 0.0);
+  EXPECT_EQ(pictures[0].real(33550, 2), 0.0);
+  // GeoTIFF 1.1: version 1.1.1 with four keys: a model of its own, a pixel is an area, a citation of 11
+  // characters, and metres.
+  EXPECT_EQ(pictures[0].tags.at(34735),
+            (Values{1, 1, 1, 4, 1024, 0, 1, 32767, 1025, 0, 1, 1, 1026, 34737, 11, 0, 3076, 0, 1, 9001}));
+  EXPECT_EQ(pictures[1].tags.count(34735), 0u);
+}
+
 /// Value by value what fuse() gives.
 void expect_fused(const Picture& picture, const OccupancyGrid& fused) {
   ASSERT_EQ(picture.width(), fused.width);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "report/interchange.hpp"
+
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
@@ -168,6 +170,33 @@ TEST(GeoJson, OutlinesEachMapAndEachMergedMap) {
       for (const double y : {0.0, map.height * map.resolution})
         EXPECT_LT(outside(ring, T * Point2{x, y}), 1e-5);
   }
+}
+
+TEST(Exports, QuoteWhatNoReaderPrints) {
+  EXPECT_EQ(quoted("a \"b\" ~"), "\"a \\\"b\\\" ~\"");
+  EXPECT_EQ(quoted("\x7f"), "\"\\u007f\"");
+  EXPECT_EQ(quoted("\xc2\x80\xc2\x9f\xc2\xa0"), "\"\\u0080\\u009f\xc2\xa0\"");
+  EXPECT_EQ(quoted("\xe2\x80\xa7\xe2\x80\xa8\xe2\x80\xa9\xe2\x80\xaa"),
+            "\"\xe2\x80\xa7\\u2028\\u2029\xe2\x80\xaa\"");
+  EXPECT_EQ(quoted("\xef\xbb\xbe\xef\xbb\xbf\xef\xbf\xbd\xef\xbf\xbe\xef\xbf\xbf"),
+            "\"\xef\xbb\xbe\\ufeff\xef\xbf\xbd\\ufffe\\uffff\"");
+  EXPECT_EQ(quoted("\xdf\xbf\xe0\xa0\x80\xf0\x9f\x98\x80"), "\"\xdf\xbf\xe0\xa0\x80\xf0\x9f\x98\x80\"");
+}
+
+TEST(GeoJson, PositionsAreToldToAMicrometre) {
+  const std::vector<OccupancyGrid> maps{map_from({"#"}, 1.0), map_from({"#"}, 1.0)};
+  const MergeResult result = test::merged(maps, {{{0, {}}, {1, {1.0 / 3.0, 0.0000004, 0.0}}}});
+  const std::string text = export_text(ExportFormat::geojson, {test::fleet_names(2), maps, result});
+  EXPECT_TRUE(contains(text, "[0.333333,0.0]")) << text;
+  EXPECT_TRUE(contains(text, "[1.333333,1.0]")) << text;
+}
+
+TEST(GeoJson, OfAMapOfNothingThereIsNoPolygon) {
+  const std::vector<OccupancyGrid> maps{map_from({"#"}, 1.0), map_from({" "}, 1.0)};
+  const MergeResult result = test::merged(maps, {{{0, {}}, {1, {}}}});
+  const Json json = Json::parse(export_text(ExportFormat::geojson, {test::fleet_names(2), maps, result}));
+  EXPECT_TRUE(json["features"][1]["geometry"].is_object());
+  EXPECT_TRUE(json["features"][2]["geometry"].is_null());
 }
 
 TEST(Exports, AreFoundByTheirNames) {

@@ -378,6 +378,19 @@ TEST(MergeRecord, RefusesScalesThatAreNotThoseOfTheirLattices) {
             place + ".matrix does not have two rows of three numbers");
   EXPECT_EQ(message(true, "matrix", Json::parse("[[1.02, 0, 0], [0, 1.02, 0]]")),
             place + ".matrix is not that of its lattice");
+  const Json matrix = Json::parse(transforms_json(
+      kNames, stretched_result(false)))["components"][0]["members"][1]["deformation"]["matrix"];
+  for (std::size_t row = 0; row < 2; ++row) {
+    Json shorter = matrix;
+    shorter[row].erase(0);
+    EXPECT_EQ(message(false, "matrix", shorter), place + ".matrix does not have two rows of three numbers");
+    for (std::size_t column = 0; column < 3; ++column) {
+      Json other = matrix;
+      other[row][column] = other[row][column].get<double>() + 0.001;
+      EXPECT_EQ(message(false, "matrix", other), place + ".matrix is not that of its lattice")
+          << row << column;
+    }
+  }
   // Of a lattice that bends, and of one that earlier versions wrote.
   Json bent = Json::parse(transforms_json(kNames, bent_result()));
   Json& deformation = bent["components"][0]["members"][1]["deformation"];

@@ -58,5 +58,49 @@ RC_GTEST_PROP(Outlines, AreThoseOfEveryTriple, ()) {
   }
 }
 
+using Points = std::vector<Point2>;
+
+TEST(ConvexHull, OfFewPointsOrALine) {
+  EXPECT_EQ(convex_hull({}), Points{});
+  EXPECT_EQ(convex_hull({{1.0, 2.0}, {1.0, 2.0}}), (Points{{1.0, 2.0}}));
+  EXPECT_EQ(convex_hull({{3.0, 2.0}, {1.0, 2.0}}), (Points{{1.0, 2.0}, {3.0, 2.0}}));
+  EXPECT_EQ(convex_hull({{0.0, 0.0}, {1.0, 1.0}, {2.0, 2.0}, {3.0, 3.0}}), (Points{{0.0, 0.0}, {3.0, 3.0}}));
+}
+
+TEST(ConvexHull, LacksWhatLiesOnAStraightLineBetweenOthers) {
+  Points points;
+  for (int i = 0; i < 25; ++i) points.push_back({static_cast<double>(i / 5), static_cast<double>(i % 5)});
+  EXPECT_EQ(convex_hull(points), (Points{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {0.0, 4.0}}));
+}
+
+TEST(KnownCorners, AreThoseOfTheKnownCells) {
+  OccupancyGrid map = make_grid(10, 8, 0.5, {1.0, 2.0, 0.0});
+  EXPECT_EQ(known_corners(map), Points{});
+  map.at(2, 6) = map.at(7, 1) = Cell::free;
+  EXPECT_EQ(known_corners(map), (Points{{2.0, 2.5}, {5.0, 2.5}, {5.0, 5.5}, {2.0, 5.5}}));
+}
+
+TEST(SpreadCells, AreThoseNearestToTheMiddlesOfSixteenParts) {
+  OccupancyGrid map = make_grid(30, 22, 1.0);
+  for (int row = 4; row < 16; ++row) {
+    for (int column = 3; column < 23; ++column) map.at(column, row) = Cell::free;
+  }
+  // 20 x 12 cells: each part has 5 x 3, with a cell in its middle.
+  Points expected;
+  for (const double y : {5.5, 8.5, 11.5, 14.5}) {
+    for (const double x : {5.5, 10.5, 15.5, 20.5}) expected.push_back({x, y});
+  }
+  EXPECT_EQ(spread_cells(map), expected);
+  // Of a part in which nothing is known there is none; beside a hole, the next one.
+  for (int row = 4; row < 7; ++row) {
+    for (int column = 8; column < 13; ++column) map.at(column, row) = Cell::unknown;
+  }
+  map.at(15, 8) = Cell::unknown;
+  expected.erase(expected.begin() + 1);
+  expected[5] = {15.5, 7.5};
+  EXPECT_EQ(spread_cells(map), expected);
+  EXPECT_EQ(spread_cells(make_grid(5, 5, 1.0)), Points{});
+}
+
 }  // namespace
 }  // namespace gridmerge

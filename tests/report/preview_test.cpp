@@ -7,10 +7,12 @@
 #include <set>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include "gridmerge/report/merge_output.hpp"
 #include "io/png.hpp"
 #include "merge/drawing.hpp"
+#include "report/map_panel.hpp"
 #include "report/preview_colours.hpp"
 #include "report/results.hpp"
 
@@ -206,7 +208,10 @@ TEST(Preview, TheScaleBarHasARoundLength) {
       for (const double digit : {1.0, 2.0, 5.0})
         error = std::min(error, std::abs(length / power - digit) / digit);
       EXPECT_LT(error, 0.02) << bar << " pixels are " << length << " m";
-      EXPECT_LT(bar, picture.image.width / 2);
+      // The longest such length that is no more than a quarter of the drawing, which has a margin.
+      const int quarter = std::max(std::max(width, 5) * zoom + 2 * 12, 1000) / 4;
+      EXPECT_LE(bar, quarter + 1);
+      EXPECT_GT(bar, 0.4 * quarter - 1);
     }
   }
 }
@@ -227,6 +232,84 @@ TEST(Preview, EveryComponentIsShown) {
   const Picture picture = preview(maps, {{{0, {}}, {1, {}}}, {{2, {}}, {3, {}}}});
   EXPECT_EQ(picture.cells(Colours::kDisagreement), 2u) << "one in each";
   EXPECT_EQ(picture.cells(map_colour(2)), 1u);
+}
+
+/// The longest run of a colour in a row of the picture.
+int longest_run(const Picture& picture, Colour colour) {
+  int longest = 0;
+  for (int y = 0; y < picture.image.height; ++y) {
+    for (int x = 0, run = 0; x < picture.image.width; ++x) {
+      run = picture.at(x, y) == rgb(colour) ? run + 1 : 0;
+      longest = std::max(longest, run);
+    }
+  }
+  return longest;
+}
+
+/// A wall along the whole length.
+OccupancyGrid wall_of(int cells) {
+  return make_grid(cells, 1, 0.05, {}, Cell::occupied);
+}
+
+TEST(Preview, MergedMapsFillThePage) {
+  const OccupancyGrid other = map_from({"."}, 0.05);
+  const auto drawn = [&](int cells) {
+    return longest_run(preview({wall_of(cells), other}, {{{0, {}}, {1, {0.0, 1.0, 0.0}}}}), map_colour(0));
+  };
+  EXPECT_EQ(drawn(20), 20 * 32);  // a cell is no wider than that
+  EXPECT_EQ(drawn(100), 100 * 14);
+  EXPECT_EQ(drawn(1400), 1400);
+  EXPECT_EQ(drawn(2327), 2327);  // a page of 2400 pixels, less its margin and the drawing's
+  EXPECT_EQ(drawn(2328), 1164);  // two cells a pixel
+}
+
+TEST(Preview, MapsThatWereLeftOutAreSmall) {
+  const auto drawn = [](int cells) { return longest_run(preview({wall_of(cells)}, {}), map_colour(0)); };
+  EXPECT_EQ(drawn(4), 4 * 32);
+  EXPECT_EQ(drawn(100), 100 * 2);
+  EXPECT_EQ(drawn(280), 280);
+  EXPECT_EQ(drawn(534), 534);  // a panel of 560 pixels, less its margin
+  EXPECT_EQ(drawn(535), 268);
+  EXPECT_EQ(drawn(1069), 535);
+}
+
+TEST(Preview, TheLegendHasASampleOfTheWallsAndTheFreeSpaceOfEachMap) {
+  // Two maps that share all they know, so that their own colours are in the legend alone.
+  const std::vector<OccupancyGrid> maps{map_from({"#."}), map_from({"#."})};
+  const Picture picture = preview(maps, {{{0, {}}, {1, {}}}});
+  for (const std::size_t map : {0u, 1u}) {
+    const auto wall = picture.pixels(map_colour(map)), free = picture.pixels(free_tint(map_colour(map)));
+    ASSERT_FALSE(wall.empty());
+    EXPECT_EQ(wall.size(), free.size());
+    const auto [left, top] = wall.front();
+    const int side = free.front().first - left;  // beside each other, in a frame of a pixel
+    EXPECT_EQ(free.front().second, top);
+    EXPECT_EQ(wall.size(), static_cast<std::size_t>(side * (side - 1)));
+    EXPECT_EQ(wall.back(), std::pair(left + side - 1, top + side - 2));
+    const Rgb line{170, 170, 165};
+    EXPECT_EQ(picture.at(left - 1, top - 1), line);
+    EXPECT_EQ(picture.at(left + 2 * side, top + side - 1), line);
+    EXPECT_NE(picture.at(left - 2, top), line);
+    EXPECT_NE(picture.at(left + 2 * side + 1, top), line);
+  }
+  EXPECT_EQ(free_tint({255, 0, 155}), (Colour{255, 194, 231}));  // a quarter of the colour, of 100 parts 24
+}
+
+TEST(Preview, OfNothingIsAnEmptyPage) {
+  const PngImage page = decode_png(preview_png({{}, {}, {}}));
+  EXPECT_EQ(page.width, 1 * 48);
+  EXPECT_EQ(page.height, 24);
+}
+
+TEST(Preview, OfManyMapsThatWereLeftOutTheFirstTwelveAreShown) {
+  const std::vector<OccupancyGrid> twelve(12, map_from({"##"})), thirteen(13, map_from({"##"}));
+  const auto walls = [](const Picture& picture) {
+    std::size_t cells = 0;
+    for (std::size_t i = 0; i < 13; ++i) cells += picture.cells(map_colour(i));
+    return cells;
+  };
+  EXPECT_EQ(walls(preview(twelve, {})), 24u);
+  EXPECT_EQ(walls(preview(thirteen, {})), 24u);
 }
 
 TEST(Preview, ManyMapsStayReadable) {

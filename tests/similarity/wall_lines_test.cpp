@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+#include <vector>
+
 namespace gridmerge {
 
 using namespace internal;
@@ -83,6 +87,86 @@ TEST(WallLines, WallsThatDoNotMeetAreNone) {
   EXPECT_EQ(measure_wall_support(walls, walls, {25.0, 25.0, 0.0}).lines, 0.0);
   const LikelihoodField empty = make_likelihood_field(make_grid(30, 30, 0.05, {}, Cell::free), 0.05);
   EXPECT_EQ(measure_wall_support(walls, empty, {}).lines, 0.0);
+}
+
+/// A straight wall that is seen from above alone, 100 cells long.
+LikelihoodField one_wall() {
+  OccupancyGrid map = make_grid(kSide, kSide, 0.05);
+  for (int y = 40; y < 120; ++y) {
+    for (int x = 30; x < 130; ++x) map.at(x, y) = Cell::free;
+  }
+  draw_wall(map, 30, 40, 129, 40);
+  return make_likelihood_field(map, 0.05);
+}
+
+TEST(WallSupport, WallsMeetUpToFourCellsApart) {
+  const LikelihoodField wall = one_wall();
+  EXPECT_NEAR(measure_wall_support(wall, wall, {0.0, 4.0, 0.0}).met, 100.0, 6.0);
+  EXPECT_LT(measure_wall_support(wall, wall, {0.0, 5.0, 0.0}).met, 6.0);
+}
+
+/// The wall, turned about its middle by parts of a turn.
+double met_when_turned(int steps) {
+  const LikelihoodField wall = one_wall();
+  const double theta = 2.0 * std::numbers::pi * steps / kDirections;
+  Point2 middle;
+  for (const WallPoint& point : wall.walls)
+    middle = {middle.x + point.position.x / static_cast<double>(wall.walls.size()),
+              middle.y + point.position.y / static_cast<double>(wall.walls.size())};
+  const Point2 moved = SE2{0.0, 0.0, theta} * middle;
+  return measure_wall_support(wall, wall, {middle.x - moved.x, middle.y - moved.y, theta}).met;
+}
+
+TEST(WallSupport, WallsMeetThatFaceTheSameWayUpToSixPartsOfATurn) {
+  EXPECT_GT(met_when_turned(6), 4.0);
+  EXPECT_GT(met_when_turned(-6), 4.0);
+  EXPECT_EQ(met_when_turned(7), 0.0);
+  EXPECT_EQ(met_when_turned(-7), 0.0);
+  EXPECT_EQ(met_when_turned(16), 0.0);  // seen from behind
+}
+
+/// Walls of so many cells, each seen from above alone, far from each other.
+double lines_of_pieces(const std::vector<int>& lengths) {
+  OccupancyGrid map = make_grid(60, 40 * static_cast<int>(lengths.size()), 0.05);
+  for (int i = 0; i < static_cast<int>(lengths.size()); ++i) {
+    for (int y = 0; y < 12; ++y) {
+      for (int x = 10; x < 10 + lengths[static_cast<std::size_t>(i)]; ++x)
+        map.at(x, 40 * i + 10 + y) = y == 0 ? Cell::occupied : Cell::free;
+    }
+  }
+  const LikelihoodField walls = make_likelihood_field(map, 0.05);
+  return measure_wall_support(walls, walls, {}).lines;
+}
+
+TEST(WallLines, OfSixPointsIsTheShortest) {
+  // The two ends of a piece face other ways.
+  EXPECT_EQ(lines_of_pieces({7}), 0.0);
+  EXPECT_EQ(lines_of_pieces({8}), 1.0);
+}
+
+TEST(WallLines, AreTheExponentialOfTheEntropyOfTheirLengths) {
+  EXPECT_NEAR(lines_of_pieces({20, 20}), 2.0, 1e-9);
+  EXPECT_NEAR(lines_of_pieces({30, 10}), std::exp(-0.75 * std::log(0.75) - 0.25 * std::log(0.25)), 1e-9);
+  EXPECT_NEAR(lines_of_pieces(std::vector<int>(24, 20)), 24.0, 1e-9);
+  EXPECT_NEAR(lines_of_pieces(std::vector<int>(26, 20)), 24.0, 1e-9);  // no more are counted
+}
+
+/// Two walls that are seen from above, one beside the other and so much higher.
+double lines_of_a_step(int cells) {
+  OccupancyGrid map = make_grid(kSide, kSide, 0.05);
+  for (int y = 40; y < 120; ++y) {
+    for (int x = 20; x < 140; ++x) {
+      const int wall = x < 80 ? 40 : 40 + cells;
+      if (y >= wall) map.at(x, y) = y == wall ? Cell::occupied : Cell::free;
+    }
+  }
+  const LikelihoodField walls = make_likelihood_field(map, 0.05);
+  return measure_wall_support(walls, walls, {}).lines;
+}
+
+TEST(WallLines, AStepOfAFewCellsIsNoSecondLine) {
+  EXPECT_EQ(lines_of_a_step(3), 1.0);
+  EXPECT_GT(lines_of_a_step(12), 1.8);
 }
 
 }  // namespace

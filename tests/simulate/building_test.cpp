@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gridmerge/simulate/simulate.hpp"
@@ -76,15 +78,23 @@ TEST(Building, EveryCompilerDrawsTheSame) {
     BuildingKind kind;
     std::size_t edges;
     double checksum, cluttered;  // the latter with what is scattered over the floor
+    // Of small, tall and large buildings of other seeds. Not linear: half a turn leaves linear sums as they
+    // are.
+    double others;
   };
-  const Drawn drawn[] = {{BuildingKind::office, 1756, 286084.1796, 311216.2196},
-                         {BuildingKind::hall, 796, 115577.5845, 147100.2645},
-                         {BuildingKind::warehouse, 860, 142085.4581, 173039.1781},
-                         {BuildingKind::apartment, 2196, 341421.5495, 359695.6695},
-                         {BuildingKind::symmetric, 1360, 247476.0649, 271304.2649},
-                         {BuildingKind::loop, 1396, 214707.5545, 258186.3545},
-                         {BuildingKind::curved, 832, 122439.3296, 131723.4422},
-                         {BuildingKind::outdoor, 392, 59168.7579, 89316.6980}};
+  const Drawn drawn[] = {{BuildingKind::office, 1756, 286084.1796, 311216.2196, 7392808.8156},
+                         {BuildingKind::hall, 796, 115577.5845, 147100.2645, 2025659.1645},
+                         {BuildingKind::warehouse, 860, 142085.4581, 173039.1781, 6046034.4638},
+                         {BuildingKind::apartment, 2196, 341421.5495, 359695.6695, 11314207.7623},
+                         {BuildingKind::symmetric, 1360, 247476.0649, 271304.2649, 6200694.6379},
+                         {BuildingKind::loop, 1396, 214707.5545, 258186.3545, 5357918.8117},
+                         {BuildingKind::curved, 832, 122439.3296, 131723.4422, 1941252.4343},
+                         {BuildingKind::outdoor, 392, 59168.7579, 89316.6980, 1874755.3219},
+                         {BuildingKind::corridor, 132, 25394.6449, 28894.3862, 680945.1888},
+                         {BuildingKind::arena, 224, 37998.1588, 55829.4388, 837799.1241},
+                         {BuildingKind::maze, 250, 42486.7445, 86797.7445, 810420.9979},
+                         {BuildingKind::bare, 96, 17161.9408, 49051.0289, 645211.8500}};
+  EXPECT_EQ(std::size(drawn), building_kinds().size());
   for (const Drawn& expected : drawn) {
     SCOPED_TRACE(name_of(expected.kind));
     const std::vector<Edge> edges = make_building(expected.kind, 40.0, 25.0, 3).edges;
@@ -94,6 +104,14 @@ TEST(Building, EveryCompilerDrawsTheSame) {
     Random random(4);
     const Visit visit = make_visit(edges, plan, 0.2, plan.free_cells().front(), 1.0, random);
     EXPECT_NEAR(checksum(visit.caster.edges()), expected.cluttered, 1e-3);
+    double others = 0.0;
+    for (const auto& [width, height] : {std::pair{8.0, 8.0}, std::pair{12.0, 60.0}, std::pair{70.0, 45.0}}) {
+      for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        for (const Edge& edge : make_building(expected.kind, width, height, seed).edges)
+          others += edge.echo * std::hypot(edge.a.x + 2.0 * edge.b.x, 3.0 * edge.a.y + 5.0 * edge.b.y);
+      }
+    }
+    EXPECT_NEAR(others, expected.others, 1e-2);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <vector>
 
@@ -101,6 +102,23 @@ TEST(DriftingPose, IsPulledBackWhereItWasBefore) {
   EXPECT_LT(back.x, 0.2 * as_far.x);
   EXPECT_LT(back.y, 0.2 * as_far.y);
   EXPECT_LT(back.theta, 0.4 * as_far.theta);
+}
+
+// What these seeds have bent so far: out, to and fro in a room, and back by the way it came.
+TEST(DriftingPose, EveryCompilerBendsTheSame) {
+  std::vector<SE2> path = ahead(12.0);
+  for (int i = 0; i < 40; ++i) path.push_back({12.0, 0.3 * i, 0.5 * std::numbers::pi});
+  for (int i = 39; i >= 0; --i) path.push_back({12.0, 0.3 * i, -0.5 * std::numbers::pi});
+  for (int i = 40; i >= 0; --i) path.push_back({0.3 * i, 0.0, std::numbers::pi});
+  const SE2 bent[] = {{0.046613978943, 0.022093988290, 0.006730557520},
+                      {0.006499551101, -0.031799606520, -0.008451141020},
+                      {0.014575777492, 0.025078070888, -0.014950810677}};
+  for (std::uint64_t seed = 0; seed < std::size(bent); ++seed) {
+    const SE2 error = error_after(path, 2.0, seed);
+    EXPECT_NEAR(error.x, bent[seed].x, 1e-9) << seed;
+    EXPECT_NEAR(error.y, bent[seed].y, 1e-9) << seed;
+    EXPECT_NEAR(error.theta, bent[seed].theta, 1e-9) << seed;
+  }
 }
 
 }  // namespace

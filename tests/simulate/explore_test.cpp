@@ -195,5 +195,49 @@ TEST(Explore, TheRangeFinderDrawsNoMoreThanItReaches) {
   EXPECT_TRUE(found.drawn.has_seen(floor.plan.cell_at({5.0, 3.0})));
 }
 
+TEST(Explore, TheEyesSeeFourFifthsOfTheRange) {
+  std::vector<Edge> edges;
+  add_wall(edges, {0.0, 0.0}, {20.0, 0.0});
+  add_wall(edges, {20.0, 0.0}, {20.0, 20.0});
+  add_wall(edges, {20.0, 20.0}, {0.0, 20.0});
+  add_wall(edges, {0.0, 20.0}, {0.0, 0.0});
+  const Floor floor(edges);
+  Errand errand = errand_from(floor, {10.05, 10.05});
+  errand.longest_way = 0.0;
+  errand.sensor.range = 6.0;
+  errand.sensor.cleared_share = 0.5;
+  errand.sensor.field_of_view = kWholeTurn;
+  const Exploration found = explore(floor.plan, floor.caster, errand);
+  for (const int cell : floor.plan.free_cells()) {
+    const Point2 at = floor.plan.centre(cell);
+    const double away = std::hypot(at.x - 10.05, at.y - 10.05);
+    // Cells of the raster are 0.4 m wide.
+    if (away < 4.8 - 0.6) {
+      EXPECT_TRUE(found.seen.has_seen(cell)) << away;
+    }
+    if (away > 4.8 + 0.6) {
+      EXPECT_FALSE(found.seen.has_seen(cell)) << away;
+    }
+    // No wall is in the range: the finder draws half of it.
+    if (away < 3.0 - 0.6) {
+      EXPECT_TRUE(found.drawn.has_seen(cell)) << away;
+    }
+    if (away > 3.0 + 0.6) {
+      EXPECT_FALSE(found.drawn.has_seen(cell)) << away;
+    }
+  }
+}
+
+TEST(Explore, ScansWhereItTurnsSharply) {
+  const Floor floor(two_rooms());
+  Errand errand = errand_from(floor, {0.55, 5.45});
+  errand.scan_every = 1e6;  // nowhere else
+  errand.sensor.range = 2.0;
+  const Exploration found = explore(floor.plan, floor.caster, errand);
+  ASSERT_GT(found.poses.size(), 3U);
+  for (std::size_t i = 1; i < found.poses.size(); ++i)
+    EXPECT_GT(std::abs(normalize_angle(found.poses[i].theta - found.poses[i - 1].theta)), 1.0) << i;
+}
+
 }  // namespace
 }  // namespace gridmerge::internal

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "gridmerge/simulate/simulate.hpp"
 #include "simulate/explore.hpp"
@@ -96,6 +98,80 @@ TEST(Explore, SeesAllThatIsInReachAndNoMoreThanTheWayAllows) {
       EXPECT_LE(std::hypot(pose.x - start.x, pose.y - start.y), 3.6) << name_of(kind);
     }
   }
+}
+
+TEST(PathSearch, StepsAreAsLongAsTheyAreDrawn) {
+  const FloorPlan plan(rooms(), 0.2);
+  PathSearch search(plan);
+  const int from = plan.cell_at({3.05, 3.05});
+  const auto way_to = [&](int right, int up) {
+    const int to = from + up * plan.width() + right;
+    double way = -1.0;
+    EXPECT_EQ(search.search(from, 100.0,
+                            [&](int cell, double distance) {
+                              way = distance;
+                              return cell == to;
+                            }),
+              to);
+    EXPECT_EQ(search.path_to(to).size(),
+              static_cast<std::size_t>(std::max(std::abs(right), std::abs(up))) + 1);
+    return way;
+  };
+  EXPECT_NEAR(way_to(0, 0), 0.0, 1e-12);
+  for (const int sign : {1, -1}) {
+    EXPECT_NEAR(way_to(10 * sign, 0), 1.0, 1e-12);
+    EXPECT_NEAR(way_to(0, 10 * sign), 1.0, 1e-12);
+    EXPECT_NEAR(way_to(10 * sign, 10), 1.4, 1e-12);
+    EXPECT_NEAR(way_to(10 * sign, -10), 1.4, 1e-12);
+    EXPECT_NEAR(way_to(10, 4 * sign), 0.6 + 4 * 0.14, 1e-12);
+  }
+  // As far as the reach, itself included, and no farther.
+  const auto reaches = [&](double reach) {
+    return search.search(from, reach, [&](int cell, double) { return cell == from + 5; }) >= 0;
+  };
+  EXPECT_TRUE(reaches(0.5001));
+  EXPECT_FALSE(reaches(0.4999));
+}
+
+TEST(PathSearch, VisitsCellsByTheirDistance) {
+  const FloorPlan plan(rooms(), 0.2);
+  PathSearch search(plan);
+  double last = 0.0;
+  int visited = 0;
+  search.search(plan.cell_at({3.05, 3.05}), 1e6, [&](int, double distance) {
+    EXPECT_GE(distance, last);
+    last = distance;
+    ++visited;
+    return false;
+  });
+  EXPECT_EQ(visited, plan.count_free());  // each once
+}
+
+TEST(FloorPlan, FindsTheFreeCellThatIsNearest) {
+  const FloorPlan plan(rooms(), 0.2);
+  const int cell = plan.cell_at({3.05, 3.05});
+  EXPECT_EQ(plan.free_cell_near(plan.centre(cell), 0.0), cell);
+  const Point2 in_the_wall{6.0, 5.0};
+  const int near = plan.free_cell_near(in_the_wall, 1.0);
+  ASSERT_GE(near, 0);
+  const double away = std::hypot(plan.centre(near).x - 6.0, plan.centre(near).y - 5.0);
+  for (const int other : plan.free_cells())
+    EXPECT_GE(std::hypot(plan.centre(other).x - 6.0, plan.centre(other).y - 5.0), away);
+  EXPECT_EQ(plan.free_cell_near(in_the_wall, 0.99 * away), -1);
+  EXPECT_EQ(plan.free_cell_near(in_the_wall, 1.01 * away), near);
+  EXPECT_EQ(plan.free_cell_near({std::nan(""), 3.0}, 1e9), -1);
+}
+
+TEST(FloorPlan, TellsItsCellsApart) {
+  const FloorPlan plan(rooms(), 0.2);
+  for (const int cell : {0, 1, plan.width() - 1, plan.width(), plan.cells() - 1})
+    EXPECT_EQ(plan.cell_at(plan.centre(cell)), cell);
+  const Point2 first = plan.centre(0), last = plan.centre(plan.cells() - 1);
+  EXPECT_EQ(plan.cell_at({first.x - 0.06, first.y}), -1);
+  EXPECT_EQ(plan.cell_at({first.x, first.y - 0.06}), -1);
+  EXPECT_EQ(plan.cell_at({last.x + 0.06, last.y}), -1);
+  EXPECT_EQ(plan.cell_at({last.x, last.y + 0.06}), -1);
+  EXPECT_EQ(plan.cell_at({std::nan(""), 3.0}), -1);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "simulate/random.hpp"
 
@@ -83,6 +84,23 @@ TEST(Mapper, WhatBeamsPassOftenIsFreeAgainAndOutsideIsLeftOut) {
     EXPECT_GT(grid.probability[i], least);
     EXPECT_LT(grid.probability[i], most);
   }
+}
+
+TEST(Mapper, BelievesBeamsByTheirLogOdds) {
+  // At the beam's end after so many of them, and in the cell before it, which one alone leaves unknown.
+  const auto probabilities = [](int beams) {
+    Mapper mapper(0.1, {-2.0, -2.0, 2.0, 2.0});
+    for (int i = 0; i < beams; ++i) mapper.add_beam({0.05, 0.05}, {1.05, 0.05}, true);
+    const OccupancyGrid grid = mapper.grid();
+    return std::pair(grid.probability.back(),
+                     grid.probability[grid.probability.size() > 1 ? grid.probability.size() - 2 : 0]);
+  };
+  const auto logistic = [](double x) { return static_cast<float>(1.0 / (1.0 + std::exp(-x))); };
+  EXPECT_NEAR(probabilities(1).first, logistic(0.85), 1e-6);
+  EXPECT_NEAR(probabilities(3).first, logistic(2.55), 1e-6);
+  EXPECT_NEAR(probabilities(3).second, logistic(-1.5), 1e-6);
+  EXPECT_NEAR(probabilities(50).first, logistic(4.0), 1e-6);
+  EXPECT_NEAR(probabilities(50).second, logistic(-4.0), 1e-6);
 }
 
 }  // namespace
