@@ -14,8 +14,6 @@ namespace gridmerge::cli {
 
 namespace {
 
-constexpr std::size_t kMaxShards = 1'000'000;
-
 std::optional<std::size_t> to_whole(std::string_view text) {
   std::size_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -29,7 +27,7 @@ std::optional<Shard> to_shard(const std::string& text) {
   if (slash == std::string::npos) return std::nullopt;
   const std::optional<std::size_t> index = to_whole(std::string_view(text).substr(0, slash)),
                                    count = to_whole(std::string_view(text).substr(slash + 1));
-  if (!index || !count || *index == 0 || *index > *count || *count > kMaxShards) return std::nullopt;
+  if (!index || !count || *index == 0 || *index > *count || *count > kMostShards) return std::nullopt;
   return Shard{*index - 1, *count};
 }
 
@@ -38,7 +36,7 @@ const CLI::Validator kShard(
       return to_shard(text)
                  ? std::string()
                  : fmt::format("{} is no shard: 2/8 is the second of eight, and there are at most {}", text,
-                               kMaxShards);
+                               kMostShards);
     },
     "");
 

@@ -67,7 +67,7 @@ Evaluation evaluate_files(const EvaluateCommandOptions& options) {
     MergeOptions joint;
     joint.match = match_options(options.common, options.search);
     const std::string all_pairs =
-        describe_all_pairs(maps.size(), joint, 1, "evaluate has no --max-missed, as merge has");
+        describe_all_pairs(maps.size(), joint, 1, "unlike merge, evaluate has no --max-missed");
     if (!all_pairs.empty()) console.tell(all_pairs);
     return cached.merge(maps, joint);
   };

@@ -97,8 +97,9 @@ void check_walls(const std::string& name, const OccupancyGrid& map) {
 }
 
 /// A map whose resolution is to be known.
-LoadedMap read_to_scale(const std::string& name, MapReader& reader) {
-  if (!reader.lacks_resolution(name)) return reader.read(name);
+LoadedMap read_to_scale(const std::string& name, const MatchCommandOptions& options, MapReader& reader) {
+  const bool may_be_scaled = search_method(options.search.method) != SearchMethod::random_walk;
+  if (!may_be_scaled || !reader.lacks_resolution(name)) return reader.read(name);
   try {
     return reader.read(name);
   } catch (const FileError& lacks) {
@@ -110,8 +111,8 @@ LoadedMap read_to_scale(const std::string& name, MapReader& reader) {
 /// unknown.
 std::pair<LoadedMap, LoadedMap> read_maps(const MatchCommandOptions& options, MapReader& reader) {
   if (!options.scaled()) {
-    LoadedMap fixed = read_to_scale(options.fixed, reader);
-    return {std::move(fixed), read_to_scale(options.moving, reader)};
+    LoadedMap fixed = read_to_scale(options.fixed, options, reader);
+    return {std::move(fixed), read_to_scale(options.moving, options, reader)};
   }
   if (reader.lacks_resolution(options.fixed)) {
     LoadedMap moving = reader.read(options.moving);

@@ -32,7 +32,11 @@ std::optional<LoadedMap> load_plan_of(const PlanPlacement& plan, double usual_re
   // The scale that was found counts from these metres, whatever an option says of the maps.
   load.resolution = plan.resolution > 0.0 ? plan.resolution : usual_resolution;
   try {
-    return load_any_map(path, load);
+    LoadedMap loaded = load_any_map(path, load);
+    if (plan.resolution > 0.0 && loaded.grid.resolution != plan.resolution)
+      throw FileError(path, fmt::format("has pixels of {:.6g} m, and had {:.6g} m when it was merged",
+                                        loaded.grid.resolution, plan.resolution));
+    return loaded;
   } catch (const FileError& error) {
     console.warn(fmt::format("{}; the report does not show the plan", error.what()));
     return std::nullopt;

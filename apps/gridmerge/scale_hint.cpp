@@ -50,6 +50,7 @@ std::string range_hint(const NamedMap& fixed, const NamedMap& moving, const Scal
   if (equal >= scales.least && equal <= scales.most) return {};
   // A map may show a part of the plan alone, and a sheet has a frame.
   constexpr double kSlightly = 1.25, kMuch = 3.0;
+  if (equal < kMuch * kMinScale || equal > kMaxScale / kMuch) return {};
   const double least = equal / (is_plan_moving ? kSlightly : kMuch);
   const double most = equal * (is_plan_moving ? kMuch : kSlightly);
   return fmt::format(

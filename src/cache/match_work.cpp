@@ -79,15 +79,15 @@ void warn_of_misfits(const MatchCache& cache, const std::vector<ShardRecord>& re
 /// While it lives.
 class KeptComparisons {
  public:
-  KeptComparisons(Merger& merger, ComparisonStore store) : merger_(merger) {
-    merger.keep_comparisons(std::move(store));
-  }
-  ~KeptComparisons() { merger_.keep_comparisons({}); }
+  KeptComparisons(Merger& merger, ComparisonStore store)
+      : merger_(merger), before_(merger.keep_comparisons(std::move(store))) {}
+  ~KeptComparisons() { merger_.keep_comparisons(std::move(before_)); }
   KeptComparisons(const KeptComparisons&) = delete;
   KeptComparisons& operator=(const KeptComparisons&) = delete;
 
  private:
   Merger& merger_;
+  ComparisonStore before_;
 };
 
 /// Keeps its record, and warns of others if it has to wait for them.

@@ -139,7 +139,9 @@ Shards missing_of(const Shards& shards) {
 
 MergeWork work_of(const Merger& merger, const std::vector<std::string>& contents) {
   const MergeOptions& options = merger.options();
-  const bool takes_all = takes_all_pairs(contents.size(), options.max_missed);
+  // Copies count once, as in the merge.
+  const std::set<std::string> distinct(contents.begin(), contents.end());
+  const bool takes_all = takes_all_pairs(distinct.size(), options.max_missed);
   MergeWork work;
   work.engine = engine_id();
   work.options = {{"search", name_of(options.match.search)},
@@ -177,7 +179,7 @@ std::optional<ShardRecord> parse_shard_record(std::string_view text) {
     rest.remove_prefix(end + 1);
     if (name == "shard") {
       const std::optional<Shard> shard = parse_shard(value);
-      if (!shard) return std::nullopt;
+      if (!shard || shard->count > kMostShards) return std::nullopt;
       record.shard = *shard;
     } else if (name == "engine") {
       record.work.engine = value;

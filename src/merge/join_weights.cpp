@@ -20,9 +20,9 @@ constexpr double kDependence = 0.3;
 /// A pair of whose places a share is fresh speaks of them with this power of the share: what borders on known
 /// places is not independent of them either.
 constexpr double kFreshPower = 2.0;
-/// The shares in common at which a miss begins to count, and counts in full: of simulated pairs that have
-/// less than a tenth in common the true pose is hardly ever among the candidates, of those with a quarter in
-/// two of three cases, and from a half on in 97 of 100.
+/// What a miss says at most, and the shares in common at which it begins to count, and counts in full. Of
+/// simulated pairs that have less than a tenth in common the true pose is hardly ever among the candidates,
+/// of those with a quarter in two of three cases, and from a half on in 97 of 100.
 constexpr double kMissNats = 3.3;
 constexpr double kMissFrom = 0.12;
 constexpr double kMissWhole = 0.45;
@@ -48,22 +48,29 @@ struct Witness {
   std::vector<Point2> places;  // of which it speaks [m, frame of the first group]
   bool is_known;               // by the given poses of these maps of the two groups
   std::size_t map_a, map_b;
+  bool repeats = false;
 };
 
-/// Pairs that speak by given poses. A given pose is one statement, of however many pairs: the pair that
-/// doubts it most tells its worth.
-class GivenPoses {
- public:
-  /// Whether neither pose has spoken before.
-  bool speak(const Witness& witness) {
-    if (spoken_.contains(witness.map_a) || spoken_.contains(witness.map_b)) return false;
-    spoken_.insert({witness.map_a, witness.map_b});
-    return true;
+/// Takes out witnesses that repeat a given pose. It is one statement, of however many pairs, and the pair
+/// that doubts it most tells its worth. Of equal ones the maps decide, whichever group is called the first.
+void hear_given_poses_once(std::vector<Witness>& witnesses) {
+  std::vector<Witness*> known;
+  for (Witness& witness : witnesses) {
+    if (witness.is_known) known.push_back(&witness);
   }
-
- private:
-  std::set<std::size_t> spoken_;
-};
+  const auto maps = [](const Witness& witness) {
+    return std::pair(std::min(witness.map_a, witness.map_b), std::max(witness.map_a, witness.map_b));
+  };
+  std::sort(known.begin(), known.end(), [&](const Witness* x, const Witness* y) {
+    return std::pair(x->worth, maps(*x)) < std::pair(y->worth, maps(*y));
+  });
+  std::set<std::size_t> spoken;
+  for (Witness* const witness : known) {
+    witness->repeats = spoken.contains(witness->map_a) || spoken.contains(witness->map_b);
+    if (!witness->repeats) spoken.insert({witness->map_a, witness->map_b});
+  }
+  std::erase_if(witnesses, [](const Witness& witness) { return witness.repeats; });
+}
 
 /// What speaks for a case against two others together, if so much speaks for it against each of them [nats].
 double against_both(double x, double y) {
@@ -224,10 +231,7 @@ JoinWorth JoinWeights::worth_of(const NodeGroup& a, const NodeGroup& b, const SE
       }
     }
   }
-  std::stable_sort(witnesses.begin(), witnesses.end(),
-                   [](const Witness& x, const Witness& y) { return x.worth < y.worth; });
-  GivenPoses given_poses;
-  std::erase_if(witnesses, [&](const Witness& one) { return one.is_known && !given_poses.speak(one); });
+  hear_given_poses_once(witnesses);
   std::stable_sort(witnesses.begin(), witnesses.end(),
                    [](const Witness& x, const Witness& y) { return x.worth > y.worth; });
   const double lost = sum_of_dependent(std::move(losses)) - kPoseNats;

@@ -55,6 +55,8 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
   void grow(MapId id, std::shared_ptr<const OccupancyGrid> map) {
     store_.require(id);
     first_.reset();
+    looks_.forget_found(id);
+    choice_.outdate(id);
     store_.replace(id, std::move(map));
   }
 
@@ -92,7 +94,9 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     return store_.known_pose(id);
   }
 
-  void keep_comparisons(ComparisonStore store) { choice_.keep_comparisons(std::move(store)); }
+  ComparisonStore keep_comparisons(ComparisonStore store) {
+    return choice_.keep_comparisons(std::move(store));
+  }
 
   MatchOptions match_options(SearchMethod search) const { return looks_.match_options(search); }
 
@@ -312,8 +316,12 @@ std::optional<KnownPose> Merger::known_pose(MapId id) const {
   return state_->known_pose(id);
 }
 
-void Merger::keep_comparisons(ComparisonStore store) {
-  state_->keep_comparisons(std::move(store));
+ComparisonStore Merger::keep_comparisons(ComparisonStore store) {
+  if (!(store.begin >= 0.0 && store.begin < 1.0))
+    throw std::invalid_argument("a store of comparisons begins at a share in [0, 1)");
+  if (static_cast<bool>(store.find) != static_cast<bool>(store.keep))
+    throw std::invalid_argument("a store of comparisons needs both find and keep");
+  return state_->keep_comparisons(std::move(store));
 }
 
 std::vector<DueMatch> Merger::due() {

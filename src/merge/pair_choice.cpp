@@ -72,6 +72,7 @@ PairChoice::PairChoice(double max_missed)
 
 void PairChoice::forget(MapId id) {
   signatures_.erase(id);
+  outdated_.erase(id);
   maps_.clear();
 }
 
@@ -90,6 +91,7 @@ void PairChoice::prepare(const MapStore& store, const std::vector<MapId>& maps) 
     if (signature) continue;
     missing.push_back(&signature);
     missing_ids.push_back(id);
+    outdated_.erase(id);
   }
   parallel_for(missing.size(), [&](std::size_t i) {
     *missing[i] =
@@ -98,7 +100,9 @@ void PairChoice::prepare(const MapStore& store, const std::vector<MapId>& maps) 
   std::vector<const Signature*> all;  // the smaller map of a pair comes first, and moves
   all.reserve(maps.size());
   for (const std::unique_ptr<const Signature>* signature : signatures) all.push_back(signature->get());
-  log_odds_ = compare_all(all, comparisons_, [&] {
+  const bool is_any_outdated =
+      std::any_of(maps.begin(), maps.end(), [&](MapId id) { return outdated_.contains(id); });
+  log_odds_ = compare_all(all, is_any_outdated ? ComparisonStore{} : comparisons_, [&] {
     std::vector<std::string> contents(maps.size());
     parallel_for(maps.size(), [&](std::size_t i) { contents[i] = content_id(*store.at(maps[i]).grid); });
     return contents;

@@ -48,7 +48,13 @@ class PairChoice {
   void forget(MapId id);
 
   /// Where prepare() finds and keeps comparisons.
-  void keep_comparisons(ComparisonStore store) { comparisons_ = std::move(store); }
+  /// Gives the store before.
+  ComparisonStore keep_comparisons(ComparisonStore store) {
+    return std::exchange(comparisons_, std::move(store));
+  }
+
+  /// The map has changed a little: it is chosen for as it was, and no store is told that.
+  void outdate(MapId id) { outdated_.insert(id); }
 
   /// Makes the signatures that are missing, and compares them. `maps` are in canonical order. Runs in the
   /// calling TBB arena. O(maps^2) comparisons of signatures, kept until a map changes.
@@ -97,6 +103,7 @@ class PairChoice {
   bool known_to_meet(const MapStore& store, std::size_t a, std::size_t b) const;
 
   ComparisonStore comparisons_;
+  std::set<MapId> outdated_;  // whose signatures are of what they were
   double max_missed_;
   double max_shown_;         // share of all joins that may be missed although signatures show them
   std::vector<MapId> maps_;  // of prepare()

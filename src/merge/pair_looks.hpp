@@ -70,6 +70,10 @@ class PairLooks {
   /// By the second look if the pair is in `again`, and by the first if not.
   MatchResult between(MapId fixed, MapId moving, const std::set<Pair>& again) const;
 
+  /// The map has changed a little: its matches serve, but second looks do not go on from first ones at the
+  /// map that it was.
+  void forget_found(MapId id);
+
   /// As those of PairMatches.
   void outdate(MapId id);
   void forget(MapId id);
@@ -77,7 +81,6 @@ class PairLooks {
  private:
   /// What the first look at the pair's maps, as they are now, has found; once.
   std::optional<QuickLook> take_found(const Pair& pair);
-  void forget_found(MapId id);
 
   MatchOptions options_;
   PairMatches first_;

@@ -114,7 +114,11 @@ std::vector<fs::path> files_beyond(const fs::path& file, std::size_t components)
 
 /// By which a folder is the same, whichever way it is named.
 fs::path folder_of(const fs::path& file) {
-  return fs::canonical(file.parent_path().empty() ? "." : file.parent_path());
+  const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
+  std::error_code error;
+  fs::path canonical = fs::canonical(folder, error);
+  if (error) throw FileError(file, "cannot be written: " + error.message());
+  return canonical;
 }
 
 /// In one step what is in one folder: links may lead to others.

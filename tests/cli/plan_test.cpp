@@ -98,6 +98,21 @@ TEST_F(MergePlan, AReportThatIsMadeAgainShowsThePlanToo) {
   EXPECT_NE(read_file(output + "/report.html").find("\"grid\":null"), std::string::npos);
 }
 
+TEST_F(MergePlan, APlanWhosePixelsAreOfAnotherSizeByNowIsNotDrawn) {
+  const std::string copy = directory.file("copy.yaml");
+  std::string yaml = read_file(plan);
+  directory.write("copy.yaml", yaml);
+  ASSERT_EQ(run({"merge", left, right, "--plan", copy, "--plan-scale", "1.1:1.4", "-o", output}).exit_code,
+            0);
+  const std::size_t at = yaml.find("resolution: ");
+  ASSERT_NE(at, std::string::npos);
+  directory.write("copy.yaml", yaml.replace(at, yaml.find('\n', at) - at, "resolution: 0.3"));
+  const Outcome report = run({"report", output});
+  EXPECT_EQ(report.exit_code, 0) << report.err;
+  EXPECT_NE(report.err.find("has pixels of 0.3 m, and had "), std::string::npos) << report.err;
+  EXPECT_NE(read_file(output + "/report.html").find("\"grid\":null"), std::string::npos);
+}
+
 TEST_F(MergePlan, MapsThatThePlanAloneJoinsAreNotBent) {
   const Outcome outcome =
       run({"merge", west, east, "--plan", plan, "--plan-scale", "1.1:1.4", "--elastic", "-o", output});

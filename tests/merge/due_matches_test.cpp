@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <random>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -121,6 +124,39 @@ TEST(DueMatches, SecondLooksGoOnFromTheFirstLooksOfTheMapsAsTheyAre) {
   merger.update(1, stranger);
   hand_in_first_looks(merger, team.maps);
   expect_same(merger.solve(), merge(team.maps));
+}
+
+TEST(DueMatches, SecondLooksDoNotGoOnFromFirstLooksOfMapsThatHaveGrown) {
+  const OccupancyGrid whole = test::draw_building(1), other = test::draw_building(2);
+  Merger merger;
+  merger.add(other);
+  merger.add(test::map_part(whole, {0, 0, 9, 9}, {}));  // the smaller one, and the larger one from here on
+  merger.solve_soon(0);
+  OccupancyGrid grown = make_grid(whole.width + 40, whole.height + 40, whole.resolution, {}, Cell::free);
+  for (int row = 0; row < whole.height; ++row) {
+    for (int column = 0; column < whole.width; ++column) grown.at(column, row) = whole.at(column, row);
+  }
+  merger.grow(1, grown);
+  const MergeResult result = merger.solve();
+  const MatchResult expected = match(other, grown);
+  ASSERT_EQ(result.joins.size(), 1u);
+  EXPECT_EQ(result.joins[0].match.probability, expected.probability);
+  EXPECT_EQ(result.joins[0].match.T_fixed_moving, expected.T_fixed_moving);
+}
+
+TEST(DueMatches, StoresOfComparisonsThatMakeNoSenseAreRefused) {
+  Merger merger;
+  ComparisonStore store;
+  store.begin = 1.0;
+  EXPECT_THROW(merger.keep_comparisons(store), std::invalid_argument);
+  store.begin = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(merger.keep_comparisons(store), std::invalid_argument);
+  store.begin = 0.5;
+  store.find = [](const std::string&) { return std::nullopt; };
+  EXPECT_THROW(merger.keep_comparisons(store), std::invalid_argument);
+  store.keep = [](const std::string&, const std::vector<float>&) {};
+  EXPECT_FALSE(merger.keep_comparisons(store).find);
+  EXPECT_EQ(merger.keep_comparisons({}).begin, 0.5) << "it gives the store before";
 }
 
 TEST(DueMatches, WhatIsKnownLaterChangesWhatIsDue) {

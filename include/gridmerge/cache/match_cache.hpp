@@ -33,7 +33,7 @@ class GRIDMERGE_EXPORT MatchCache {
   /// Takes a line for the user.
   using Warn = std::function<void(const std::string&)>;
 
-  /// The directory is made if need be, and goes with this object and its copies if nothing was kept. Throws
+  /// The directory is made if need be, and goes with this object and its copies if nothing is in it. Throws
   /// FileError, an error that names it, when it cannot be written to.
   explicit MatchCache(std::filesystem::path directory, Warn warn = {});
 
@@ -49,8 +49,9 @@ class GRIDMERGE_EXPORT MatchCache {
   /// The match of this key: the one that is there, or what `make` gives, which is kept if possible.
   MatchResult find_or_make(const std::string& key, const std::function<MatchResult()>& make);
 
-  /// Before matches are made from whose probability `accept_probability` on maps are joined. Warns if none of
-  /// this engine and of this probability was made here yet, but others were, which are not used.
+  /// To be called before matches are made; maps are joined from this probability on. Warns if none of this
+  /// engine and of this probability was made here yet, but others were, which are not used. Leaves a mark
+  /// that these were begun.
   void announce(double accept_probability);
 
   /// Where it is.
@@ -75,6 +76,9 @@ class GRIDMERGE_EXPORT MatchCache {
   bool has_kept_all_ = true;
   std::set<std::string> announced_;
 };
+
+/// More parts than any batch system has jobs: a larger number is a mistake.
+inline constexpr std::size_t kMostShards = 1'000'000;
 
 /// A part of the matches of a merge: of each round, in the order in which they are due, every `count`th.
 struct Shard {

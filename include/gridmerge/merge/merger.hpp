@@ -90,9 +90,10 @@ class GRIDMERGE_EXPORT Merger {
   /// What is known of a map's pose. Throws std::out_of_range for an unknown id.
   std::optional<KnownPose> known_pose(MapId id) const;
 
-  /// From now on comparisons of maps are taken from the store, and kept there; from no store if it has no
-  /// `find`.
-  void keep_comparisons(ComparisonStore store);
+  /// From now on comparisons of maps are taken from the store, and kept there; from no store if it has
+  /// neither function. Gives the store before. Throws std::invalid_argument for one with one function, or a
+  /// `begin` outside [0, 1).
+  ComparisonStore keep_comparisons(ComparisonStore store);
 
   /// The matches that solve() would make next, the most worthwhile first, for who makes them elsewhere: on
   /// other machines, say. They come in rounds, because pairs are looked at quickly first, and thoroughly
