@@ -259,9 +259,9 @@ int run_merge(const MergeCommandOptions& options) {
 
 /// What --help says behind the options.
 constexpr const char* kFooter =
-    "Writes merged.yaml and merged.pgm for map_server, transforms.json, preview.png and report.html. Maps\n"
-    "that do not fit are left out and the exit code is 3. Of an earlier merge into DIR, maps and exports\n"
-    "that this one does not write are removed, and named.\n\n"
+    "Writes merged.yaml and merged.pgm for map_server if maps join, transforms.json, preview.png and\n"
+    "report.html. Maps that do not fit are left out and the exit code is 3. Of an earlier merge into DIR,\n"
+    "maps and exports that this one does not write are removed, and named.\n\n"
     "Every pair is matched, and what all pairs say together decides: a weak pair that agrees with the\n"
     "others is used (rescued), a strong one that contradicts them is not (rejected).\n\n"
     "With --cache a run that was ended goes on where it was. --shard shares the matches among machines "

@@ -56,6 +56,13 @@ std::string describe_remedy(const AskedMerge& asked, const MergeResult& result) 
   return is_over_budget ? text + "     a higher --max-false-joins asks for less\n" : text;
 }
 
+/// Its probability, which given poses may have made another one than the maps' own.
+double likeliest_open_way(const MergeResult& result) {
+  double likeliest = 0.0;
+  for (const OpenWay& way : result.open_ways) likeliest = std::max(likeliest, way.probability);
+  return likeliest;
+}
+
 /// The head of a result that holds no merged map. What became of known poses comes first: who gives them
 /// wants them used.
 std::string describe_nothing(const AskedMerge& asked, const MergeResult& result,
@@ -67,14 +74,15 @@ std::string describe_nothing(const AskedMerge& asked, const MergeResult& result,
       std::max_element(result.joins.begin(), result.joins.end(),
                        [](const Join& a, const Join& b) { return a.probability < b.probability; });
   if (nearest != result.joins.end()) {
-    fmt::format_to(out, "nearest to it: {} and {}, {} {:.4f}\n", escape_controls(asked.names[nearest->fixed]),
+    fmt::format_to(out, "nearest to it: {} and {}, {} {:.4f}{}\n",
+                   escape_controls(asked.names[nearest->fixed]),
                    escape_controls(asked.names[nearest->moving]), figure_name(asked.search),
-                   nearest->probability);
+                   nearest->probability, unused_poses.empty() ? "" : " without the given poses");
     text += try_match(asked, *nearest);
   }
   if (asked.search.up_the_tree()) return text + "     a lower --accept asks for less\n";
   text += asked.names.size() == 2 && nearest != result.joins.end()
-              ? what_asks_for_less(asked, nearest->probability)
+              ? what_asks_for_less(asked, std::max(nearest->probability, likeliest_open_way(result)))
               : "     a lower --accept or a higher --max-false-joins asks for less\n";
   return text + "     --init TABLE and --fix MAP take poses that you know; the page lays maps by hand\n";
 }

@@ -24,7 +24,8 @@ void add_plan_options(CLI::App& command, PlanCommandOptions& options) {
           .add_option("--plan", options.file,
                       "Hang the maps on this architect's plan, whose scale is unknown: a line drawing or a "
                       "map, as MAP. Maps that nothing else joins are joined by it. The merged map has the "
-                      "plan's frame, in the maps' metres, and holds the maps alone")
+                      "plan's frame, in the maps' metres, and holds the maps alone. One MAP is enough "
+                      "with it")
           ->type_name("PLAN")
           ->check(CLI::Validator(
               [](const std::string& name) {
@@ -115,8 +116,8 @@ std::string describe_plan(const std::vector<std::string>& names, const MergeResu
   if (on_plan == 0 && most >= kWorthAsking)
     fmt::format_to(
         out,
-        "     a lower --accept with a higher --max-false-joins asks for less: this place is false with "
-        "probability {:.3f}\n",
+        "     a lower --accept with a higher --max-false-joins asks for less: the most probable place "
+        "is false with probability {:.3f}\n",
         1.0 - most);
   return text;
 }

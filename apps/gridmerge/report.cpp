@@ -39,8 +39,8 @@ void add_report(CLI::App& app, Action& action) {
   add_export_option(*command, options->exports);
   add_common_options(*command, options->common);
   command->footer(
-      "Writes DIR/report.html from DIR/transforms.json, the merged maps in DIR and the maps that were\n"
-      "merged; nothing is matched again.\n\n"
+      "Writes DIR/report.html from DIR/transforms.json, the merged maps in DIR, the maps that were merged,\n"
+      "and the plan if there is one; nothing is matched again.\n\n"
       "Example:\n  gridmerge report merged\n"
       "  gridmerge report merged --export geojson\n"
       "  gridmerge report /data/site/merged --root /data/site");

@@ -71,9 +71,9 @@ def merge(
         search: as of match(). With "exhaustive" the thorough look is for pairs whose maps the quick one leaves apart.
             "random-walk" needs the strategy "tree".
         executor: makes the matches: any concurrent.futures.Executor, of processes, threads, Dask or MPI. The result is
-            the same, bit by bit, on processors of one kind. Maps that are given as paths are read by the workers, under
-            the same paths; others are sent to them. Each task takes one thread, and is tried again when its worker dies.
-            "tree" takes none.
+            the same, bit by bit, with the same C library and processors of one kind. Maps that are given as paths are
+            read by the workers, under the same paths; others are sent to them. Each task takes one thread, and is
+            tried again when its worker dies. "tree" takes none.
         cache: a directory in which the match of each pair is kept, as `--cache` of the command line does; made if need
             be. A merge that was ended goes on from it, and others may share it. Not for "tree".
         progress: called now and then, in the calling thread, with the share of the work that is done. It never falls:

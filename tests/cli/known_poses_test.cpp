@@ -61,6 +61,28 @@ TEST_F(KnownPoses, APrecisePoseThatPutsWallsBesideWallsIsNotBelievedBlindly) {
       << outcome.out;
 }
 
+TEST_F(KnownPoses, APoseThatLaysUnrelatedMapsOnEachOtherIsDoubted) {
+  const std::string elsewhere = write_map(directory, "elsewhere", draw_building(2));
+  const std::string poses =
+      directory.write("poses.tsv",
+                      "map\tx\ty\ttheta\tsd\tsd_theta\nleft.yaml\t0\t0\t0\t0.05\t0.005\n"
+                      "elsewhere.yaml\t-3\t2\t0.4\t0.05\t0.005\n");
+  const Outcome doubted = run({"merge", left, elsewhere, "--init", poses, "-o", output});
+  EXPECT_EQ(doubted.exit_code, 3);
+  EXPECT_NE(doubted.out.find("the given pose is not used: what the maps say contradicts it"),
+            std::string::npos)
+      << doubted.out;
+  EXPECT_NE(doubted.out.find(" without the given poses\n"), std::string::npos) << doubted.out;
+  EXPECT_NE(doubted.out.find("this join alone is false with probability 0.06"), std::string::npos)
+      << doubted.out;
+  const Outcome asked_for = run({"merge", left, elsewhere, "--init", poses, "-o", output, "--accept", "0.9",
+                                 "--max-false-joins", "0.1"});
+  EXPECT_EQ(asked_for.exit_code, 0);
+  EXPECT_NE(asked_for.out.find("lie double; an initial pose may be wrong, or --elastic bends maps"),
+            std::string::npos)
+      << asked_for.out;
+}
+
 TEST_F(KnownPoses, AFixedMapThatIsLeftOutIsNamed) {
   const std::string blank = write_map(directory, "blank", make_grid(40, 30, 0.1));
   const Outcome outcome = run({"merge", left, right, blank, "--fix", blank, "-o", output});

@@ -191,7 +191,8 @@ TEST_F(MergePlan, OneMapIsEnough) {
   EXPECT_EQ(read_file(output + "/report.html"), page);
   const std::vector<std::string> doubtful{"merge",   west, "--plan", plan,       "--plan-scale",
                                           "1.2:1.3", "-o", output,   "--accept", "0.99999"};
-  EXPECT_NE(run(doubtful).out.find("--accept with a higher --max-false-joins asks for less: this place is"),
+  EXPECT_NE(run(doubtful).out.find(
+                "--accept with a higher --max-false-joins asks for less: the most probable place is"),
             std::string::npos);
   const Outcome stranger = run({"merge", other, "--plan", plan, "--plan-scale", "1.2:1.3", "-o", output});
   EXPECT_EQ(stranger.exit_code, 3);
