@@ -4,36 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <string_view>
 #include <utility>
 
+#include "cache/shard_record.hpp"
 #include "gridmerge/match/stored_match.hpp"
 
 namespace gridmerge::cli {
 
+using namespace internal;
+
 namespace {
-
-std::optional<std::size_t> to_whole(std::string_view text) {
-  std::size_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-/// "2/8" is the second of eight shards.
-std::optional<Shard> to_shard(const std::string& text) {
-  const std::size_t slash = text.find('/');
-  if (slash == std::string::npos) return std::nullopt;
-  const std::optional<std::size_t> index = to_whole(std::string_view(text).substr(0, slash)),
-                                   count = to_whole(std::string_view(text).substr(slash + 1));
-  if (!index || !count || *index == 0 || *index > *count || *count > kMostShards) return std::nullopt;
-  return Shard{*index - 1, *count};
-}
 
 const CLI::Validator kShard(
     [](const std::string& text) {
-      return to_shard(text)
+      return parse_shard(text)
                  ? std::string()
                  : fmt::format("{} is no shard: 2/8 is the second of eight, and there are at most {}", text,
                                kMostShards);
@@ -47,7 +31,7 @@ std::string matches(std::size_t count) {
 }  // namespace
 
 std::size_t CacheOptions::shards() const {
-  return is_shard() ? to_shard(shard).value().count : 1;
+  return is_shard() ? parse_shard(shard).value().count : 1;
 }
 
 void add_cache_option(CLI::App& command, CacheOptions& options) {
@@ -112,7 +96,7 @@ ShardOutcome CachedEngine::make_shard(const std::vector<OccupancyGrid>& maps, co
                                       const std::vector<std::optional<KnownPose>>& known_poses) {
   Merger merger(maps, options, known_poses);
   MatchWorkOptions work;
-  work.shard = to_shard(options_.shard).value();
+  work.shard = parse_shard(options_.shard).value();
   work.goes_on_when_full = false;
   work.progress = options.progress;
   const MatchWork done = match_with_cache(merger, maps, *cache_, work);

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "grid/sha256.hpp"
+#include "cache/checksum.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "io/atomic_file.hpp"
 #include "io/file_reader.hpp"
@@ -19,14 +19,8 @@ namespace gridmerge::internal {
 namespace {
 
 constexpr std::string_view kFormat = "gridmerge comparisons 1\n";
-constexpr std::size_t kDigest = std::tuple_size_v<Sha256::Digest>;
 constexpr std::size_t kMaxBytes = std::size_t{1}
                                   << 32;  // of a part of the pairs of some hundred thousand maps
-
-std::string digest_of(std::string_view bytes) {
-  const Sha256::Digest digest = Sha256().add(bytes).digest();
-  return {digest.begin(), digest.end()};
-}
 
 std::optional<std::vector<float>> find(const std::filesystem::path& file, const std::string& name) {
   std::error_code error;
@@ -54,15 +48,15 @@ std::string format_comparisons(const std::vector<float>& log_odds, std::string_v
     const auto bits = std::bit_cast<std::uint32_t>(value);
     for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(bits >> shift & 0xff);
   }
-  return bytes + digest_of(bytes);
+  return bytes + checksum_of(bytes);
 }
 
 std::vector<float> parse_comparisons(std::string_view bytes, std::string_view name) {
   const std::string head = std::string(kFormat).append(name).append("\n");
-  if (!bytes.starts_with(head) || bytes.size() < head.size() + kDigest)
+  if (!bytes.starts_with(head) || bytes.size() < head.size() + kChecksum)
     throw std::invalid_argument("is no part of these comparisons");
-  const std::string_view content = bytes.substr(0, bytes.size() - kDigest);
-  if (bytes.substr(content.size()) != digest_of(content)) throw std::invalid_argument("is damaged");
+  const std::string_view content = bytes.substr(0, bytes.size() - kChecksum);
+  if (bytes.substr(content.size()) != checksum_of(content)) throw std::invalid_argument("is damaged");
   const std::string_view numbers = content.substr(head.size());
   if (numbers.size() % 4 != 0) throw std::invalid_argument("is damaged");
   std::vector<float> log_odds(numbers.size() / 4);

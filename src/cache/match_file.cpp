@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "grid/sha256.hpp"
+#include "cache/checksum.hpp"
 #include "gridmerge/match/stored_match.hpp"
 
 namespace gridmerge::internal {
@@ -12,26 +12,20 @@ namespace gridmerge::internal {
 namespace {
 
 constexpr std::string_view kFormat = "gridmerge match 1\n";
-constexpr std::size_t kDigest = std::tuple_size_v<Sha256::Digest>;
-
-std::string digest_of(std::string_view bytes) {
-  const Sha256::Digest digest = Sha256().add(bytes).digest();
-  return {digest.begin(), digest.end()};
-}
 
 }  // namespace
 
 std::string format_match_file(const MatchResult& match, std::string_view key) {
   std::string bytes(kFormat);
   bytes.append(key).append("\n").append(to_bytes(match));
-  return bytes + digest_of(bytes);
+  return bytes + checksum_of(bytes);
 }
 
 MatchResult parse_match_file(std::string_view bytes, std::string_view key) {
   if (!bytes.starts_with(kFormat)) throw std::invalid_argument("is no match of this format");
-  if (bytes.size() < kFormat.size() + key.size() + 1 + kDigest) throw std::invalid_argument("is cut short");
-  const std::string_view content = bytes.substr(0, bytes.size() - kDigest);
-  if (bytes.substr(content.size()) != digest_of(content))
+  if (bytes.size() < kFormat.size() + key.size() + 1 + kChecksum) throw std::invalid_argument("is cut short");
+  const std::string_view content = bytes.substr(0, bytes.size() - kChecksum);
+  if (bytes.substr(content.size()) != checksum_of(content))
     throw std::invalid_argument("is damaged: its checksum is not that of its content");
   const std::string_view rest = content.substr(kFormat.size());
   if (!rest.starts_with(key) || rest[key.size()] != '\n')

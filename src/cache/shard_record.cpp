@@ -63,15 +63,6 @@ std::optional<std::size_t> take_whole(std::string_view& text) {
   return value;
 }
 
-std::optional<Shard> parse_shard(std::string_view text) {
-  const std::optional<std::size_t> index = take_whole(text);
-  if (!index || !text.starts_with('/')) return std::nullopt;
-  text.remove_prefix(1);
-  const std::optional<std::size_t> count = take_whole(text);
-  if (!count || !text.empty() || *index == 0 || *index > *count) return std::nullopt;
-  return Shard{*index - 1, *count};
-}
-
 /// "1/3, 2/3 and 5 more".
 std::string list_shards(const std::set<std::pair<std::size_t, std::size_t>>& shards) {
   constexpr std::size_t kMost = 4;
@@ -137,6 +128,15 @@ Shards missing_of(const Shards& shards) {
 
 }  // namespace
 
+std::optional<Shard> parse_shard(std::string_view text) {
+  const std::optional<std::size_t> index = take_whole(text);
+  if (!index || !text.starts_with('/')) return std::nullopt;
+  text.remove_prefix(1);
+  const std::optional<std::size_t> count = take_whole(text);
+  if (!count || !text.empty() || *index == 0 || *index > *count || *count > kMostShards) return std::nullopt;
+  return Shard{*index - 1, *count};
+}
+
 MergeWork work_of(const Merger& merger, const std::vector<std::string>& contents) {
   const MergeOptions& options = merger.options();
   // Copies count once, as in the merge.
@@ -179,7 +179,7 @@ std::optional<ShardRecord> parse_shard_record(std::string_view text) {
     rest.remove_prefix(end + 1);
     if (name == "shard") {
       const std::optional<Shard> shard = parse_shard(value);
-      if (!shard || shard->count > kMostShards) return std::nullopt;
+      if (!shard) return std::nullopt;
       record.shard = *shard;
     } else if (name == "engine") {
       record.work.engine = value;

@@ -10,8 +10,12 @@
 
 #include "gridmerge/cache/match_cache.hpp"
 #include "gridmerge/merge/merger.hpp"
+#include "internal_export.hpp"
 
 namespace gridmerge::internal {
+
+/// "2/8" is the second of eight shards, of at most kMostShards; none for anything else.
+GRIDMERGE_INTERNAL_EXPORT std::optional<Shard> parse_shard(std::string_view text);
 
 /// What a merge needs matches of, and how.
 struct MergeWork {

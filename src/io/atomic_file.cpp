@@ -46,18 +46,14 @@ void StagedFile::flush() {
   is_flushed_ = true;
 }
 
-void StagedFile::rename_to(const std::filesystem::path& name) {
+void StagedFile::hand_over(const std::filesystem::path& name) {
   if (!is_flushed_) flush();
   if (std::rename(temporary_.c_str(), name.c_str()) != 0) fail_to_write(path_, errno);
   temporary_.clear();
 }
 
-void StagedFile::hand_over(const std::filesystem::path& name) {
-  rename_to(name);
-}
-
 void StagedFile::commit() {
-  rename_to(path_);
+  hand_over(path_);
   if (const int error = flush_path(path_.parent_path()); error != 0) fail_to_write(path_, error);
 }
 

@@ -44,7 +44,6 @@ class GRIDMERGE_INTERNAL_EXPORT StagedFile {
 
  private:
   void flush();
-  void rename_to(const std::filesystem::path& name);
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;  // empty once it is gone

@@ -61,6 +61,16 @@ void require_prepared_search(const MatchOptions& options) {
     throw std::invalid_argument("prepared maps are matched at one scale, and not by the random walk");
 }
 
+MatchResult match_prepared(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options,
+                           const QuickLook* quick_look = nullptr) {
+  require_prepared_search(options);
+  const auto start = std::chrono::steady_clock::now();
+  const InOrder in_order(fixed, moving);
+  MatchResult result = judge(in_order, look(in_order.maps, options, quick_look), options);
+  result.seconds = seconds_since(start);
+  return result;
+}
+
 MatchResult walk(const OccupancyGrid& fixed, const OccupancyGrid& moving, const MatchOptions& options) {
   RandomWalkMatchOptions walk = options.random_walk;
   walk.threads = options.threads;
@@ -89,12 +99,7 @@ MatchResult match(const OccupancyGrid& fixed, const OccupancyGrid& moving, const
 }
 
 MatchResult match(const PreparedMap& fixed, const PreparedMap& moving, const MatchOptions& options) {
-  require_prepared_search(options);
-  const auto start = std::chrono::steady_clock::now();
-  const InOrder in_order(fixed, moving);
-  MatchResult result = judge(in_order, look(in_order.maps, options), options);
-  result.seconds = seconds_since(start);
-  return result;
+  return match_prepared(fixed, moving, options);
 }
 
 namespace internal {
@@ -113,12 +118,7 @@ QuickMatch match_quickly(const PreparedMap& fixed, const PreparedMap& moving, Ma
 MatchResult match_again(const PreparedMap& fixed, const PreparedMap& moving, MatchOptions options,
                         const QuickLook& found) {
   options.search = SearchMethod::exhaustive;
-  require_prepared_search(options);
-  const auto start = std::chrono::steady_clock::now();
-  const InOrder in_order(fixed, moving);
-  MatchResult result = judge(in_order, look(in_order.maps, options, &found), options);
-  result.seconds = seconds_since(start);
-  return result;
+  return match_prepared(fixed, moving, options, &found);
 }
 
 }  // namespace internal

@@ -10,6 +10,7 @@
 
 #include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/simulate/simulate.hpp"
+#include "simulate/walls_met.hpp"
 
 namespace gridmerge {
 namespace {
@@ -31,33 +32,6 @@ SimulateOptions short_ways(std::uint64_t seed) {
   return options;
 }
 
-struct Walls {
-  int shared = 0, met = 0;
-};
-
-/// The moving map's walls where the fixed one knows something, and of them those within two cells of a wall.
-Walls count_walls(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& T_fixed_moving) {
-  Walls walls;
-  const SE2 T_grid_moving = inverse(fixed.origin) * T_fixed_moving;
-  for (int row = 0; row < moving.height; ++row) {
-    for (int column = 0; column < moving.width; ++column) {
-      if (moving.at(column, row) != Cell::occupied) continue;
-      const Point2 p = T_grid_moving * moving.cell_centre(column, row);
-      const int x = static_cast<int>(std::floor(p.x / fixed.resolution));
-      const int y = static_cast<int>(std::floor(p.y / fixed.resolution));
-      if (!fixed.contains(x, y) || fixed.at(x, y) == Cell::unknown) continue;
-      ++walls.shared;
-      bool meets = false;
-      for (int dy = -2; dy <= 2; ++dy) {
-        for (int dx = -2; dx <= 2; ++dx)
-          meets = meets || (fixed.contains(x + dx, y + dy) && fixed.at(x + dx, y + dy) == Cell::occupied);
-      }
-      walls.met += meets ? 1 : 0;
-    }
-  }
-  return walls;
-}
-
 TEST(SharedPlaces, TiersAreOfTheSharedWallAndOfTheShareThatMatches) {
   std::set<char> tiers;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
@@ -67,10 +41,10 @@ TEST(SharedPlaces, TiersAreOfTheSharedWallAndOfTheShareThatMatches) {
     for (const SimulatedPair& pair : simulation.pairs) {
       const OccupancyGrid &fixed = simulation.maps[pair.fixed].grid,
                           &moving = simulation.maps[pair.moving].grid;
-      const Walls walls = count_walls(fixed, moving, pair.T_fixed_moving);
+      const test::MetWalls walls = test::count_met_walls(fixed, moving, pair.T_fixed_moving, 2);
       // A cell whose centre lies on the edge of another one may be in either.
-      EXPECT_NEAR(pair.shared_wall, 0.1 * walls.shared, 0.101);
-      const double match = walls.shared > 0 ? static_cast<double>(walls.met) / walls.shared : 0.0;
+      EXPECT_NEAR(pair.shared_wall, 0.1 * walls.known, 0.101);
+      const double match = walls.known > 0 ? static_cast<double>(walls.met) / walls.known : 0.0;
       const auto is_near = [&](double metres, double share) {
         return std::abs(pair.shared_wall - metres) < 0.3 || std::abs(match - share) < 0.01;
       };

@@ -14,6 +14,7 @@
 
 #include "gridmerge/evaluate/evaluate.hpp"
 #include "similarity/agreement.hpp"
+#include "simulate/walls_met.hpp"
 #include "support/effort.hpp"
 
 namespace gridmerge {
@@ -30,31 +31,6 @@ SimulateOptions small(BuildingKind kind = BuildingKind::office) {
   return options;
 }
 
-/// Share of the moving map's walls that meet a wall of the fixed one, of those that lie where it knows.
-double walls_met(const OccupancyGrid& fixed, const OccupancyGrid& moving, const SE2& T_fixed_moving,
-                 double near) {
-  const SE2 T_grid_moving = inverse(fixed.origin) * T_fixed_moving;
-  const int reach = static_cast<int>(std::ceil(near / fixed.resolution));
-  int known = 0, met = 0;
-  for (int row = 0; row < moving.height; ++row) {
-    for (int column = 0; column < moving.width; ++column) {
-      if (moving.at(column, row) != Cell::occupied) continue;
-      const Point2 p = T_grid_moving * moving.cell_centre(column, row);
-      const int x = static_cast<int>(std::floor(p.x / fixed.resolution));
-      const int y = static_cast<int>(std::floor(p.y / fixed.resolution));
-      if (!fixed.contains(x, y) || fixed.at(x, y) == Cell::unknown) continue;
-      ++known;
-      bool meets = false;
-      for (int dy = -reach; dy <= reach; ++dy) {
-        for (int dx = -reach; dx <= reach; ++dx)
-          meets = meets || (fixed.contains(x + dx, y + dy) && fixed.at(x + dx, y + dy) == Cell::occupied);
-      }
-      met += meets ? 1 : 0;
-    }
-  }
-  return known == 0 ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(met) / known;
-}
-
 TEST(Simulate, MapsLieOnTheirBuildingAndOnEachOtherUnderTheTruth) {
   for (const BuildingKind kind :
        building_kinds().first(test::repeats(building_kinds().size(), std::size_t{2}))) {
@@ -68,13 +44,14 @@ TEST(Simulate, MapsLieOnTheirBuildingAndOnEachOtherUnderTheTruth) {
     ASSERT_EQ(simulation.maps.size(), 2U);
     for (const SimulatedMap& map : simulation.maps) {
       EXPECT_LT(map.bend, 0.05);
-      EXPECT_GT(walls_met(building, map.grid, map.T_building_map, 0.15), 0.95);
+      EXPECT_GT(test::walls_met(building, map.grid, map.T_building_map, 0.15), 0.95);
       const SE2 wrong = map.T_building_map * SE2{0.0, 0.0, 0.1};
-      EXPECT_LT(walls_met(building, map.grid, wrong, 0.15), 0.9);
+      EXPECT_LT(test::walls_met(building, map.grid, wrong, 0.15), 0.9);
     }
     ASSERT_EQ(simulation.pairs.size(), 1U);
     const SimulatedPair& pair = simulation.pairs.front();
-    EXPECT_GT(walls_met(simulation.maps[0].grid, simulation.maps[1].grid, pair.T_fixed_moving, 0.15), 0.8);
+    EXPECT_GT(test::walls_met(simulation.maps[0].grid, simulation.maps[1].grid, pair.T_fixed_moving, 0.15),
+              0.8);
     EXPECT_LT(
         rms_displacement(simulation.maps[1].grid, pair.T_fixed_moving,
                          inverse(simulation.maps[0].T_building_map) * simulation.maps[1].T_building_map),
@@ -207,8 +184,8 @@ TEST(Simulate, ClutterDiffersFromVisitToVisit) {
   const auto met = [&](double clutter) {
     options.clutter = clutter;
     const Simulation simulation = simulate(options);
-    return walls_met(simulation.maps[0].grid, simulation.maps[1].grid, simulation.pairs[0].T_fixed_moving,
-                     0.15);
+    return test::walls_met(simulation.maps[0].grid, simulation.maps[1].grid,
+                           simulation.pairs[0].T_fixed_moving, 0.15);
   };
   EXPECT_GT(met(0.0), 0.95);
   EXPECT_LT(met(4.0), 0.95);
