@@ -41,6 +41,23 @@ Box box_of_grids(const std::vector<PlacedMap>& maps) {
   return box;
 }
 
+/// `resolution`, or coarser by the power of two with which the maps cover at most so many cells.
+double coarsened_to_fit(double resolution, double most_cells, const std::vector<PlacedMap>& maps,
+                        const std::vector<Deformation>& deformations) {
+  // A cell more on either side than the box is long, whatever the lattice continues.
+  const auto fits = [&](const Box& box) {
+    return box.empty() ||
+           ((box.max_x - box.min_x) / resolution + 2.0) * ((box.max_y - box.min_y) / resolution + 2.0) <=
+               most_cells;
+  };
+  const bool is_bent = std::any_of(deformations.begin(), deformations.end(),
+                                   [](const Deformation& one) { return !one.is_identity(); });
+  if (!is_bent && fits(box_of_grids(maps))) return resolution;
+  const Box box = covered_box(maps, deformations);
+  while (!fits(box)) resolution *= 2.0;
+  return resolution;
+}
+
 }  // namespace
 
 double finest_resolution(const std::vector<PlacedMap>& maps) {
@@ -52,18 +69,13 @@ double finest_resolution(const std::vector<PlacedMap>& maps) {
 
 double fitting_resolution(double resolution, const std::vector<PlacedMap>& maps,
                           const std::vector<Deformation>& deformations) {
-  // A cell more on either side than the box is long, whatever the lattice continues.
-  const auto fits = [&](const Box& box) {
-    return box.empty() ||
-           ((box.max_x - box.min_x) / resolution + 2.0) * ((box.max_y - box.min_y) / resolution + 2.0) <=
-               kMaxGridCells;
-  };
-  const bool is_bent = std::any_of(deformations.begin(), deformations.end(),
-                                   [](const Deformation& one) { return !one.is_identity(); });
-  if (!is_bent && fits(box_of_grids(maps))) return resolution;
-  const Box box = covered_box(maps, deformations);
-  while (!fits(box)) resolution *= 2.0;
-  return resolution;
+  // 32 maps of one size that touch at their corners, from one corner of the box to the other, fill a 32nd of
+  // it.
+  constexpr double kCellsPerCell = 32.0, kFewCells = 1 << 22;
+  double cells = 0.0;
+  for (const PlacedMap& one : maps) cells += static_cast<double>(one.map->cells.size());
+  const double most_cells = std::min<double>(kMaxGridCells, std::max(kFewCells, kCellsPerCell * cells));
+  return coarsened_to_fit(resolution, most_cells, maps, deformations);
 }
 
 double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps,
@@ -72,7 +84,7 @@ double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps,
   constexpr double kMostCoarser = 16.0;
   if (asked_for > 0.0) return asked_for;
   const double finest = finest_resolution(maps);
-  return std::min(kMostCoarser * finest, fitting_resolution(finest, maps, deformations));
+  return std::min(kMostCoarser * finest, coarsened_to_fit(finest, kMaxGridCells, maps, deformations));
 }
 
 PlacedMembers placed_members(const std::vector<Member>& members, const std::vector<std::size_t>& places,

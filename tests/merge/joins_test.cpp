@@ -130,7 +130,7 @@ TEST(FinestResolution, IsTheLeast) {
 }
 
 TEST(FittingResolution, IsCoarserWhereTheMapsWouldNotFit) {
-  const OccupancyGrid map = make_grid(100, 50, 0.1, {}, Cell::free);
+  const OccupancyGrid map = make_grid(2500, 1700, 0.001, {}, Cell::free);  // 2^28 cells are 32 per cell
   const auto fits = [&](double far) {
     return fitting_resolution(0.05, {{&map, {}}, {&map, {far, far, 0.4}}});
   };
@@ -144,6 +144,20 @@ TEST(FittingResolution, IsCoarserWhereTheMapsWouldNotFit) {
   }
   const OccupancyGrid unknown = make_grid(2, 2, 0.2);
   EXPECT_EQ(fitting_resolution(0.3, {{&unknown, {}}}), 0.3);
+}
+
+TEST(FittingResolution, GivesAFewCellsNoRoomOfMillions) {
+  const auto cells = [](int side, double far) {
+    const OccupancyGrid map = make_grid(side, side, 0.01, {}, Cell::free);
+    const std::vector<PlacedMap> maps{{&map, {}}, {&map, {far, far, 0.0}}};
+    const Lattice lattice = cover(maps, fitting_resolution(0.01, maps));
+    return static_cast<double>(lattice.width) * lattice.height;
+  };
+  EXPECT_NEAR(cells(40, 20.0), 2040.0 * 2040.0, 1e4);  // 4 million are few
+  for (const double far : {21.0, 40.0, 100.0}) EXPECT_LE(cells(40, far), 1 << 22) << far;
+  // Of larger maps, 32 cells per cell.
+  EXPECT_GT(cells(400, 27.5), 3100.0 * 3100.0);
+  EXPECT_LE(cells(400, 29.0), 32.0 * 2.0 * 400.0 * 400.0);
 }
 
 TEST(MergedResolution, IsTheOneAskedForOrTheFinest) {
