@@ -5,11 +5,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <tuple>
 #include <vector>
 
-#include "grid/quarter_turned.hpp"
-#include "preselect/dot_products.hpp"
+#include "preselect/proposals.hpp"
+#include "preselect/tally.hpp"
 
 namespace gridmerge::internal {
 
@@ -28,93 +27,8 @@ constexpr double kVotesWithin = 1.0;       // keypoints that lie so near to each
 constexpr double kParallel = 0.985;        // cosine of the turn between poses that mean the same
 constexpr double kUnit = 4096.0 * 4096.0;  // product of equal descriptors
 
-/// Walls that face another way than the one they meet by more steps than this show something else.
-constexpr int kMaxTurned = 4;
-
-struct Proposal {
-  std::int32_t product;
-  int fixed, moving, quarters;
-};
-
-/// A pose between the grid frames, its sine and cosine worked out once.
-struct Pose {
-  double x, y, theta, cos, sin;
-
-  static Pose of(double x, double y, double theta) { return {x, y, theta, std::cos(theta), std::sin(theta)}; }
-  Point2 operator*(const Point2& p) const { return {cos * p.x - sin * p.y + x, sin * p.x + cos * p.y + y}; }
-  Pose inverted() const { return {-(cos * x + sin * y), -(-sin * x + cos * y), -theta, cos, -sin}; }
-};
-
-struct Tally {
-  double seen = 0.0;
-  double met = 0.0;
-  double open = 0.0;
-  double chance = 0.0;
-
-  /// How much better than by chance the walls meet, in about its standard deviations.
-  double score() const { return (met - chance - 0.5 * open) / std::sqrt(seen + 10.0); }
-};
-
-bool faces_alike(std::uint8_t a, std::uint8_t b) {
-  if (a == kNoDirection || b == kNoDirection) return true;
-  return steps_between(a, b) <= kMaxTurned;
-}
-
-/// The walls of `on` where `at` has seen, every `step`-th of them, in metres of wall.
-Tally tally(const Signature& at, const Signature& on, const Pose& T_at_on, std::size_t step) {
-  Tally sum;
-  if (on.walls.empty()) return sum;
-  const int turn = steps_of_turn(T_at_on.theta);
-  int seen = 0, met = 0, open = 0;
-  for (std::size_t i = 0; i < on.walls.size(); i += step) {
-    const SampledWall& wall = on.walls[i];
-    const Place place = at.place_at(T_at_on * wall.position);
-    if (place.distance == kUnseen) continue;
-    ++seen;
-    if (place.distance >= at.open_from) {
-      ++open;
-    } else if (place.distance <= at.met_within && faces_alike(place.facing, turned(wall.facing, turn))) {
-      ++met;
-    }
-  }
-  const double metres = on.wall_length / static_cast<double>(on.walls.size()) * static_cast<double>(step);
-  return {seen * metres, met * metres, open * metres, seen * metres * at.chance_of_meeting};
-}
-
-Tally tally_both(const Signature& fixed, const Signature& moving, const Pose& T, std::size_t step) {
-  const Tally a = tally(fixed, moving, T, step), b = tally(moving, fixed, T.inverted(), step);
-  return {0.5 * (a.seen + b.seen), 0.5 * (a.met + b.met), 0.5 * (a.open + b.open),
-          0.5 * (a.chance + b.chance)};
-}
-
-/// The pairs of keypoints that are most alike, most alike first.
-std::vector<Proposal> most_alike(const Signature& fixed, const Signature& moving) {
-  const std::size_t count = moving.descriptors.size();
-  std::vector<Proposal> all;
-  if (count == 0) return all;
-  all.reserve(4 * fixed.descriptors.size() * count);
-  std::vector<std::int32_t> products(count);
-  for (int quarters = 0; quarters < 4; ++quarters) {
-    for (std::size_t i = 0; i < fixed.descriptors.size(); ++i) {
-      const Descriptor turned = quarter_turned(fixed.descriptors[i], quarters);
-      dot_products(turned.data(), moving.descriptors.front().data(), count, products.data());
-      for (std::size_t j = 0; j < count; ++j) {
-        if (products[j] > 0) all.push_back({products[j], static_cast<int>(i), static_cast<int>(j), quarters});
-      }
-    }
-  }
-  const auto before = [](const Proposal& a, const Proposal& b) {
-    return std::tuple(-a.product, a.fixed, a.moving, a.quarters) <
-           std::tuple(-b.product, b.fixed, b.moving, b.quarters);
-  };
-  const std::size_t kept = std::min(kMaxProposals, all.size());
-  std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(kept), all.end(), before);
-  all.resize(kept);
-  return all;
-}
-
 struct Checked {
-  Pose T;
+  GridPose T;
   Tally tally;
   double votes = 0.0;
 };
@@ -125,7 +39,7 @@ std::vector<Checked> poses_of(const Signature& fixed, const Signature& moving,
   std::vector<Checked> all;
   for (const Proposal& proposal : proposals) {
     const Keypoint &a = fixed.keypoints[proposal.fixed], &b = moving.keypoints[proposal.moving];
-    Pose T = Pose::of(0.0, 0.0, a.theta + proposal.quarters * kQuarterTurn - b.theta);
+    GridPose T = GridPose::of(0.0, 0.0, a.theta + proposal.quarters * kQuarterTurn - b.theta);
     const Point2 turned = T * b.position;
     T.x = a.position.x - turned.x;
     T.y = a.position.y - turned.y;
@@ -134,7 +48,7 @@ std::vector<Checked> poses_of(const Signature& fixed, const Signature& moving,
   const std::size_t voters = all.size();
   for (const ProfilePose& pose : align_profiles(fixed.profiles, moving.profiles, kMaxProfilePoses)) {
     const SE2& T = pose.T_fixed_moving;
-    all.push_back({Pose::of(T.x, T.y, T.theta), {}});
+    all.push_back({GridPose::of(T.x, T.y, T.theta), {}});
   }
   for (Checked& one : all) {
     for (std::size_t i = 0; i < voters; ++i) {
@@ -157,14 +71,14 @@ Checked refined(const Signature& fixed, const Signature& moving, Checked best) {
   for (int level = 0; level < 2; ++level) {
     for (int round = 0; round < 2; ++round) {
       const Checked before = best;
-      const Pose& T = before.T;
+      const GridPose& T = before.T;
       // About the middle of the moving map, or a turn would shift it.
       const Point2 middle{0.5 * moving.width * moving.cell, 0.5 * moving.height * moving.cell};
       const Point2 at = T * middle;
       for (const auto& [dx, dy, dt] :
            {std::array{shift, 0.0, 0.0}, std::array{-shift, 0.0, 0.0}, std::array{0.0, shift, 0.0},
             std::array{0.0, -shift, 0.0}, std::array{0.0, 0.0, turn}, std::array{0.0, 0.0, -turn}}) {
-        Pose tried = Pose::of(0.0, 0.0, T.theta + dt);
+        GridPose tried = GridPose::of(0.0, 0.0, T.theta + dt);
         const Point2 moved = tried * middle;
         tried.x = at.x + dx - moved.x;
         tried.y = at.y + dy - moved.y;
@@ -183,12 +97,13 @@ Checked refined(const Signature& fixed, const Signature& moving, Checked best) {
 
 SignatureMatch compare(const Signature& fixed, const Signature& moving) {
   SignatureMatch match;
-  const std::vector<Proposal> proposals = most_alike(fixed, moving);
+  const std::vector<Proposal> proposals = most_alike(fixed.descriptors, moving.descriptors, kMaxProposals);
   if (!proposals.empty()) match.likeness = static_cast<double>(proposals.front().product) / kUnit;
   const Point2 middle{0.5 * moving.width * moving.cell, 0.5 * moving.height * moving.cell};
-  const auto are_near = [&](const Pose& a, const Pose& b) {
+  const auto are_near = [&](const GridPose& a, const GridPose& b) {
+    if (!(a.cos * b.cos + a.sin * b.sin > kParallel)) return false;
     const Point2 p = a * middle, q = b * middle;
-    return std::hypot(p.x - q.x, p.y - q.y) < kDistinct && a.cos * b.cos + a.sin * b.sin > kParallel;
+    return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) < kDistinct * kDistinct;
   };
   std::vector<Checked> distinct;
   for (const Checked& one : poses_of(fixed, moving, proposals)) {

@@ -43,22 +43,20 @@ std::vector<std::int32_t> correlate_all(const std::vector<std::int16_t>& fixed,
 /// shift by -`zero` steps. What shifts the former by n steps shifts the latter by `mirror` - n.
 std::vector<Shift> best_shifts(const std::vector<std::int32_t>& facing, const std::vector<std::int32_t>& away,
                                int zero, int mirror) {
-  std::vector<Shift> all;
+  std::vector<double> sums(facing.begin(), facing.end());
   for (int i = 0; i < std::ssize(facing); ++i) {
-    const int by = i - zero, mirrored = zero + mirror - by;
-    double sum = facing[i];
-    if (mirrored >= 0 && mirrored < std::ssize(away)) sum += away[mirrored];
-    if (sum > 0.0) all.push_back({by, sum});
+    const int mirrored = 2 * zero + mirror - i;
+    if (mirrored >= 0 && mirrored < std::ssize(away)) sums[i] += away[mirrored];
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Shift& a, const Shift& b) { return a.correlation > b.correlation; });
   std::vector<Shift> kept;
-  for (const Shift& shift : all) {
-    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Shift& other) {
-      return std::abs(other.by - shift.by) < kPeakSpacing;
-    });
-    if (is_new) kept.push_back(shift);
-    if (kept.size() == kPeaks) break;
+  while (kept.size() < kPeaks) {
+    const auto best = std::max_element(sums.begin(), sums.end());
+    if (best == sums.end() || !(*best > 0.0)) break;
+    const auto at = static_cast<int>(best - sums.begin());
+    kept.push_back({at - zero, *best});
+    for (int i = std::max(0, at - kPeakSpacing + 1);
+         i < std::min(at + kPeakSpacing, static_cast<int>(sums.size())); ++i)
+      sums[i] = 0.0;
   }
   return kept;
 }

@@ -181,7 +181,10 @@ Descriptor quarter_turned(const Descriptor& descriptor, int quarters) {
   for (const Ring& ring : kRings) {
     const auto places = static_cast<std::size_t>(ring.places);
     const std::size_t shift = places / 4 * static_cast<std::size_t>(((quarters % 4) + 4) % 4);
-    for (std::size_t i = 0; i < places; ++i) turned[first + i] = descriptor[first + (i + shift) % places];
+    const auto ring_of = descriptor.begin() + static_cast<std::ptrdiff_t>(first);
+    std::rotate_copy(ring_of, ring_of + static_cast<std::ptrdiff_t>(shift),
+                     ring_of + static_cast<std::ptrdiff_t>(places),
+                     turned.begin() + static_cast<std::ptrdiff_t>(first));
     first += places;
   }
   return turned;

@@ -295,8 +295,10 @@ void fill_places(const std::vector<std::uint8_t>& is_known, const std::vector<La
 
 int steps_of_turn(double theta) {
   const double steps = (theta / (2.0 * std::numbers::pi) + 1.0) * kDirections;
-  const int whole = static_cast<int>(steps);  // std::lround() is a call on many a machine
-  return (whole + (steps - whole >= 0.5 ? 1 : 0)) % kDirections;
+  // The next lower whole number: std::floor() and std::lround() are calls on many a machine.
+  const int whole = static_cast<int>(steps) - (steps < 0.0 ? 1 : 0);
+  static_assert((kDirections & (kDirections - 1)) == 0);  // so that the bits are the remainder, also below 0
+  return (whole + (steps - whole >= 0.5 ? 1 : 0)) & (kDirections - 1);
 }
 
 LikelihoodField make_likelihood_field(const OccupancyGrid& grid, double cell) {

@@ -50,7 +50,7 @@ inline constexpr std::uint8_t turned(std::uint8_t facing, int steps) {
   return static_cast<std::uint8_t>((facing + steps) % kDirections);
 }
 
-/// The parts of a turn by which a map is turned, in [0, kDirections).
+/// The parts of a turn by which a map is turned, in [0, kDirections). `theta` [rad] may be several turns.
 int steps_of_turn(double theta);
 
 /// What a map says of walls at one place.

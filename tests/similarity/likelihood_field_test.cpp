@@ -233,9 +233,10 @@ TEST(Turned, TurnsDirectionsByATurnAndAxesByHalfATurn) {
   EXPECT_EQ(turned(kNoDirection, 5), kNoDirection);
   EXPECT_EQ(steps_of_turn(-std::numbers::pi / 2.0), 24);
   EXPECT_EQ(steps_of_turn(2.0 * std::numbers::pi - 1e-9), 0);
-  for (int i = -1280; i <= 1280; ++i) {
-    const double theta = 2.0 * std::numbers::pi * i / 1280.0;
-    EXPECT_EQ(steps_of_turn(theta), std::lround((theta / (2.0 * std::numbers::pi) + 1.0) * 32.0) % 32) << i;
+  for (int i = -5001; i <= 5001; ++i) {  // four turns each way
+    const double theta = 2.0 * std::numbers::pi * i / 1250.1;
+    const long steps = std::lround(32.0 * i / 1250.1);
+    EXPECT_EQ(steps_of_turn(theta), ((steps % 32) + 32) % 32) << i;
   }
 }
 
