@@ -220,6 +220,8 @@ RC_GTEST_PROP(Fuse, EqualsTheNaiveSum, ()) {
         if (column % 6 < 2) cell = Cell::occupied;
       }
     }
+    // Of a small map more than half may be walls that no free cell is near to: fuse() takes them for paint.
+    if (internal::is_mostly_painted(map)) map = internal::without_painted(map);
     inputs.push_back({&map, any_pose(random)});
   }
   const FusedMap fused = fuse(inputs, 0.1);

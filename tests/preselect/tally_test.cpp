@@ -29,7 +29,7 @@ TEST(TallyBoth, SaysWhatAWalkOverTheWallsSays) {
     for (int i = 0; i < 300; ++i) {
       // Most overlap in part, some by a sliver or not at all.
       const GridPose T = GridPose::of(shift(random), shift(random), angle(random));
-      for (const std::size_t step : {1, 6, 64, 1000}) {
+      for (const std::size_t step : {1, 2, 3, 6, 64, 1000}) {
         const Tally tally = tally_both(a, b, T, step), twin = walk_over_both(a, b, T, step);
         EXPECT_NEAR(tally.seen, twin.seen, 1e-9);
         EXPECT_NEAR(tally.met, twin.met, 1e-9);
