@@ -6,12 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <numbers>
 #include <vector>
 
+#include "drawn_signature.hpp"
+
 namespace gridmerge::internal {
 namespace {
+
+using test::rooms_from;
 
 constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 
@@ -142,21 +145,6 @@ TEST(Profiles, HaveTheWallsOfARoomWhereTheyAre) {
     EXPECT_NEAR(distances[2], 4.0, 0.25) << theta;
     EXPECT_NEAR(distances[3], 4.0, 0.25) << theta;
   }
-}
-
-/// What a robot sees of a floor of 16 m x 11 m with six unequal rooms, up to so many cells from its left.
-OccupancyGrid rooms_from(int first_column) {
-  OccupancyGrid map = make_grid(340 - first_column, 240, 0.05);
-  const auto is_line = [](int at, std::initializer_list<int> lines) {
-    return std::any_of(lines.begin(), lines.end(), [&](int line) { return at >= line && at < line + 3; });
-  };
-  for (int row = 10; row < 231; ++row) {
-    for (int column = std::max(10, first_column); column < 331; ++column) {
-      const bool is_wall = is_line(column, {10, 76, 190, 328}) || is_line(row, {10, 133, 228});
-      map.at(column - first_column, row) = is_wall ? Cell::occupied : Cell::free;
-    }
-  }
-  return map;
 }
 
 TEST(Profiles, OfAPartOfAFloorProposeWhereItLies) {
