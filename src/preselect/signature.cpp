@@ -86,14 +86,11 @@ std::vector<Corner> find_corners(const LikelihoodField& field, const Nearby& nea
     if (wall.facing == kNoDirection) continue;
     double c = 0.0, s = 0.0;  // of the doubled angles: 0 where two ways at right angles are equally common
     int count = 0;
-    Point2 sum;
     nearby.visit(wall.position, kCornerReach / field.cell, [&](const WallPoint& other, double) {
       if (other.facing == kNoDirection) return;
       const double doubled = 2.0 * angle_of(other.facing);
       c += std::cos(doubled);
       s += std::sin(doubled);
-      sum.x += other.position.x;
-      sum.y += other.position.y;
       ++count;
     });
     if (count < kMinCornerWalls) continue;
