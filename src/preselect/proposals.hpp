@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "internal_export.hpp"
 #include "preselect/signature.hpp"
 
 namespace gridmerge::internal {
@@ -18,8 +17,7 @@ struct Proposal {
 
 /// The `most` pairs of keypoints with the greatest products above 0, greatest first; of equal ones those come
 /// first whose indices are lower. O(fixed * moving) products.
-GRIDMERGE_INTERNAL_EXPORT std::vector<Proposal> most_alike(const std::vector<Descriptor>& fixed,
-                                                           const std::vector<Descriptor>& moving,
-                                                           std::size_t most);
+std::vector<Proposal> most_alike(const std::vector<Descriptor>& fixed, const std::vector<Descriptor>& moving,
+                                 std::size_t most);
 
 }  // namespace gridmerge::internal

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "internal_export.hpp"
 #include "preselect/signature.hpp"
 
 namespace gridmerge::internal {
@@ -33,7 +32,7 @@ struct Tally {
 
 /// The mean of both ways: the walls of each map where the other has seen, of the sampled ones every
 /// `step`-th, each for as much wall as it stands for. O(walls / step).
-GRIDMERGE_INTERNAL_EXPORT Tally tally_both(const Signature& fixed, const Signature& moving,
-                                           const GridPose& T_fixed_moving, std::size_t step);
+Tally tally_both(const Signature& fixed, const Signature& moving, const GridPose& T_fixed_moving,
+                 std::size_t step);
 
 }  // namespace gridmerge::internal
