@@ -14,26 +14,34 @@ namespace {
 /// Walls that face another way than the one they meet by more steps than this show something else.
 constexpr int kMaxTurned = 4;
 
-/// For a turn by so many steps and the facing of a wall: one bit for each facing that is, or may be, the same
-/// after the turn.
-using AlikeTable = std::array<std::array<std::uint64_t, kFacingCodes>, kDirections>;
+/// For the facing of a wall: one bit for each facing that is, or may be, the same.
+using AlikeTable = std::array<std::uint64_t, kFacingCodes>;
 
 constexpr AlikeTable make_alike() {
   AlikeTable table{};
-  for (int steps = 0; steps < kDirections; ++steps) {
-    for (int code = 0; code < kFacingCodes; ++code) {
-      const std::uint8_t facing = turned(static_cast<std::uint8_t>(code), steps);
-      for (int other = 0; other < kFacingCodes; ++other) {
-        const auto met = static_cast<std::uint8_t>(other);
-        if (facing == kNoDirection || met == kNoDirection || steps_between(facing, met) <= kMaxTurned)
-          table[steps][code] |= std::uint64_t{1} << other;
-      }
+  for (std::uint8_t facing = 0; facing < kFacingCodes; ++facing) {
+    for (std::uint8_t met = 0; met < kFacingCodes; ++met) {
+      if (facing == kNoDirection || met == kNoDirection || steps_between(facing, met) <= kMaxTurned)
+        table[facing] |= std::uint64_t{1} << met;
     }
   }
   return table;
 }
 
+/// For a turn by so many steps and a facing: the facing after it.
+using TurnedTable = std::array<std::array<std::uint8_t, kFacingCodes>, kDirections>;
+
+constexpr TurnedTable make_turned() {
+  TurnedTable table{};
+  for (int steps = 0; steps < kDirections; ++steps) {
+    for (std::uint8_t facing = 0; facing < kFacingCodes; ++facing)
+      table[steps][facing] = turned(facing, steps);
+  }
+  return table;
+}
+
 constexpr AlikeTable kAlike = make_alike();
+constexpr TurnedTable kTurned = make_turned();
 
 struct Counts {
   int seen = 0, met = 0, open = 0;
@@ -52,7 +60,7 @@ GRIDMERGE_MULTIVERSION Counts count_walls(const Signature& at, const Signature& 
   const Place* const places = at.places.data();
   const double cell = at.cell, width = at.width, height = at.height;
   const int columns = at.width, open_from = at.open_from, met_within = at.met_within;
-  const auto& alike = kAlike[steps_of_turn(T.theta)];
+  const auto& facing = kTurned[steps_of_turn(T.theta)];
   std::array<std::int32_t, kBlock> index;
   std::array<std::uint8_t, kBlock> is_inside;
   Counts counts;
@@ -72,7 +80,7 @@ GRIDMERGE_MULTIVERSION Counts count_walls(const Signature& at, const Signature& 
       const bool is_seen = (is_inside[i] != 0) & (place.distance != kUnseen);
       const bool is_open = is_seen & (place.distance >= open_from);
       const bool is_met = is_seen & !is_open & (place.distance <= met_within);
-      const bool is_alike = (alike[walls[i * step].facing] >> place.facing & 1) != 0;
+      const bool is_alike = (kAlike[facing[walls[i * step].facing]] >> place.facing & 1) != 0;
       counts.seen += is_seen;
       counts.open += is_open;
       counts.met += is_met & is_alike;
