@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What signatures say of a few maps, figure by figure: data/figures.tsv. The weights of chance.cpp were
-// fitted to such figures, so a change that is wanted has them fitted anew (calibration/fit_preselection.py),
-// and writes the table anew: GRIDMERGE_WRITE_FIGURES=1 in the environment of this test.
+// What signatures say of a few maps. The weights of chance.cpp were fitted to such figures: a change that is
+// wanted has them fitted anew (calibration/fit_preselection.py).
+#include "support/figures.hpp"
+
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <iomanip>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -22,6 +19,7 @@ namespace gridmerge::internal {
 namespace {
 
 using test::draw_building;
+using test::FigureLine;
 using test::map_part;
 using test::rooms_from;
 using test::signature_of;
@@ -90,20 +88,15 @@ Figures figures_of(const SignatureMatch& match) {
           match.open, match.chance, match.votes, match.next_votes, match.likeness};
 }
 
-/// A line per signature and per pair of them: what it is of, and its figures.
-struct Line {
-  std::string name;
-  Figures figures;
-};
-
-std::vector<Line> all_lines() {
+/// A line per signature and per pair of them.
+std::vector<FigureLine> all_lines() {
   const std::vector<Signature> maps = some_signatures();
-  std::vector<Line> lines;
+  std::vector<FigureLine> lines;
   for (std::size_t a = 0; a < maps.size(); ++a) {
     lines.push_back({"map " + std::to_string(a), figures_of(maps[a])});
     for (std::size_t b = a + 1; b < maps.size(); ++b) {
       const SignatureMatch match = compare(maps[a], maps[b]);
-      Line line{"pair " + std::to_string(a) + " " + std::to_string(b), figures_of(match)};
+      FigureLine line{"pair " + std::to_string(a) + " " + std::to_string(b), figures_of(match)};
       line.figures.push_back(log_odds_of_joining(match, maps[a], maps[b]));
       lines.push_back(line);
     }
@@ -118,33 +111,7 @@ std::vector<Line> all_lines() {
 }
 
 TEST(Figures, AreThoseThatTheModelWasFittedTo) {
-  const std::string path = GRIDMERGE_TEST_DATA "/figures.tsv";
-  const std::vector<Line> lines = all_lines();
-  if (std::getenv("GRIDMERGE_WRITE_FIGURES") != nullptr) {
-    std::ofstream file(path);
-    file << std::setprecision(9);
-    for (const Line& line : lines) {
-      file << line.name;
-      for (const double figure : line.figures) file << '\t' << figure;
-      file << '\n';
-    }
-  }
-  std::ifstream file(path);
-  std::string text;
-  for (const Line& line : lines) {
-    ASSERT_TRUE(std::getline(file, text)) << line.name;
-    std::istringstream columns(text);
-    std::string name;
-    std::getline(columns, name, '\t');
-    EXPECT_EQ(name, line.name);
-    for (std::size_t i = 0; i < line.figures.size(); ++i) {
-      double expected = 0.0;
-      ASSERT_TRUE(columns >> expected) << line.name << ", figure " << i;
-      EXPECT_NEAR(line.figures[i], expected, 1e-6 * std::max(1.0, std::abs(expected)))
-          << line.name << ", figure " << i;
-    }
-  }
-  EXPECT_FALSE(std::getline(file, text));
+  test::expect_figures(GRIDMERGE_TEST_DATA "/figures.tsv", all_lines());
 }
 
 }  // namespace
