@@ -69,13 +69,16 @@ double finest_resolution(const std::vector<PlacedMap>& maps) {
 
 double fitting_resolution(double resolution, const std::vector<PlacedMap>& maps,
                           const std::vector<Deformation>& deformations) {
-  // 32 maps of one size that touch at their corners, from one corner of the box to the other, fill a 32nd of
-  // it.
-  constexpr double kCellsPerCell = 32.0, kFewCells = 1 << 22;
-  double cells = 0.0;
-  for (const PlacedMap& one : maps) cells += static_cast<double>(one.map->cells.size());
-  const double most_cells = std::min<double>(kMaxGridCells, std::max(kFewCells, kCellsPerCell * cells));
-  return coarsened_to_fit(resolution, most_cells, maps, deformations);
+  // What is compared takes time by its cells, so there are few, or a share of them is known: of 16 maps that
+  // touch at their corners in a row across the box, each known to a quarter, one cell of 64 is.
+  constexpr double kFewCells = 1 << 22, kCellsPerKnownCell = 64.0;
+  const double of_few = coarsened_to_fit(resolution, kFewCells, maps, deformations);
+  if (of_few == resolution) return resolution;
+  double known = 0.0;
+  for (const PlacedMap& one : maps) known += static_cast<double>(count_cells(*one.map).known());
+  const double of_known = coarsened_to_fit(
+      resolution, std::min<double>(kMaxGridCells, kCellsPerKnownCell * known), maps, deformations);
+  return std::min(of_few, of_known);
 }
 
 double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps,

@@ -19,9 +19,9 @@ void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution);
 GRIDMERGE_INTERNAL_EXPORT double finest_resolution(const std::vector<PlacedMap>& maps);
 
 /// The resolution in which these maps are fused to be compared with another one: `resolution`, or so much
-/// coarser, by a power of two, that the result has at most kMaxGridCells, and, above 2^22 cells, at most 32
-/// per cell of the maps: a very fine map and a coarse one would else be compared for minutes. `deformations`
-/// as of fuse(). O(maps) where they fit by far, else O(cells).
+/// coarser, by a power of two, that the result has at most kMaxGridCells, and, above 2^22 cells, at most 64
+/// per known cell of the maps: a very fine map and a coarse one would else be compared for minutes.
+/// `deformations` as of fuse(). O(maps) where they fit by far, else O(cells).
 double fitting_resolution(double resolution, const std::vector<PlacedMap>& maps,
                           const std::vector<Deformation>& deformations = {});
 

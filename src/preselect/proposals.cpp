@@ -2,6 +2,7 @@
 #include "preselect/proposals.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <tuple>
 #include <utility>
 

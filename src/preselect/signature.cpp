@@ -39,8 +39,8 @@ constexpr double kMinSeen = 36.0;   // places: with fewer a descriptor is shorte
 
 constexpr double kMetWithin = 0.5;  // [m]
 constexpr double kOpenFrom = 1.0;   // [m]
-/// Of all ways in which walls face, the share that counts as the same: nine of 32 parts of a turn.
-constexpr double kFacesAlike = 9.0 / kDirections;
+/// Of all ways in which walls face, the share that counts as the same.
+constexpr double kFacesAlike = (2.0 * kMostTurned + 1.0) / kDirections;
 
 /// Wall points by cells, to find those nearby.
 class Nearby {
@@ -178,9 +178,9 @@ Descriptor quarter_turned(const Descriptor& descriptor, int quarters) {
   for (const Ring& ring : kRings) {
     const auto places = static_cast<std::size_t>(ring.places);
     const std::size_t shift = places / 4 * static_cast<std::size_t>(((quarters % 4) + 4) % 4);
-    const auto ring_of = descriptor.begin() + static_cast<std::ptrdiff_t>(first);
-    std::rotate_copy(ring_of, ring_of + static_cast<std::ptrdiff_t>(shift),
-                     ring_of + static_cast<std::ptrdiff_t>(places),
+    const auto ring_begin = descriptor.begin() + static_cast<std::ptrdiff_t>(first);
+    std::rotate_copy(ring_begin, ring_begin + static_cast<std::ptrdiff_t>(shift),
+                     ring_begin + static_cast<std::ptrdiff_t>(places),
                      turned.begin() + static_cast<std::ptrdiff_t>(first));
     first += places;
   }

@@ -30,6 +30,9 @@ using Descriptor = std::array<std::int16_t, kDescriptorSize>;
 /// The same about the keypoint turned by `quarters` quarters, counter-clockwise: a permutation.
 Descriptor quarter_turned(const Descriptor& descriptor, int quarters);
 
+/// Walls that face another way than the one they meet by more parts of a turn than this show something else.
+inline constexpr int kMostTurned = 4;
+
 /// A wall of the map, thinned out.
 struct SampledWall {
   Point2 position;                     ///< [m, grid frame]

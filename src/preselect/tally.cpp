@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "grid/multiversion.hpp"
@@ -11,9 +12,6 @@ namespace gridmerge::internal {
 
 namespace {
 
-/// Walls that face another way than the one they meet by more steps than this show something else.
-constexpr int kMaxTurned = 4;
-
 /// For the facing of a wall: one bit for each facing that is, or may be, the same.
 using AlikeTable = std::array<std::uint64_t, kFacingCodes>;
 
@@ -21,7 +19,7 @@ constexpr AlikeTable make_alike() {
   AlikeTable table{};
   for (std::uint8_t facing = 0; facing < kFacingCodes; ++facing) {
     for (std::uint8_t met = 0; met < kFacingCodes; ++met) {
-      if (facing == kNoDirection || met == kNoDirection || steps_between(facing, met) <= kMaxTurned)
+      if (facing == kNoDirection || met == kNoDirection || steps_between(facing, met) <= kMostTurned)
         table[facing] |= std::uint64_t{1} << met;
     }
   }
@@ -47,12 +45,9 @@ struct Counts {
   int seen = 0, met = 0, open = 0;
 };
 
-}  // namespace
-
-inline namespace multiversion {
-
-/// First where the walls lie, for many at once; then what they meet, without a branch that depends on a wall:
-/// that is as good as random, and a wrong guess costs more than all else of a wall.
+/// Counts the walls of `on`, every `step`-th, by what they meet in `at`. First where the walls lie, for many
+/// at once; then what they meet, without a branch that depends on a wall: that is as good as random, and a
+/// wrong guess costs more than all else of a wall.
 GRIDMERGE_MULTIVERSION Counts count_walls(const Signature& at, const Signature& on, const GridPose& T_at_on,
                                           std::size_t step) {
   constexpr std::size_t kBlock = 64;
@@ -72,8 +67,8 @@ GRIDMERGE_MULTIVERSION Counts count_walls(const Signature& at, const Signature& 
       const Point2 point = T * walls[i * step].position;
       const double x = point.x / cell, y = point.y / cell;
       is_inside[i] = (x >= 0.0) & (y >= 0.0) & (x < width) & (y < height);
-      index[i] = static_cast<std::int32_t>(std::min(std::max(y, 0.0), height - 1.0)) * columns +
-                 static_cast<std::int32_t>(std::min(std::max(x, 0.0), width - 1.0));
+      index[i] = static_cast<std::int32_t>(std::min(std::max(0.0, y), height - 1.0)) * columns +
+                 static_cast<std::int32_t>(std::min(std::max(0.0, x), width - 1.0));
     }
     for (std::size_t i = 0; i < count; ++i) {
       const Place place = places[index[i]];
@@ -88,10 +83,6 @@ GRIDMERGE_MULTIVERSION Counts count_walls(const Signature& at, const Signature& 
   }
   return counts;
 }
-
-}  // namespace multiversion
-
-namespace {
 
 Tally tally(const Signature& at, const Signature& on, const GridPose& T_at_on, std::size_t step) {
   if (on.walls.empty() || at.places.empty()) return {};

@@ -8,7 +8,8 @@
 
 namespace gridmerge::internal {
 
-/// A pose between two grid frames [m, rad], its sine and cosine worked out once.
+/// A pose between two grid frames [m, rad], its sine and cosine worked out once. Unlike a ManyPointsTransform
+/// it knows its angle, and may be shifted.
 struct GridPose {
   double x, y, theta, cos, sin;
 

@@ -6,10 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/simulate/simulate.hpp"
 #include "support/building.hpp"
@@ -20,29 +21,29 @@ namespace {
 using test::draw_building;
 using test::FigureLine;
 using test::map_part;
+using test::with_pose;
 
 /// A line for the result, and one for each of its first three hypotheses.
 void add(const std::string& name, const MatchResult& result, std::vector<FigureLine>& lines) {
-  const auto with_pose = [](const SE2& T, std::vector<double> others) {
-    others.insert(others.begin(), {T.x, T.y, T.theta});
-    return others;
-  };
   lines.push_back(
-      {name, with_pose(result.T_fixed_moving,
-                       {result.verdict == Verdict::accepted ? 1.0 : 0.0, static_cast<double>(result.reason),
-                        result.probability, result.scale, result.acceptance_index,
-                        static_cast<double>(result.agreement), static_cast<double>(result.disagreement),
-                        result.overlap, static_cast<double>(result.hypotheses.size())})});
+      {name + ": " + name_of(result.verdict) + " " + name_of(result.reason),
+       with_pose(result.T_fixed_moving, {{"probability", result.probability},
+                                         {"scale", result.scale},
+                                         {"acceptance_index", result.acceptance_index},
+                                         {"agreement", static_cast<double>(result.agreement)},
+                                         {"disagreement", static_cast<double>(result.disagreement)},
+                                         {"overlap", result.overlap},
+                                         {"hypotheses", static_cast<double>(result.hypotheses.size())}})});
   for (std::size_t i = 0; i < result.hypotheses.size() && i < 3; ++i) {
     const Hypothesis& one = result.hypotheses[i];
-    FigureLine line{name + ", hypothesis " + std::to_string(i),
-                    with_pose(one.T_fixed_moving, {one.score, one.probability, one.scale})};
-    for (const PoseFigure& figure : pose_figures()) line.figures.push_back(one.figures.*figure.value);
-    lines.push_back(line);
+    test::Figures figures{{"evidence", one.score}, {"probability", one.probability}, {"scale", one.scale}};
+    for (const PoseFigure& figure : pose_figures())
+      figures.push_back({figure.name, one.figures.*figure.value});
+    lines.push_back({name + ", hypothesis " + std::to_string(i), with_pose(one.T_fixed_moving, figures)});
   }
 }
 
-/// Maps of robots in one building: bent, noisy, with clutter.
+/// Maps of two robots in one building: bent, noisy, with clutter.
 std::vector<OccupancyGrid> mapped(BuildingKind kind, std::uint64_t seed) {
   SimulateOptions options;
   options.kind = kind;
@@ -66,13 +67,13 @@ TEST(Figures, OfPairs) {
                       small = map_part(one, {12, 6, 18, 12}, {0.0, 0.0, -1.0}),
                       strange = map_part(other, {3, 0, 15, 13}, {0.0, 4.0, 1.2});
   for (const SearchMethodName& search : search_methods()) {
-    if (search.method == SearchMethod::random_walk) continue;  // it has an own verdict, and tests of it
+    if (search.method == SearchMethod::random_walk) continue;  // it has a verdict of its own, and tests of it
     MatchOptions options;
     options.search = search.method;
-    const std::string with = std::string(" ") + search.name;
+    const std::string with = std::string(", ") + search.name;
     add("much in common" + with, match(left, right, options), lines);
-    add("little in common" + with, match(left, small, options), lines);
-    add("nothing in common" + with, match(left, strange, options), lines);
+    add("nothing seen by both" + with, match(left, small, options), lines);
+    add("another building" + with, match(left, strange, options), lines);
   }
   const std::vector<OccupancyGrid> office = mapped(BuildingKind::office, 5),
                                    loop = mapped(BuildingKind::loop, 6);
@@ -91,8 +92,7 @@ TEST(Figures, OfPairsOfAnotherScale) {
   MatchOptions options;
   options.scales = ScaleRange{0.6, 1.1};
   add("a plan that is too large", match(part, plan, options), lines);
-  OccupancyGrid strange = test::on_white_paper(draw_building(32));
-  add("another building's plan", match(part, strange, options), lines);
+  add("another building's plan", match(part, test::on_white_paper(draw_building(32)), options), lines);
   test::expect_figures(GRIDMERGE_TEST_DATA "/scaled_figures.tsv", lines);
 }
 

@@ -130,7 +130,7 @@ TEST(FinestResolution, IsTheLeast) {
 }
 
 TEST(FittingResolution, IsCoarserWhereTheMapsWouldNotFit) {
-  const OccupancyGrid map = make_grid(2500, 1700, 0.001, {}, Cell::free);  // 2^28 cells are 32 per cell
+  const OccupancyGrid map = make_grid(1500, 1500, 0.001, {}, Cell::free);  // 2^28 cells are 60 per cell
   const auto fits = [&](double far) {
     return fitting_resolution(0.05, {{&map, {}}, {&map, {far, far, 0.4}}});
   };
@@ -147,17 +147,31 @@ TEST(FittingResolution, IsCoarserWhereTheMapsWouldNotFit) {
 }
 
 TEST(FittingResolution, GivesAFewCellsNoRoomOfMillions) {
-  const auto cells = [](int side, double far) {
-    const OccupancyGrid map = make_grid(side, side, 0.01, {}, Cell::free);
+  // Two squares of known cells, `far` apart along both axes, in grids with such a border of unknown ones.
+  const auto cells = [](int side, double far, int border = 0) {
+    OccupancyGrid map =
+        make_grid(side + 2 * border, side + 2 * border, 0.01, {-0.01 * border, -0.01 * border, 0.0});
+    for (int row = border; row < border + side; ++row) {
+      for (int column = border; column < border + side; ++column) map.at(column, row) = Cell::free;
+    }
     const std::vector<PlacedMap> maps{{&map, {}}, {&map, {far, far, 0.0}}};
     const Lattice lattice = cover(maps, fitting_resolution(0.01, maps));
     return static_cast<double>(lattice.width) * lattice.height;
   };
-  EXPECT_NEAR(cells(40, 20.0), 2040.0 * 2040.0, 1e4);  // 4 million are few
-  for (const double far : {21.0, 40.0, 100.0}) EXPECT_LE(cells(40, far), 1 << 22) << far;
-  // Of larger maps, 32 cells per cell.
-  EXPECT_GT(cells(400, 27.5), 3100.0 * 3100.0);
-  EXPECT_LE(cells(400, 29.0), 32.0 * 2.0 * 400.0 * 400.0);
+  // Four million are few; where more would be needed, the next coarser power of two will do.
+  const double few = 1 << 22;
+  EXPECT_NEAR(cells(40, 20.0), 2040.0 * 2040.0, 1e4);
+  for (const double far : {21.0, 40.0, 100.0}) {
+    EXPECT_LE(cells(40, far), few) << far;
+    EXPECT_GT(cells(40, far), few / 4.2) << far;
+  }
+  // Of larger maps there are 64 per known cell. Borders count for nothing.
+  const double most = 64.0 * 2.0 * 400.0 * 400.0;
+  for (const int border : {0, 300}) {
+    EXPECT_NEAR(cells(400, 41.0, border), 4500.0 * 4500.0, 1e5) << border;
+    EXPECT_LE(cells(400, 43.0, border), most) << border;
+    EXPECT_GT(cells(400, 43.0, border), most / 4.2) << border;
+  }
 }
 
 TEST(MergedResolution, IsTheOneAskedForOrTheFinest) {

@@ -8,8 +8,9 @@
 #include <numbers>
 #include <vector>
 
-#include "drawn_signature.hpp"
+#include "signature_of.hpp"
 #include "support/building.hpp"
+#include "tally_twin.hpp"
 
 namespace gridmerge::internal {
 namespace {
@@ -18,7 +19,7 @@ using test::draw_building;
 using test::map_part;
 using test::metres_of_one;
 using test::signature_of;
-using test::walk_over_both;
+using test::tally_twin;
 
 /// The pose that was found, between the grid frames.
 SE2 between_grids(const SignatureMatch& match, const Signature& fixed, const Signature& moving) {
@@ -32,7 +33,7 @@ TEST(Compare, SaysOfItsPoseWhatAWalkOverAllWallsSays) {
     const Signature b = signature_of(map_part(draw_building(other), {4, 0, 18, 13}, {-3.0, 7.0, -1.1}));
     const SignatureMatch match = compare(a, b);
     const SE2 T = between_grids(match, a, b);
-    const Tally all = walk_over_both(a, b, GridPose::of(T.x, T.y, T.theta), 1);
+    const Tally all = tally_twin(a, b, GridPose::of(T.x, T.y, T.theta), 1);
     // A wall that lies on the edge of a cell may be in either.
     const double wall = 0.51 * std::max(metres_of_one(a), metres_of_one(b));
     EXPECT_NEAR(match.seen, all.seen, wall) << seed;

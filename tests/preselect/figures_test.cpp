@@ -6,13 +6,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "drawn_signature.hpp"
 #include "preselect/chance.hpp"
 #include "preselect/compare.hpp"
+#include "rooms.hpp"
+#include "signature_of.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge::internal {
@@ -20,6 +22,7 @@ namespace {
 
 using test::draw_building;
 using test::FigureLine;
+using test::Figures;
 using test::map_part;
 using test::rooms_from;
 using test::signature_of;
@@ -40,8 +43,6 @@ std::vector<Signature> some_signatures() {
   all.push_back(signature_of(map_part(rooms_from(0), {3, 0, 17, 9}, {4.0, -2.0, 1.9})));
   return all;
 }
-
-using Figures = std::vector<double>;
 
 Figures figures_of(const Signature& map) {
   double position = 0.0, direction = 0.0, facing = 0.0, descriptors = 0.0, products = 0.0, profiles = 0.0,
@@ -65,27 +66,31 @@ Figures figures_of(const Signature& map) {
       profiles += static_cast<double>((side + 1) * (i + 1)) * map.profiles.sides[side][i];
   }
   for (const Place& place : map.places) places += place.distance;
-  return {map.known_area,
-          map.wall_length,
-          static_cast<double>(map.walls.size()),
-          static_cast<double>(map.keypoints.size()),
-          map.chance_of_meeting,
-          position,
-          direction,
-          facing,
-          descriptors,
-          products,
-          map.profiles.theta,
-          map.profiles.first,
-          static_cast<double>(map.profiles.sides[0].size()),
-          profiles,
-          places};
+  return {{"known_area", map.known_area},
+          {"wall_length", map.wall_length},
+          {"walls", static_cast<double>(map.walls.size())},
+          {"keypoints", static_cast<double>(map.keypoints.size())},
+          {"chance_of_meeting", map.chance_of_meeting},
+          {"positions", position},
+          {"directions", direction},
+          {"facings", facing},
+          {"descriptors", descriptors},
+          {"descriptors_by_place", products},
+          {"profiles_theta", map.profiles.theta},
+          {"profiles_first", map.profiles.first},
+          {"profiles_length", static_cast<double>(map.profiles.sides[0].size())},
+          {"profiles", profiles},
+          {"places", places}};
 }
 
 Figures figures_of(const SignatureMatch& match) {
-  const SE2& T = match.T_fixed_moving;
-  return {T.x,        T.y,          T.theta,     match.seen,       match.met,
-          match.open, match.chance, match.votes, match.next_votes, match.likeness};
+  return test::with_pose(match.T_fixed_moving, {{"seen", match.seen},
+                                                {"met", match.met},
+                                                {"open", match.open},
+                                                {"chance", match.chance},
+                                                {"votes", match.votes},
+                                                {"next_votes", match.next_votes},
+                                                {"likeness", match.likeness}});
 }
 
 /// A line per signature and per pair of them.
@@ -97,16 +102,18 @@ std::vector<FigureLine> all_lines() {
     for (std::size_t b = a + 1; b < maps.size(); ++b) {
       const SignatureMatch match = compare(maps[a], maps[b]);
       FigureLine line{"pair " + std::to_string(a) + " " + std::to_string(b), figures_of(match)};
-      line.figures.push_back(log_odds_of_joining(match, maps[a], maps[b]));
+      line.figures.push_back({"log_odds", log_odds_of_joining(match, maps[a], maps[b])});
       lines.push_back(line);
     }
   }
   for (const double probability : {0.0, 0.2, 0.9, 1.0}) {
     std::ostringstream name;
     name << "look " << probability;
-    lines.push_back({name.str(), {log_odds_after_a_look(-3.0, probability)}});
+    lines.push_back({name.str(), {{"log_odds", log_odds_after_a_look(-3.0, probability)}}});
   }
-  lines.push_back({"shift", {shift_to_this_set({-9.0F, -7.0F, -3.0F, 4.0F}), shift_to_this_set({-9.0F})}});
+  lines.push_back({"shift",
+                   {{"of_four", shift_to_this_set({-9.0F, -7.0F, -3.0F, 4.0F})},
+                    {"of_one", shift_to_this_set({-9.0F})}}});
   return lines;
 }
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "drawn_signature.hpp"
+#include "rooms.hpp"
 
 namespace gridmerge::internal {
 namespace {

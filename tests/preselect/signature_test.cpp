@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "drawn_signature.hpp"
 #include "grid/quarter_turned.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "preselect/chance.hpp"
 #include "preselect/compare.hpp"
+#include "signature_of.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge::internal {

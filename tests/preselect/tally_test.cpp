@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+#include <cstddef>
+#include <limits>
 #include <random>
 
-#include "drawn_signature.hpp"
+#include "signature_of.hpp"
 #include "support/building.hpp"
+#include "tally_twin.hpp"
 
 namespace gridmerge::internal {
 namespace {
@@ -16,7 +18,7 @@ namespace {
 using test::draw_building;
 using test::map_part;
 using test::signature_of;
-using test::walk_over_both;
+using test::tally_twin;
 
 TEST(TallyBoth, SaysWhatAWalkOverTheWallsSays) {
   std::mt19937 random(7);
@@ -30,7 +32,7 @@ TEST(TallyBoth, SaysWhatAWalkOverTheWallsSays) {
       // Most overlap in part, some by a sliver or not at all.
       const GridPose T = GridPose::of(shift(random), shift(random), angle(random));
       for (const std::size_t step : {1, 2, 3, 6, 64, 1000}) {
-        const Tally tally = tally_both(a, b, T, step), twin = walk_over_both(a, b, T, step);
+        const Tally tally = tally_both(a, b, T, step), twin = tally_twin(a, b, T, step);
         EXPECT_NEAR(tally.seen, twin.seen, 1e-9);
         EXPECT_NEAR(tally.met, twin.met, 1e-9);
         EXPECT_NEAR(tally.open, twin.open, 1e-9);
@@ -57,6 +59,11 @@ TEST(TallyBoth, OfMapsFarApartOrWithoutWallsIsNothing) {
   const Signature map = signature_of(map_part(draw_building(3), {0, 0, 13, 13}, {})), none;
   for (const GridPose& T :
        {GridPose::of(1e3, 0.0, 0.3), GridPose::of(-1e9, 1e9, 2.0), GridPose::of(0.0, -1e300, 0.0)}) {
+    EXPECT_EQ(tally_both(map, map, T, 1).seen, 0.0);
+  }
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
+  for (const GridPose& T : {GridPose{inf, 0.0, 0.0, 1.0, 0.0}, GridPose{0.0, nan, 0.0, 1.0, 0.0},
+                            GridPose{-inf, inf, 0.0, nan, 0.0}}) {
     EXPECT_EQ(tally_both(map, map, T, 1).seen, 0.0);
   }
   const GridPose here = GridPose::of(0.0, 0.0, 0.0);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace gridmerge {
 namespace {
 
 using test::FigureLine;
+using test::with_pose;
 
 TEST(Figures, OfEachKindOfBuilding) {
   std::vector<FigureLine> lines;
@@ -28,29 +30,17 @@ TEST(Figures, OfEachKindOfBuilding) {
     const Simulation simulation = simulate(options);
     for (std::size_t i = 0; i < simulation.maps.size(); ++i) {
       const SimulatedMap& map = simulation.maps[i];
-      const OccupancyGrid& grid = map.grid;
-      double occupied = 0.0, free = 0.0, places = 0.0, probability = 0.0;
-      for (int row = 0; row < grid.height; ++row) {
-        for (int column = 0; column < grid.width; ++column) {
-          const Cell cell = grid.at(column, row);
-          if (cell == Cell::unknown) continue;
-          (cell == Cell::occupied ? occupied : free) += 1.0;
-          if (cell == Cell::occupied) places += 3.0 * row + column;
-          probability += grid.probability[grid.index(column, row)];
-        }
-      }
-      const SE2& T = map.T_building_map;
-      lines.push_back({std::string(name_of(kind)) + ", map " + std::to_string(i),
-                       {static_cast<double>(grid.width), static_cast<double>(grid.height), grid.origin.x,
-                        grid.origin.y, occupied, free, places, probability, T.x, T.y, T.theta, map.bend,
-                        static_cast<double>(map.path.size())}});
+      const std::string name = std::string(name_of(kind)) + ", map " + std::to_string(i);
+      lines.push_back({name, test::figures_of(map.grid)});
+      lines.push_back({name + " on the building",
+                       with_pose(map.T_building_map,
+                                 {{"bend", map.bend}, {"scans", static_cast<double>(map.path.size())}})});
     }
-    for (const SimulatedPair& pair : simulation.pairs) {
-      const SE2& T = pair.T_fixed_moving;
-      lines.push_back({std::string(name_of(kind)) + ", pair",
-                       {T.x, T.y, T.theta, pair.tolerance, pair.overlap, pair.shared_wall,
-                        static_cast<double>(pair.tier)}});
-    }
+    for (const SimulatedPair& pair : simulation.pairs)
+      lines.push_back({std::string(name_of(kind)) + ", pair of tier " + pair.tier,
+                       with_pose(pair.T_fixed_moving, {{"tolerance", pair.tolerance},
+                                                       {"overlap", pair.overlap},
+                                                       {"shared_wall", pair.shared_wall}})});
   }
   test::expect_figures(GRIDMERGE_TEST_DATA "/figures.tsv", lines);
 }
