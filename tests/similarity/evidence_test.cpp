@@ -266,6 +266,7 @@ RC_GTEST_PROP(WallEvidence, SeenWallsAreThoseOfTheWallsOneByOne, (unsigned seed)
 
 TEST(DrawEvenly, TakesEveryPointOrSpreadsTheCount) {
   std::vector<WallPoint> points;
+  points.reserve(10);
   for (int i = 0; i < 10; ++i) points.push_back({{static_cast<double>(i), 0.0}, kNoDirection});
   EXPECT_EQ(draw_evenly(points, 20).size(), 10U);
   const std::vector<WallPoint> five = draw_evenly(points, 5);
