@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/merge/fuse.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "grid/seen_from.hpp"
@@ -37,9 +36,7 @@ FusedMap fuse(const std::vector<PlacedMap>& maps, double resolution,
   const SharedCells shared = fuse_box(inputs.maps(), deformations, lattice, lattice.whole(), fused.grid);
   fused.agreeing = static_cast<std::size_t>(shared.agreeing);
   fused.conflicting = static_cast<std::size_t>(shared.conflicting);
-  const bool is_bent = std::any_of(deformations.begin(), deformations.end(),
-                                   [](const Deformation& one) { return !one.is_identity(); });
-  if (!is_bent) fused.omega = measure_omega(fused.grid, inputs.maps());
+  if (!is_any_bent(deformations)) fused.omega = measure_omega(fused.grid, inputs.maps());
   return fused;
 }
 

@@ -41,20 +41,25 @@ Box box_of_grids(const std::vector<PlacedMap>& maps) {
   return box;
 }
 
+bool fits(const Box& box, double resolution, double most_cells) {
+  // A cell more on either side than the box is long, whatever the lattice continues.
+  return box.empty() ||
+         ((box.max_x - box.min_x) / resolution + 2.0) * ((box.max_y - box.min_y) / resolution + 2.0) <=
+             most_cells;
+}
+
+/// Whether the maps cover at most so many cells, as far as their grids tell. O(maps).
+bool surely_fit(double resolution, double most_cells, const std::vector<PlacedMap>& maps,
+                const std::vector<Deformation>& deformations) {
+  return !is_any_bent(deformations) && fits(box_of_grids(maps), resolution, most_cells);
+}
+
 /// `resolution`, or coarser by the power of two with which the maps cover at most so many cells.
 double coarsened_to_fit(double resolution, double most_cells, const std::vector<PlacedMap>& maps,
                         const std::vector<Deformation>& deformations) {
-  // A cell more on either side than the box is long, whatever the lattice continues.
-  const auto fits = [&](const Box& box) {
-    return box.empty() ||
-           ((box.max_x - box.min_x) / resolution + 2.0) * ((box.max_y - box.min_y) / resolution + 2.0) <=
-               most_cells;
-  };
-  const bool is_bent = std::any_of(deformations.begin(), deformations.end(),
-                                   [](const Deformation& one) { return !one.is_identity(); });
-  if (!is_bent && fits(box_of_grids(maps))) return resolution;
+  if (surely_fit(resolution, most_cells, maps, deformations)) return resolution;
   const Box box = covered_box(maps, deformations);
-  while (!fits(box)) resolution *= 2.0;
+  while (!fits(box, resolution, most_cells)) resolution *= 2.0;
   return resolution;
 }
 
@@ -72,13 +77,11 @@ double fitting_resolution(double resolution, const std::vector<PlacedMap>& maps,
   // What is compared takes time by its cells, so there are few, or a share of them is known: of 16 maps that
   // touch at their corners in a row across the box, each known to a quarter, one cell of 64 is.
   constexpr double kFewCells = 1 << 22, kCellsPerKnownCell = 64.0;
-  const double of_few = coarsened_to_fit(resolution, kFewCells, maps, deformations);
-  if (of_few == resolution) return resolution;
+  if (surely_fit(resolution, kFewCells, maps, deformations)) return resolution;
   double known = 0.0;
   for (const PlacedMap& one : maps) known += static_cast<double>(count_cells(*one.map).known());
-  const double of_known = coarsened_to_fit(
-      resolution, std::min<double>(kMaxGridCells, kCellsPerKnownCell * known), maps, deformations);
-  return std::min(of_few, of_known);
+  const double most_cells = std::min<double>(kMaxGridCells, std::max(kFewCells, kCellsPerKnownCell * known));
+  return coarsened_to_fit(resolution, most_cells, maps, deformations);
 }
 
 double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps,

@@ -319,6 +319,11 @@ Box covered_box(const std::vector<PlacedMap>& inputs, const std::vector<Deformat
   return box;
 }
 
+bool is_any_bent(const std::vector<Deformation>& deformations) {
+  return std::any_of(deformations.begin(), deformations.end(),
+                     [](const Deformation& one) { return !one.is_identity(); });
+}
+
 Lattice cover(const std::vector<PlacedMap>& inputs, double resolution,
               const std::vector<Deformation>& deformations, const LatticeLimits& limits) {
   if (!std::isfinite(resolution) || resolution <= 0.0) {

@@ -28,6 +28,9 @@ struct Lattice {
 /// invalid grid or a transform that is not finite. `deformations` as of fuse(). O(cells of the inputs).
 Box covered_box(const std::vector<PlacedMap>& inputs, const std::vector<Deformation>& deformations);
 
+/// Whether a deformation moves anything. O(deformations).
+bool is_any_bent(const std::vector<Deformation>& deformations);
+
 /// How large a lattice may be: powers of two.
 struct LatticeLimits {
   double cells = kMaxGridCells;

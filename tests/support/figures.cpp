@@ -82,12 +82,12 @@ Figures with_pose(const SE2& T, const Figures& others) {
 }
 
 Figures figures_of(const OccupancyGrid& grid) {
-  double occupied = 0.0, free = 0.0, places = 0.0, probability = 0.0;
+  const CellCounts counts = count_cells(grid);
+  double places = 0.0, probability = 0.0;
   for (int row = 0; row < grid.height; ++row) {
     for (int column = 0; column < grid.width; ++column) {
       const Cell cell = grid.at(column, row);
       if (cell == Cell::unknown) continue;
-      (cell == Cell::occupied ? occupied : free) += 1.0;
       if (cell == Cell::occupied) places += 3.0 * row + column;
       probability += static_cast<double>(grid.probability[grid.index(column, row)]);
     }
@@ -97,8 +97,8 @@ Figures figures_of(const OccupancyGrid& grid) {
           {"resolution", grid.resolution},
           {"origin_x", grid.origin.x},
           {"origin_y", grid.origin.y},
-          {"occupied", occupied},
-          {"free", free},
+          {"occupied", static_cast<double>(counts.occupied)},
+          {"free", static_cast<double>(counts.free)},
           {"places", places},
           {"probability", probability}};
 }
