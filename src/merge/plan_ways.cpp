@@ -17,6 +17,9 @@ namespace {
 /// Scales that are looked at, those of the most probable hypotheses first.
 constexpr std::size_t kMostScales = 20;
 
+/// Steps of a scale towards what voices near it say. Each is smaller than the one before.
+constexpr int kScaleSteps = 5;
+
 /// A hypothesis of a voice and the plan, where the plan has another scale: the middle of the voice stays.
 SE2 at_scale(const Hypothesis& hypothesis, double scale, const Point2& middle) {
   const SE2& T = hypothesis.T_fixed_moving;
@@ -28,7 +31,28 @@ bool is_same_scale(double a, double b) {
   return std::abs(std::log(a / b)) <= kSameScale;
 }
 
-/// The distinct scales that voices propose, the most probable ones.
+bool is_new(double scale, const std::vector<double>& scales) {
+  return std::none_of(scales.begin(), scales.end(),
+                      [&](double other) { return is_same_scale(scale, other); });
+}
+
+/// What the hypotheses of the same scale as this one say on average: the mean shift of Fukunaga and Hostetler
+/// (1975), with probabilities as weights, of logarithms. Members that lie on both sides of the surest of
+/// them, which alone would leave some of them out, are heard together so.
+double middle_scale(double scale, const std::vector<const Hypothesis*>& all) {
+  for (int step = 0; step < kScaleSteps; ++step) {
+    double sum = 0.0, weight = 0.0;
+    for (const Hypothesis* one : all) {
+      if (!is_same_scale(one->scale, scale)) continue;
+      sum += one->probability * std::log(one->scale);
+      weight += one->probability;
+    }
+    if (weight > 0.0) scale = std::exp(sum / weight);
+  }
+  return scale;
+}
+
+/// The distinct scales that voices propose, the most probable ones, each the middle of those near it.
 std::vector<double> scales_of(const MergePart& part) {
   std::vector<const Hypothesis*> all;
   for (const PlanVoice& voice : part.voices) {
@@ -40,11 +64,14 @@ std::vector<double> scales_of(const MergePart& part) {
                    [](const Hypothesis* a, const Hypothesis* b) { return a->probability > b->probability; });
   std::vector<double> scales;
   for (const Hypothesis* one : all) {
-    const bool is_new = std::none_of(scales.begin(), scales.end(),
-                                     [&](double scale) { return is_same_scale(one->scale, scale); });
-    if (is_new && scales.size() < kMostScales) scales.push_back(one->scale);
+    if (scales.size() < kMostScales && is_new(one->scale, scales)) scales.push_back(one->scale);
   }
-  return scales;
+  std::vector<double> middles;
+  for (const double scale : scales) {
+    const double middle = middle_scale(scale, all);
+    if (is_new(middle, middles)) middles.push_back(middle);
+  }
+  return middles;
 }
 
 /// The plan at one scale and the voices of parts, as maps of which find_consistent_set() speaks: the plan is

@@ -96,6 +96,19 @@ TEST(BestWay, MembersThatSayOtherwiseCountAgainstIt) {
   EXPECT_LT(probability({here, larger, larger}), 0.9);
 }
 
+/// Bent maps see scales to both sides of that of all maps as one. The outer ones lie too far from it, and
+/// from the surest one, to be the same; all lie near their middle.
+TEST(BestWay, MembersThatSeeScalesOnBothSidesOfTheMiddleAgree) {
+  const std::vector<std::vector<Hypothesis>> sayings{
+      {said(kHere, 0.852, 0.95)}, {said(kHere, 0.887, 0.94)}, {said(kHere, 0.855, 0.9)}};
+  EXPECT_NEAR(probability(sayings), 0.95, 1e-3);
+  // The way keeps the scale of all maps as one.
+  EXPECT_EQ(best_way(part_of(sayings), PreparedMap(draw_building(1)))->scale, 0.852);
+  // Of a scale that nothing connects with theirs they stay apart.
+  EXPECT_LT(probability({{said(kHere, 0.852, 0.95)}, {said(kHere, 0.94, 0.94)}, {said(kHere, 0.94, 0.9)}}),
+            0.9);
+}
+
 TEST(BestWay, SaysNothingWhereNobodyDoes) {
   EXPECT_EQ(probability({}), 0.0);
   EXPECT_EQ(probability({{}, {}, {}}), 0.0);
