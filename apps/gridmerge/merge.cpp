@@ -316,8 +316,8 @@ CLI::Option* add_budget(CLI::App& command, MergeCommandOptions& options) {
   return command
       .add_option("--max-false-joins", options.max_false_joins,
                   "How many joins of the whole merge may be expected to be false, or of more than 50 maps "
-                  "for every 50; those that are least sure are not made. It holds beside --accept, which "
-                  "is asked of each join")
+                  "for every 50; those that are least sure are not made. As many parts on a --plan may be "
+                  "expected to be false. It holds beside --accept, which is asked of each join")
       ->type_name("NUMBER")
       ->check(kNotNegative)
       ->capture_default_str();

@@ -60,7 +60,7 @@ class Hanger {
       : plan_(plan), merged_(merged), options_(options), plan_options_(plan_options), parts_(parts) {
     std::size_t maps = 0;
     for (const MergePart& part : parts) maps += part.members.size();
-    budget_ = false_joins_allowed(options.max_false_joins, maps) - merged.expected_false_joins.value_or(0.0);
+    budget_ = false_joins_allowed(options.max_false_joins, maps);
   }
 
   /// By part; none of those that nothing is said of.
@@ -129,7 +129,7 @@ class Hanger {
   std::vector<MergePart>& parts_;
   std::vector<std::optional<PlanWay>> ways_;
   std::vector<bool> hung_;
-  double budget_ = 0.0;
+  double budget_ = 0.0;  // of its own: merge() makes joins until its budget is used up
   double doubt_ = 0.0;
 };
 

@@ -159,10 +159,29 @@ TEST(PlaceOnPlan, KeepsABudgetOfFalseJoins) {
   const MergeResult result = place_on_plan(ends.maps, ends.plan, apart(2), options, at_scales(1.2, 1.3));
   EXPECT_TRUE(result.components.empty());
   EXPECT_EQ(result.left_out.size(), 2u);
-  for (const PlanPart& part : result.plan->parts) EXPECT_FALSE(part.on_plan());
+  for (const PlanPart& part : result.plan->parts) {
+    EXPECT_FALSE(part.on_plan());
+    EXPECT_TRUE(part.reason == Reason::over_budget || part.probability < options.match.accept_probability);
+  }
   options.max_false_joins = 0.05;
   options.match.accept_probability = 1.0;
   EXPECT_TRUE(place_on_plan(ends.maps, ends.plan, apart(2), options, at_scales(1.2, 1.3)).components.empty());
+}
+
+/// Where there are many maps, their joins use their budget up.
+TEST(PlaceOnPlan, HasABudgetBesideThatOfJoins) {
+  const Ends ends;
+  MergeResult merged = apart(2);
+  merged.expected_false_joins = MergeOptions().max_false_joins;
+  const MergeResult result = place_on_plan(ends.maps, ends.plan, merged, {}, at_scales(1.2, 1.3));
+  ASSERT_EQ(result.components.size(), 1u);
+  double doubt = 0.0;
+  for (const PlanPart& part : result.plan->parts) {
+    EXPECT_TRUE(part.on_plan());
+    doubt += 1.0 - part.probability;
+  }
+  EXPECT_GT(doubt, 0.0);
+  EXPECT_NEAR(*result.expected_false_joins, *merged.expected_false_joins + doubt, 1e-12);
 }
 
 /// A plan drawn `factor` times as large has that part of the scale, and nothing else changes.
