@@ -24,7 +24,23 @@ struct Sighting {
   std::uint32_t occupied = 0;
   std::uint32_t first_free = 0;
   std::uint32_t first_occupied = 0;
+  bool is_wall_of_plan = false;
 };
+
+/// Calls `say` for each cell of the lattice of which a map says something.
+template <typename Say>
+void hear(const LogOddsPatch& patch, const Lattice& lattice, std::vector<Sighting>& sightings,
+          const Say& say) {
+  parallel_rows(0, patch.height, [&](int row) {
+    for (int column = 0; column < patch.width; ++column) {
+      const std::int16_t log_odds = patch.at(column, row);
+      if (log_odds == 0) continue;
+      say(log_odds,
+          sightings[static_cast<std::size_t>(patch.row + row) * static_cast<std::size_t>(lattice.width) +
+                    static_cast<std::size_t>(patch.column + column)]);
+    }
+  });
+}
 
 std::vector<Sighting> sight(const MapPanel& panel, const Lattice& lattice) {
   std::vector<Sighting> sightings(static_cast<std::size_t>(lattice.width) *
@@ -33,24 +49,21 @@ std::vector<Sighting> sight(const MapPanel& panel, const Lattice& lattice) {
     const LogOddsPatch patch = i < panel.deformations.size()
                                    ? draw_log_odds(panel.maps[i], lattice, panel.deformations[i])
                                    : draw_log_odds(panel.maps[i], lattice);
-    parallel_rows(0, patch.height, [&](int row) {
-      for (int column = 0; column < patch.width; ++column) {
-        const std::int16_t log_odds = patch.at(column, row);
-        if (log_odds == 0) continue;
-        Sighting& cell =
-            sightings[static_cast<std::size_t>(patch.row + row) * static_cast<std::size_t>(lattice.width) +
-                      static_cast<std::size_t>(patch.column + column)];
-        std::uint32_t& count = log_odds > 0 ? cell.occupied : cell.free;
-        if (count == 0)
-          (log_odds > 0 ? cell.first_occupied : cell.first_free) = static_cast<std::uint32_t>(i);
-        ++count;
-      }
+    hear(patch, lattice, sightings, [&](std::int16_t log_odds, Sighting& cell) {
+      std::uint32_t& count = log_odds > 0 ? cell.occupied : cell.free;
+      if (count == 0) (log_odds > 0 ? cell.first_occupied : cell.first_free) = static_cast<std::uint32_t>(i);
+      ++count;
     });
+  }
+  if (panel.plan) {
+    hear(draw_log_odds(*panel.plan, lattice), lattice, sightings,
+         [](std::int16_t log_odds, Sighting& cell) { cell.is_wall_of_plan = log_odds > 0; });
   }
   return sightings;
 }
 
 Colour colour_of(const Sighting& cell, const std::vector<Colour>& colours) {
+  if (cell.is_wall_of_plan && cell.occupied == 0) return PreviewColours::kPlan;
   if (cell.free + cell.occupied > 1) return shared_colour(cell.free, cell.occupied);
   if (cell.occupied > 0) return colours[cell.first_occupied];
   if (cell.free > 0) return free_tint(colours[cell.first_free]);
@@ -119,7 +132,9 @@ Canvas draw_panel(const MapPanel& panel, TextSize title) {
   // One cell less than there is room for: a coarser lattice need not begin where the maps do.
   const int room = panel.max_side - 2 * kMargin - 1;
   const double coarsening = std::max(1.0, std::ceil(panel.longest_side / room));
-  const Lattice lattice = cover(panel.maps, panel.resolution * coarsening, panel.deformations);
+  std::vector<PlacedMap> drawn = panel.maps;
+  if (panel.plan) drawn.push_back(*panel.plan);
+  const Lattice lattice = cover(drawn, panel.resolution * coarsening, panel.deformations);
   const int zoom = std::clamp(panel.min_side / std::max(lattice.width, lattice.height), 1, kMaxZoom);
   const Canvas drawing = draw_maps(panel, lattice, zoom);
   const Canvas scale_bar =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ struct MapPanel {
   std::string title;
   std::vector<PlacedMap> maps;
   std::vector<Deformation> deformations;  ///< of the maps, as of fuse()
-  std::vector<Colour> colours;            ///< one a map
+  std::vector<Colour> colours;            ///< one per map
+  std::optional<PlacedMap> plan;          ///< its walls, drawn where no map has one
   double resolution = 0.0;                ///< of the finest drawing that makes sense [m/cell]
   double longest_side = 0.0;              ///< of the maps together, in such cells; may be too large
   int min_width = 0;                      ///< pixels of the whole panel, for its title

@@ -18,16 +18,8 @@ namespace {
 constexpr std::size_t kMostCells = std::size_t{1} << 22;
 constexpr std::size_t kMostBytes = 500'000;
 
-/// The lines that maps are hung on, gray ones too, and nothing of the paper.
-OccupancyGrid walls_of(const OccupancyGrid& plan) {
-  OccupancyGrid walls = with_enclosed_free(plan);
-  walls.probability.clear();
-  std::replace(walls.cells.begin(), walls.cells.end(), Cell::free, Cell::unknown);
-  return walls;
-}
-
 ShownMap show_plan(const OccupancyGrid& plan) {
-  const OccupancyGrid walls = walls_of(plan);
+  const OccupancyGrid walls = walls_of_plan(plan);
   std::size_t most_cells = kMostCells;
   while (true) {
     ShownMap shown = show_map(walls, most_cells);
@@ -52,8 +44,23 @@ Placed placed(const MergeResult& result, std::size_t first) {
   return {};
 }
 
-Json places_json(const MergeResult& result) {
-  Json places = Json::array();
+Json places_json(const std::vector<PlanPlace>& places) {
+  Json json = Json::array();
+  for (const PlanPlace& place : places) {
+    json.push_back({{"component", place.component ? Json(*place.component) : Json()},
+                    {"map", place.component ? Json() : Json(place.map)},
+                    {"transform", transform_json(place.T_scene_plan)},
+                    {"scale", number_json(place.scale)},
+                    {"probability", number_json(place.probability)},
+                    {"on_plan", place.on_plan}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::vector<PlanPlace> plan_places(const MergeResult& result) {
+  std::vector<PlanPlace> places;
   std::set<std::size_t> told;  // components
   for (const PlanPart& part : result.plan->parts) {
     if (part.probability <= 0.0) continue;
@@ -61,21 +68,22 @@ Json places_json(const MergeResult& result) {
     if (component && !told.insert(*component).second) continue;
     const bool is_frame = component && part.on_plan();
     const SE2 T_scene_plan = is_frame ? SE2{} : T_scene_first * inverse(part.T_plan_first);
-    places.push_back({{"component", component ? Json(*component) : Json()},
-                      {"map", component ? Json() : Json(part.maps.front())},
-                      {"transform", transform_json(T_scene_plan)},
-                      {"scale", number_json(part.on_plan() ? result.plan->scale : part.scale)},
-                      {"probability", number_json(part.probability)},
-                      {"on_plan", part.on_plan()}});
+    places.push_back({component, part.maps.front(), T_scene_plan,
+                      part.on_plan() ? result.plan->scale : part.scale, part.probability, part.on_plan()});
   }
   return places;
 }
 
-}  // namespace
+OccupancyGrid walls_of_plan(const OccupancyGrid& plan) {
+  OccupancyGrid walls = with_enclosed_free(plan);
+  walls.probability.clear();
+  std::replace(walls.cells.begin(), walls.cells.end(), Cell::free, Cell::unknown);
+  return walls;
+}
 
 Json plan_page_json(const NamedMerge& merge) {
   const PlanPlacement& plan = *merge.result.plan;
-  Json places = places_json(merge.result);
+  Json places = places_json(plan_places(merge.result));
   const bool is_drawn = merge.plan != nullptr && !places.empty();
   return {{"name", plan.name},
           {"scale", number_json(plan.scale)},

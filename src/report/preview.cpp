@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <optional>
 #include <span>
 
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/merge_record.hpp"
+#include "match/scaled_pose.hpp"
 #include "report/canvas.hpp"
 #include "report/map_panel.hpp"
+#include "report/plan_layer.hpp"
 #include "report/preview_colours.hpp"
 #include "report/short_names.hpp"
 #include "report/style.hpp"
@@ -62,6 +66,43 @@ MapPanel left_out_panel(const std::string& name, const OccupancyGrid& map, std::
   return panel;
 }
 
+/// The walls of a plan, at its scale, under the maps that hang on it.
+class PlanUnderMaps {
+ public:
+  explicit PlanUnderMaps(const NamedMerge& merge) {
+    if (!merge.plan || !merge.result.plan) return;
+    for (const PlanPlace& place : plan_places(merge.result)) {
+      if (place.on_plan) place_ = place;  // all are one component, or one map
+    }
+    if (place_) walls_ = scaled(walls_of_plan(*merge.plan), place_->scale);
+    name_ = std::filesystem::path(merge.result.plan->name).filename().string();
+  }
+
+  bool is_drawn() const { return place_.has_value(); }
+  const std::string& name() const { return name_; }
+
+  /// The map that hangs there alone.
+  std::optional<std::size_t> lone_map() const {
+    return place_ && !place_->component ? std::optional(place_->map) : std::nullopt;
+  }
+
+  bool is_under(std::size_t component) const { return place_ && place_->component == component; }
+
+  /// Into a panel, which grows as far as the plan reaches.
+  void draw_into(MapPanel& panel) const {
+    panel.plan = {&walls_, place_->T_scene_plan};
+    std::vector<PlacedMap> drawn = panel.maps;
+    drawn.push_back(*panel.plan);
+    const Box box = covered_box(drawn, panel.deformations);
+    panel.longest_side = std::max(box.max_x - box.min_x, box.max_y - box.min_y) / panel.resolution;
+  }
+
+ private:
+  std::optional<PlanPlace> place_;
+  OccupancyGrid walls_;
+  std::string name_;
+};
+
 // Puts the parts beside each other, in as many rows as the width asks for.
 Canvas flow(const std::vector<Canvas>& parts, int width, int row_gap) {
   struct Spot {
@@ -101,7 +142,7 @@ Canvas legend_entry(Colour left, Colour right, const std::string& label, int wid
 }
 
 std::vector<Canvas> legend(const std::vector<std::string>& names, std::span<const Component> components,
-                           int width) {
+                           const PlanUnderMaps& plan, int width) {
   std::vector<Canvas> entries;
   for (const Component& component : components) {
     for (const Member& member : component.members) {
@@ -109,8 +150,14 @@ std::vector<Canvas> legend(const std::vector<std::string>& names, std::span<cons
       entries.push_back(legend_entry(colour, free_tint(colour), names.at(member.map), width));
     }
   }
-  if (entries.empty()) return entries;
   using Colours = PreviewColours;
+  if (const std::optional<std::size_t> map = plan.lone_map()) {
+    const Colour colour = map_colour(*map);
+    entries.push_back(legend_entry(colour, free_tint(colour), names.at(*map), width));
+  }
+  if (plan.is_drawn())
+    entries.push_back(legend_entry(Colours::kPlan, Colours::kPlan, "walls of " + plan.name(), width));
+  if (components.empty()) return entries;
   entries.push_back(legend_entry(Colours::kSharedWall, Colours::kSharedFree, "in two maps or more", width));
   entries.push_back(
       legend_entry(Colours::kDisagreement, shared_colour(7, 1),
@@ -161,29 +208,46 @@ Colour map_colour(std::size_t map) {
 }
 
 std::string preview_png(const NamedMerge& merge) {
-  const auto& [names, maps, result, plan] = merge;
+  const auto& [names, maps, result, drawing] = merge;
+  const PlanUnderMaps plan(merge);
   const std::vector<std::string> called = short_names(names);
-  const TextSize size = result.components.empty() ? TextSize::small : TextSize::large;
+  const bool is_any_merged = !result.components.empty() || plan.lone_map();
+  const TextSize size = is_any_merged ? TextSize::large : TextSize::small;
   std::vector<Canvas> blocks;
   int width = kPageMinWidth;
   const std::size_t components = std::min(result.components.size(), kMaxComponentPanels);
   for (std::size_t i = 0; i < components; ++i) {
-    blocks.push_back(draw_panel(component_panel(maps, result, i), size));
+    MapPanel panel = component_panel(maps, result, i);
+    if (plan.is_under(i)) plan.draw_into(panel);
+    blocks.push_back(draw_panel(panel, size));
     width = std::max(width, blocks.back().width());
   }
   if (const std::size_t more = result.components.size() - components; more > 0)
     blocks.push_back(heading(fmt::format("And {} more merged maps", more), size));
-  const std::vector<Canvas> entries = legend(called, std::span(result.components).first(components), width);
+  if (const std::optional<std::size_t> map = plan.lone_map()) {
+    MapPanel panel = left_out_panel(called.at(*map), maps.at(*map), *map);
+    panel.title = fmt::format("{} on {}", called[*map], plan.name());
+    panel.min_side = kComponentMinSide;
+    panel.min_width = kPageMinWidth;
+    panel.max_side = kComponentMaxSide;
+    plan.draw_into(panel);
+    blocks.push_back(draw_panel(panel, size));
+    width = std::max(width, blocks.back().width());
+  }
+  const std::vector<Canvas> entries =
+      legend(called, std::span(result.components).first(components), plan, width);
   if (!entries.empty()) blocks.push_back(flow(entries, width, kLegendGap));
 
   std::vector<Canvas> left_out;
+  std::size_t more = result.left_out.size();
   for (const LeftOut& one : result.left_out) {
     if (left_out.size() == kMaxLeftOutPanels) break;
+    --more;
     const std::size_t map = one.map;
+    if (plan.lone_map() == map) continue;
     left_out.push_back(draw_panel(left_out_panel(called.at(map), maps.at(map), map), TextSize::small));
   }
   if (!left_out.empty()) {
-    const std::size_t more = result.left_out.size() - left_out.size();
     blocks.push_back(heading(more == 0 ? "Left out" : fmt::format("Left out (and {} more)", more), size));
     blocks.push_back(flow(left_out, width, kGap));
   }

@@ -295,6 +295,49 @@ TEST(Preview, TheLegendHasASampleOfTheWallsAndTheFreeSpaceOfEachMap) {
   EXPECT_EQ(free_tint({255, 0, 155}), (Colour{255, 194, 231}));  // a quarter of the colour, of 100 parts 24
 }
 
+Picture preview_on_a_plan(const std::vector<OccupancyGrid>& maps, const MergeResult& result,
+                          const OccupancyGrid* plan) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < maps.size(); ++i) names.push_back("map" + std::to_string(i) + ".yaml");
+  return {decode_png(preview_png({names, maps, result, plan}))};
+}
+
+TEST(Preview, DrawsTheWallsOfThePlanWhereMapsHaveNone) {
+  // At its scale of 2, the plan has cells as large as those of the maps.
+  const std::vector<OccupancyGrid> maps{map_from({"#..#"}, 0.5), map_from({"#..#"}, 0.5)};
+  const OccupancyGrid plan = map_from({"######", "#....#", "#....#", "######"}, 0.25);
+  MergeResult result = test::merged(maps, {{{0, {0.5, 0.5, 0.0}}, {1, {0.5, 0.5, 0.0}}}});
+  const PlanPart part{{0, 1}, {0.5, 0.5, 0.0}, 2.0, 0.99, Reason::none};
+  result.plan = PlanPlacement{"folder/floor.png", 2.0, {part}, 0.25};
+  const Picture drawn = preview_on_a_plan(maps, result, &plan);
+  EXPECT_EQ(drawn.cells(Colours::kPlan), 16u);  // all that the plan has: the maps' walls lie beside them
+  EXPECT_EQ(drawn.cells(Colours::kSharedWall), 2u);
+  EXPECT_EQ(drawn.cells(Colours::kSharedFree), 2u);
+  EXPECT_TRUE(preview_on_a_plan(maps, result, nullptr).pixels(Colours::kPlan).empty());
+
+  MergeResult over = result;  // a cell to the left: the left walls of the maps lie on one of the plan's
+  for (Member& member : over.components[0].members) member.T_component_map.x = 0.0;
+  const Picture covered = preview_on_a_plan(maps, over, &plan);
+  EXPECT_EQ(covered.cells(Colours::kPlan), 15u);
+  EXPECT_EQ(covered.cells(Colours::kSharedWall), 2u);
+
+  MergeResult off = result;
+  off.plan = PlanPlacement{"floor.png", 1.0, {{{0, 1}, {}, 2.0, 0.5, Reason::ambiguous}}, 0.25};
+  EXPECT_TRUE(preview_on_a_plan(maps, off, &plan).pixels(Colours::kPlan).empty());
+}
+
+TEST(Preview, ShowsALoneMapOnThePlan) {
+  const std::vector<OccupancyGrid> maps{map_from({"#..."}, 0.5), map_from({"#"}, 0.5)};
+  const OccupancyGrid plan = map_from({"######", "#....#", "#....#", "######"}, 0.25);
+  MergeResult result;
+  result.left_out = {{0, Reason::ambiguous}, {1, Reason::ambiguous}};
+  result.plan = PlanPlacement{"floor.png", 2.0, {{{0}, {0.5, 0.5, 0.0}, 2.0, 0.99, Reason::none}}, 0.25};
+  const Picture drawn = preview_on_a_plan(maps, result, &plan);
+  EXPECT_EQ(drawn.cells(Colours::kPlan), 16u);
+  EXPECT_EQ(drawn.cells(free_tint(map_colour(0))), 3u);
+  EXPECT_GE(drawn.pixels(map_colour(1)).size(), 1u) << "the other one is shown as left out";
+}
+
 TEST(Preview, OfNothingIsAnEmptyPage) {
   const PngImage page = decode_png(preview_png({{}, {}, {}}));
   EXPECT_EQ(page.width, 1 * 48);

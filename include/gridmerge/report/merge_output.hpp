@@ -23,7 +23,7 @@ struct NamedMerge {
   const std::vector<std::string>& names;   ///< `names[i]` is what to call map i
   const std::vector<OccupancyGrid>& maps;  ///< as given to merge()
   const MergeResult& result;               ///< as merge() returned it
-  /// As given to place_on_plan(): the report draws it. Null: no plan, or one that is not at hand.
+  /// As given to place_on_plan(): report and preview draw it. Null: no plan, or one that is not at hand.
   const OccupancyGrid* plan = nullptr;
 };
 
