@@ -16,7 +16,9 @@ from ._repr import count
 from ._tasks import MapSpec
 
 TASK_SECONDS = 0.4
-"""What a task is to take, so that an engine's few milliseconds for each count for little."""
+"""What a task is to take at most, so that an engine's few milliseconds for each count for little."""
+_LEAST_TASK_SECONDS = 0.1  # an engine's milliseconds still count for less than a tenth
+_TASKS_OF_A_ROUND = 64  # at least, if none would be shorter: workers that end early wait for the last one
 MOST_ATTEMPTS = 3
 """At a task whose worker dies, or with which the engine fails."""
 _MOST_WAITING = 1024  # tasks that the engine has at a time: it may have hundreds of workers
@@ -132,6 +134,7 @@ class MatchingExecutor:
         if progress is not None and found > 0:
             progress(found)
         total = len(waiting)
+        task_seconds = self._task_seconds(waiting)
         if waiting and self._cache is not None:
             self._cache.announce(self._accept)
             if before is not None:
@@ -147,7 +150,7 @@ class MatchingExecutor:
                     if again:
                         task = again.popleft()
                     else:
-                        task = self._next_task(number, waiting)
+                        task = self._next_task(number, waiting, task_seconds)
                         number += 1
                     if running and sent_bytes + task.sent_bytes > _MOST_BYTES_WAITING:
                         again.appendleft(task)
@@ -199,15 +202,24 @@ class MatchingExecutor:
         if self._cache is not None:
             self._cache.keep(self._key(one), match)
 
-    def _next_task(self, number: int, waiting: deque[Wanted]) -> _Task:
-        """The next pairs, about TASK_SECONDS of them."""
+    def _guess(self, one: Wanted) -> float:
+        """What its match takes [s]."""
+        return self._rate(one.search) * one.cells
+
+    def _task_seconds(self, waiting: Iterable[Wanted]) -> float:
+        """What each task of a round is to take."""
+        share = sum(map(self._guess, waiting)) / _TASKS_OF_A_ROUND
+        return min(TASK_SECONDS, max(share, _LEAST_TASK_SECONDS))
+
+    def _next_task(self, number: int, waiting: deque[Wanted], seconds: float) -> _Task:
+        """The next pairs, about so many seconds of them."""
         task = _Task(number, [])
         sent: dict[str, int] = {}
         while waiting and len(task.wanted) < _MOST_PAIRS:
             one = waiting[0]
-            guess = self._rate(one.search) * one.cells
+            guess = self._guess(one)
             with_it = sent | {map.content: map.sent_bytes for map in (one.fixed, one.moving)}
-            if task.wanted and (task.guess + guess > TASK_SECONDS or sum(with_it.values()) > _MOST_BYTES):
+            if task.wanted and (task.guess + guess > seconds or sum(with_it.values()) > _MOST_BYTES):
                 break
             sent = with_it
             task.wanted.append(waiting.popleft())

@@ -164,6 +164,17 @@ def test_tasks_are_batched_by_what_they_cost(robots: list[str], monkeypatch: pyt
         assert len(pairs) >= 1
 
 
+def test_a_round_of_little_work_has_small_tasks(robots: list[str]) -> None:
+    grids = [gridmerge.load(path) for path in robots]
+    maps = [_executor.of_grid(grid) for grid in grids]
+    matching = _executor.MatchingExecutor(Inline(), 0.95, 12)
+    one = _executor.Wanted(maps[0], maps[1], "quick", lambda match: None)
+    matching._rates["quick"] = 0.01 / one.cells  # seconds of a pair: 0.01
+    assert matching._task_seconds([one] * 10) == pytest.approx(0.1)
+    assert matching._task_seconds([one] * 1280) == pytest.approx(0.2)
+    assert matching._task_seconds([one] * 10_000) == pytest.approx(_executor.TASK_SECONDS)
+
+
 def test_a_search_that_is_not_known_takes_its_time_too(robots: list[str]) -> None:
     maps = [_executor.of_grid(gridmerge.load(path)) for path in robots[:2]]
     wanted = [_executor.Wanted(maps[0], maps[1], "by-hand", lambda match: None)]
