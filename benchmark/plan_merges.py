@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Merges maps with a plan of another scale, and counts those that hang on it in their place and those that must not.
 
-usage: benchmark/plan_merges.py --gridmerge GRIDMERGE --output DIR [--data DATA] [--jobs N]
+usage: benchmark/plan_merges.py --gridmerge GRIDMERGE --output DIR [--data DATA] [--jobs N] [--transform KIND]
 
 Writes DIR/plan_merges.md and DIR/plan_merges.tsv. Teams of simulated robots are merged with plans of their building and
 of others. Where DATA has them, real maps of E5 and HIH are merged with both layouts, and so are sets of laser maps. A
@@ -33,6 +33,7 @@ from plans import (
     evenly,
     known_points,
     on_paper,
+    parser_of,
     read_options,
     real_cases,
     simulate,
@@ -65,6 +66,7 @@ class Outcome:
     team: Team
     right: int
     wrong: int
+    errors: list[float]  # of the maps of the plan's building that hang on it [m of the map]
     joined: int  # by the plan alone: parts that are one component now, less one
     probability: float  # of the most probable part that is wrong, or would be
     seconds: float
@@ -132,13 +134,16 @@ def is_right(truth: Truth, transform: Scaled) -> bool:
     return off <= SCALE_TOLERANCE and error(truth, transform) <= TOLERANCE
 
 
-def merge(gridmerge: pathlib.Path, team: Team) -> Outcome:
+def merge(gridmerge: pathlib.Path, team: Team, transform: str) -> Outcome:
     with tempfile.TemporaryDirectory() as folder:
         output = pathlib.Path(folder) / "merged"
-        asked = [*team.maps, "--plan", team.plan, "--plan-scale", SCALES, "--threads", "1", "--quiet"]
+        asked = [*team.maps, "--plan", team.plan, "--plan-scale", SCALES, "--transform", transform]
         start = time.monotonic()
         done = subprocess.run(
-            [gridmerge, "merge", *asked, "-o", output], capture_output=True, text=True, check=False
+            [gridmerge, "merge", *asked, "--threads", "1", "--quiet", "-o", output],
+            capture_output=True,
+            text=True,
+            check=False,
         )
         seconds = time.monotonic() - start
         if done.returncode not in (0, 3):
@@ -154,17 +159,19 @@ def merge(gridmerge: pathlib.Path, team: Team) -> Outcome:
     }
     if plan["component"] is None:  # one map at most
         poses = {part["maps"][0]: read_pose(part["transform"]) for part in hung}
-    right = 0
+    right, errors = 0, []
     for map_, pose in poses.items():
         # To the plan's own metres.
         x, y = transformed(pose, np.zeros((1, 2)))[0] / plan["scale"]
         answer = Scaled((float(x), float(y), pose[2]), 1.0 / plan["scale"])
-        right += map_ in team.truth and is_right(team.truth[map_], answer)
+        if map_ in team.truth:
+            right += is_right(team.truth[map_], answer)
+            errors.append(error(team.truth[map_], answer))
     wrong = [
         part["probability"] for part in plan["parts"] if not any(map_ in team.truth for map_ in part["maps"])
     ]
     return Outcome(
-        team, right, len(plan["maps"]) - right, max(0, len(hung) - 1), max(wrong, default=0.0), seconds
+        team, right, len(plan["maps"]) - right, errors, max(0, len(hung) - 1), max(wrong, default=0.0), seconds
     )
 
 
@@ -172,14 +179,16 @@ def report(outcomes: list[Outcome]) -> str:
     tables = by_table(outcomes, lambda outcome: outcome.team.table)
     lines = [
         "| merges | teams | maps of the plan's building | right on it | wrong on it | joins by the plan alone | "
-        "most probable stranger | seconds, median |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- |",
+        "errors [m], median and largest | most probable stranger | seconds, median |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- |",
     ]
     for name, of_table in tables.items():
         maps = sum(map_ in one.team.truth for one in of_table for map_ in map(str, one.team.maps))
+        errors = [off for one in of_table for off in one.errors]
+        off = f"{statistics.median(errors):.2f}, {max(errors):.2f}" if errors else ""
         lines.append(
             f"| {name} | {len(of_table)} | {maps} | {sum(one.right for one in of_table)} | "
-            f"{sum(one.wrong for one in of_table)} | {sum(one.joined for one in of_table)} | "
+            f"{sum(one.wrong for one in of_table)} | {sum(one.joined for one in of_table)} | {off} | "
             f"{max(one.probability for one in of_table):.3f} | "
             f"{statistics.median(one.seconds for one in of_table):.0f} |"
         )
@@ -187,14 +196,16 @@ def report(outcomes: list[Outcome]) -> str:
 
 
 def main() -> None:
-    options = read_options(__doc__, "sets of laser maps for each layout", "merges")
+    parser = parser_of(__doc__, "sets of laser maps for each layout", "merges")
+    parser.add_argument("--transform", default="rigid", help="as of gridmerge merge")
+    options = read_options(parser)
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         teams = real_teams(options.data, options.limit)
         teams += simulated_teams(options.gridmerge, pathlib.Path(folder))
         outcomes = []
         with (options.output / "plan_merges.tsv").open("w") as file:
             print("table", "plan", "maps", "right", "wrong", "joined", "stranger", sep="\t", file=file)
-            for one in pool.map(lambda team: merge(options.gridmerge, team), teams):
+            for one in pool.map(lambda team: merge(options.gridmerge, team, options.transform), teams):
                 outcomes.append(one)
                 maps = f"{one.team.maps[0].parent.name}/{one.team.maps[0].name}"
                 print(

@@ -316,8 +316,8 @@ def report(outcomes: list[Outcome]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def read_options(description: str, limited: str | None, work: str) -> argparse.Namespace:
-    """What is asked for on the command line; the folder for it is there. `limited`: what --limit counts."""
+def parser_of(description: str, limited: str | None, work: str) -> argparse.ArgumentParser:
+    """Of the options that all benchmarks of plans have. `limited`: what --limit counts."""
     parser = argparse.ArgumentParser(
         description=description, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -326,13 +326,18 @@ def read_options(description: str, limited: str | None, work: str) -> argparse.N
     parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared/data"))
     parser.add_argument("--limit", type=int, default=200, help=limited)
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help=f"{work} at one time")
+    return parser
+
+
+def read_options(parser: argparse.ArgumentParser) -> argparse.Namespace:
+    """What is asked for on the command line; the folder for it is there."""
     options = parser.parse_args()
     options.output.mkdir(parents=True, exist_ok=True)
     return options
 
 
 def main() -> None:
-    options = read_options(__doc__, None, "matches")
+    options = read_options(parser_of(__doc__, None, "matches"))
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         cases = real_cases(options.data, options.limit)
         cases += simulated_cases(options.gridmerge, pathlib.Path(folder), options.limit // 2)
