@@ -7,7 +7,7 @@ usage: benchmark/plan_merges.py --gridmerge GRIDMERGE --output DIR [--data DATA]
 Writes DIR/plan_merges.md and DIR/plan_merges.tsv. Teams of simulated robots are merged with plans of their building and
 of others. Where DATA has them, real maps of E5 and HIH are merged with both layouts, and so are sets of laser maps. A
 map is right if the plan's scale is within 3 % and the map lies within 1.5 m (root mean square, of its marks or its
-known cells); plans.py tells more.
+known cells); plans.py tells more. Maps are judged by their rigid poses, also where --transform bends them.
 """
 
 import concurrent.futures
@@ -171,7 +171,13 @@ def merge(gridmerge: pathlib.Path, team: Team, transform: str) -> Outcome:
         part["probability"] for part in plan["parts"] if not any(map_ in team.truth for map_ in part["maps"])
     ]
     return Outcome(
-        team, right, len(plan["maps"]) - right, errors, max(0, len(hung) - 1), max(wrong, default=0.0), seconds
+        team,
+        right,
+        len(plan["maps"]) - right,
+        errors,
+        max(0, len(hung) - 1),
+        max(wrong, default=0.0),
+        seconds,
     )
 
 
@@ -197,7 +203,12 @@ def report(outcomes: list[Outcome]) -> str:
 
 def main() -> None:
     parser = parser_of(__doc__, "sets of laser maps for each layout", "merges")
-    parser.add_argument("--transform", default="rigid", help="as of gridmerge merge")
+    parser.add_argument(
+        "--transform",
+        choices=("rigid", "similarity", "affine", "elastic"),
+        default="rigid",
+        help="as of gridmerge merge",
+    )
     options = read_options(parser)
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         teams = real_teams(options.data, options.limit)

@@ -246,7 +246,7 @@ int run_merge(const MergeCommandOptions& options) {
   console.clear();
   if (options.common.verbose) print(describe_joins(asked, result));
   print(describe_merge(asked, inputs.maps, result, known_poses.describe_unused(inputs.maps, result)) +
-        describe_plan(options.maps, result) + hints + describe_removed(removed));
+        describe_plan(asked, result) + hints + describe_removed(removed));
   print("look at it: " + escape_controls((std::filesystem::path(options.output) / "report.html").string()) +
         "\n");
   if (not_exported) std::rethrow_exception(not_exported);
@@ -314,10 +314,11 @@ void add_files(CLI::App& command, MergeCommandOptions& options) {
 /// --max-false-joins.
 CLI::Option* add_budget(CLI::App& command, MergeCommandOptions& options) {
   return command
-      .add_option("--max-false-joins", options.max_false_joins,
-                  "How many joins of the whole merge may be expected to be false, or of more than 50 maps "
-                  "for every 50; those that are least sure are not made. As many parts on a --plan may be "
-                  "expected to be false. It holds beside --accept, which is asked of each join")
+      .add_option(
+          "--max-false-joins", options.max_false_joins,
+          "How many joins of the whole merge may be expected to be false, or of more than 50 maps "
+          "for every 50; those that are least sure are not made. The parts on a --plan have a second budget "
+          "of the same size. It holds beside --accept, which is asked of each join")
       ->type_name("NUMBER")
       ->check(kNotNegative)
       ->capture_default_str();

@@ -25,16 +25,6 @@ const char* figure_name(const SearchOptions& search) {
   return search.random_walk() ? "acceptance index" : "probability";
 }
 
-/// The options by which two maps would be joined, which have this probability; "" if neither would.
-std::string what_asks_for_less(const AskedMerge& asked, double probability) {
-  const bool is_below = probability < asked.search.accept_from();
-  const double doubt = 1.0 - probability;
-  if (doubt <= asked.max_false_joins) return is_below ? "     a lower --accept asks for less\n" : "";
-  return fmt::format(
-      "     {}a higher --max-false-joins asks for less: this join alone is false with probability {:.3f}\n",
-      is_below ? "a lower --accept with " : "", doubt);
-}
-
 /// Where to look for what keeps two maps apart.
 std::string try_match(const AskedMerge& asked, const Join& join) {
   return fmt::format("try: gridmerge match {} {}{}   (how these two may lie, and why it is not believed)\n",
@@ -82,7 +72,8 @@ std::string describe_nothing(const AskedMerge& asked, const MergeResult& result,
   }
   if (asked.search.up_the_tree()) return text + "     a lower --accept asks for less\n";
   text += asked.names.size() == 2 && nearest != result.joins.end()
-              ? what_asks_for_less(asked, std::max(nearest->probability, likeliest_open_way(result)))
+              ? what_asks_for_less(asked, std::max(nearest->probability, likeliest_open_way(result)),
+                                   "this join alone")
               : "     a lower --accept or a higher --max-false-joins asks for less\n";
   return text + "     --init TABLE and --fix MAP take poses that you know; the page lays maps by hand\n";
 }
@@ -184,6 +175,14 @@ std::string explain_no_change(const AskedMerge& asked, const MergeResult& result
 }
 
 }  // namespace
+
+std::string what_asks_for_less(const AskedMerge& asked, double probability, const char* what) {
+  const bool is_below = probability < asked.search.accept_from();
+  const double doubt = 1.0 - probability;
+  if (doubt <= asked.max_false_joins) return is_below ? "     a lower --accept asks for less\n" : "";
+  return fmt::format("     {}a higher --max-false-joins asks for less: {} is false with probability {:.3f}\n",
+                     is_below ? "a lower --accept with " : "", what, doubt);
+}
 
 std::string describe_joins(const AskedMerge& asked, const MergeResult& result) {
   const std::vector<std::string>& names = asked.names;

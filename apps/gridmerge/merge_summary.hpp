@@ -21,6 +21,10 @@ struct AskedMerge {
   bool is_resolution_asked = false;  ///< that of the merged maps
 };
 
+/// The options by which `what` would be believed, which has this probability; "" if neither stands in its
+/// way.
+std::string what_asks_for_less(const AskedMerge& asked, double probability, const char* what);
+
 /// What became of each comparison, a line each.
 std::string describe_joins(const AskedMerge& asked, const MergeResult& result);
 

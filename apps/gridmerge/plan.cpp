@@ -81,7 +81,7 @@ constexpr double kWorthAsking = 0.5;
 
 }  // namespace
 
-std::string describe_plan(const std::vector<std::string>& names, const MergeResult& result) {
+std::string describe_plan(const AskedMerge& asked, const MergeResult& result) {
   if (!result.plan) return {};
   const PlanPlacement& plan = *result.plan;
   const std::size_t on_plan = plan.maps_on_plan().size();
@@ -92,12 +92,12 @@ std::string describe_plan(const std::vector<std::string>& names, const MergeResu
     text += "no map hangs on it\n";
   } else {
     fmt::format_to(out, "{} of {} maps hang on it{}, enlarged by {:.4f} (probability {:.4f})\n", on_plan,
-                   names.size(), file.empty() ? std::string() : ", as " + file, plan.scale,
+                   asked.names.size(), file.empty() ? std::string() : ", as " + file, plan.scale,
                    plan.probability());
   }
   for (const PlanPart& part : plan.parts) {
     std::vector<std::string> maps;
-    for (const std::size_t map : part.maps) maps.push_back(escape_controls(names[map]));
+    for (const std::size_t map : part.maps) maps.push_back(escape_controls(asked.names[map]));
     if (part.on_plan()) {
       if (file.empty())
         fmt::format_to(out, "  {}: {}\n", fmt::join(maps, ", "), describe_pose(part.T_plan_first));
@@ -114,11 +114,7 @@ std::string describe_plan(const std::vector<std::string>& names, const MergeResu
       plan.parts.begin(), plan.parts.end(), 0.0,
       [](double probability, const PlanPart& part) { return std::max(probability, part.probability); });
   if (on_plan == 0 && most >= kWorthAsking)
-    fmt::format_to(
-        out,
-        "     a lower --accept with a higher --max-false-joins asks for less: the most probable place "
-        "is false with probability {:.3f}\n",
-        1.0 - most);
+    text += what_asks_for_less(asked, most, "the most probable place");
   return text;
 }
 

@@ -8,6 +8,7 @@
 
 #include "console.hpp"
 #include "gridmerge/merge/plan.hpp"
+#include "merge_summary.hpp"
 
 namespace gridmerge::cli {
 
@@ -45,7 +46,7 @@ class Plan {
   LoadedMap plan_;
 };
 
-/// What became of the plan, in words; "" of a merge without one. `names` are those of the maps.
-std::string describe_plan(const std::vector<std::string>& names, const MergeResult& result);
+/// What became of the plan, in words; "" of a merge without one.
+std::string describe_plan(const AskedMerge& asked, const MergeResult& result);
 
 }  // namespace gridmerge::cli

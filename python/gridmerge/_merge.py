@@ -54,8 +54,8 @@ def merge(
         accept: maps are joined from this probability on, 0.95 if None. Of the random walk it is the acceptance index,
             0.98 if None.
         max_false_joins: so many joins of the whole merge may be expected to be false, or of more than 50 maps for every
-            50; those that are least sure are not made. As many parts on a plan may be expected to be false. It holds
-            beside `accept`. "tree" does not use it.
+            50; those that are least sure are not made. The parts on a plan have a second budget of the same size. It
+            holds beside `accept`. "tree" does not use it.
         max_missed: of more than 50 maps match likely pairs only: the others may hide this share of all joins, 0.25 or
             so. Up to 0.2 all pairs are matched, as signatures do not see one join in five. "tree" does not use it.
         output_resolution: of the merged maps [m]; None = the finest of the maps', or so much coarser, up to 16 times,

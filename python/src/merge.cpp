@@ -106,7 +106,7 @@ nb::bytes preview(const Merged& merged, const std::vector<nb::bytes>& names) {
   const std::vector<std::string> texts = to_strings(names);
   const std::string png = [&] {
     const OthersRun meanwhile;
-    return preview_png({texts, grids_of(merged.maps), *merged.result});
+    return preview_png({texts, grids_of(merged.maps), *merged.result, merged.plan.get()});
   }();
   return nb::bytes(png.data(), png.size());
 }

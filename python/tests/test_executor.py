@@ -156,6 +156,7 @@ def test_tasks_are_batched_by_what_they_cost(robots: list[str], monkeypatch: pyt
     maps = [_executor.of_grid(grid) for grid in grids]
     wanted = [_executor.Wanted(maps[0], maps[1], "quick", lambda match: None)] * 40
     monkeypatch.setattr(_executor, "TASK_SECONDS", 1.0)
+    monkeypatch.setattr(_executor, "_TASKS_OF_A_ROUND", 1)
     inline = Inline()
     _executor.MatchingExecutor(inline, 0.95, 12).make(wanted)
     assert 2 <= len(inline.sent) <= 20
@@ -164,7 +165,8 @@ def test_tasks_are_batched_by_what_they_cost(robots: list[str], monkeypatch: pyt
         assert len(pairs) >= 1
 
 
-def test_a_round_of_little_work_has_small_tasks(robots: list[str]) -> None:
+def test_a_round_of_little_work_has_small_tasks(robots: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_executor, "TASK_SECONDS", 0.4)
     grids = [gridmerge.load(path) for path in robots]
     maps = [_executor.of_grid(grid) for grid in grids]
     matching = _executor.MatchingExecutor(Inline(), 0.95, 12)
@@ -172,7 +174,7 @@ def test_a_round_of_little_work_has_small_tasks(robots: list[str]) -> None:
     matching._rates["quick"] = 0.01 / one.cells  # seconds of a pair: 0.01
     assert matching._task_seconds([one] * 10) == pytest.approx(0.1)
     assert matching._task_seconds([one] * 1280) == pytest.approx(0.2)
-    assert matching._task_seconds([one] * 10_000) == pytest.approx(_executor.TASK_SECONDS)
+    assert matching._task_seconds([one] * 10_000) == pytest.approx(0.4)
 
 
 def test_a_search_that_is_not_known_takes_its_time_too(robots: list[str]) -> None:

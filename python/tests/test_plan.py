@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import base64
 import json
 import pickle
 from pathlib import Path
@@ -58,6 +59,8 @@ def test_hangs_maps_on_a_plan_as_the_command_line_does(
     result.save(tmp_path / "python")
     for file in sorted((tmp_path / "cli").iterdir()):
         assert file.read_bytes() == (tmp_path / "python" / file.name).read_bytes(), file.name
+    shown = base64.b64encode((tmp_path / "cli" / "preview.png").read_bytes()).decode()
+    assert f"base64,{shown}" in result._repr_html_()  # with the plan's walls in it
     told = json.loads((tmp_path / "cli" / "transforms.json").read_text())["plan"]
     assert told["scale"] == result.plan.scale
     assert told["maps"] == list(result.names)

@@ -26,7 +26,8 @@ struct Lattice {
 
 /// What the known cells of all inputs cover in the output frame [m]. Throws std::invalid_argument for an
 /// invalid grid or a transform that is not finite. `deformations` as of fuse(). O(cells of the inputs).
-Box covered_box(const std::vector<PlacedMap>& inputs, const std::vector<Deformation>& deformations);
+GRIDMERGE_INTERNAL_EXPORT Box covered_box(const std::vector<PlacedMap>& inputs,
+                                          const std::vector<Deformation>& deformations);
 
 /// Whether a deformation moves anything. O(deformations).
 bool is_any_bent(const std::vector<Deformation>& deformations);

@@ -17,7 +17,7 @@ namespace {
 /// Scales that are looked at, those of the most probable hypotheses first.
 constexpr std::size_t kMostScales = 20;
 
-/// Steps of a scale towards what voices near it say. Each is smaller than the one before.
+/// Steps of a scale towards what voices near it say, at most. Most settle after two or three.
 constexpr int kScaleSteps = 5;
 
 /// A hypothesis of a voice and the plan, where the plan has another scale: the middle of the voice stays.
@@ -52,7 +52,8 @@ double middle_scale(double scale, const std::vector<const Hypothesis*>& all) {
   return scale;
 }
 
-/// The distinct scales that voices propose, the most probable ones, each the middle of those near it.
+/// The distinct scales that voices propose, the most probable ones, each the middle of those near it. Of each
+/// hypothesis one is the same scale, unless there are too many.
 std::vector<double> scales_of(const MergePart& part) {
   std::vector<const Hypothesis*> all;
   for (const PlanVoice& voice : part.voices) {
@@ -64,14 +65,13 @@ std::vector<double> scales_of(const MergePart& part) {
                    [](const Hypothesis* a, const Hypothesis* b) { return a->probability > b->probability; });
   std::vector<double> scales;
   for (const Hypothesis* one : all) {
-    if (scales.size() < kMostScales && is_new(one->scale, scales)) scales.push_back(one->scale);
+    if (scales.size() == kMostScales) break;
+    if (!is_new(one->scale, scales)) continue;
+    const double middle = middle_scale(one->scale, all);
+    const bool is_a_scale_of_its_own = is_new(middle, scales) && is_same_scale(middle, one->scale);
+    scales.push_back(is_a_scale_of_its_own ? middle : one->scale);
   }
-  std::vector<double> middles;
-  for (const double scale : scales) {
-    const double middle = middle_scale(scale, all);
-    if (is_new(middle, middles)) middles.push_back(middle);
-  }
-  return middles;
+  return scales;
 }
 
 /// The plan at one scale and the voices of parts, as maps of which find_consistent_set() speaks: the plan is

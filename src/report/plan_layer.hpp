@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/grid/se2.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "report/json_values.hpp"
 
@@ -14,11 +16,11 @@ namespace gridmerge::internal {
 /// in the plan's own metres, lies at T_scene_plan * (scale * p).
 struct PlanPlace {
   std::optional<std::size_t> component;  ///< whose frame it is; none: that of the map
-  std::size_t map;                       ///< the first one of the part
+  std::size_t map = 0;                   ///< the first one of the part
   SE2 T_scene_plan;
-  double scale;
-  double probability;
-  bool on_plan;
+  double scale = 1.0;
+  double probability = 0.0;
+  bool on_plan = false;
 };
 
 /// One for each component and for each map that was left out of which a place is known, if only a guess.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <span>
 
@@ -75,10 +74,9 @@ class PlanUnderMaps {
       if (place.on_plan) place_ = place;  // all are one component, or one map
     }
     if (place_) walls_ = scaled(walls_of_plan(*merge.plan), place_->scale);
-    name_ = std::filesystem::path(merge.result.plan->name).filename().string();
+    name_ = short_names({merge.result.plan->name}).front();
   }
 
-  bool is_drawn() const { return place_.has_value(); }
   const std::string& name() const { return name_; }
 
   /// The map that hangs there alone.
@@ -88,16 +86,28 @@ class PlanUnderMaps {
 
   bool is_under(std::size_t component) const { return place_ && place_->component == component; }
 
-  /// Into a panel, which grows as far as the plan reaches.
-  void draw_into(MapPanel& panel) const {
+  /// Into a panel, which grows as far as the plan reaches, but by its longer side on each side at most: the
+  /// maps would be lost on the plan of a whole site.
+  void draw_into(MapPanel& panel) {
+    Box box = covered_box(panel.maps, panel.deformations);
+    const double margin = std::max(box.max_x - box.min_x, box.max_y - box.min_y);
+    cut_walls({box.min_x - margin, box.min_y - margin, box.max_x + margin, box.max_y + margin});
     panel.plan = {&walls_, place_->T_scene_plan};
-    std::vector<PlacedMap> drawn = panel.maps;
-    drawn.push_back(*panel.plan);
-    const Box box = covered_box(drawn, panel.deformations);
+    box.add(covered_box({*panel.plan}, {}));
     panel.longest_side = std::max(box.max_x - box.min_x, box.max_y - box.min_y) / panel.resolution;
   }
 
  private:
+  void cut_walls(const Box& box) {
+    for (int row = 0; row < walls_.height; ++row) {
+      for (int column = 0; column < walls_.width; ++column) {
+        const Point2 p = place_->T_scene_plan * walls_.cell_centre(column, row);
+        if (p.x < box.min_x || p.x > box.max_x || p.y < box.min_y || p.y > box.max_y)
+          walls_.at(column, row) = Cell::unknown;
+      }
+    }
+  }
+
   std::optional<PlanPlace> place_;
   OccupancyGrid walls_;
   std::string name_;
@@ -142,7 +152,7 @@ Canvas legend_entry(Colour left, Colour right, const std::string& label, int wid
 }
 
 std::vector<Canvas> legend(const std::vector<std::string>& names, std::span<const Component> components,
-                           const PlanUnderMaps& plan, int width) {
+                           const PlanUnderMaps& plan, bool is_plan_drawn, int width) {
   std::vector<Canvas> entries;
   for (const Component& component : components) {
     for (const Member& member : component.members) {
@@ -155,7 +165,7 @@ std::vector<Canvas> legend(const std::vector<std::string>& names, std::span<cons
     const Colour colour = map_colour(*map);
     entries.push_back(legend_entry(colour, free_tint(colour), names.at(*map), width));
   }
-  if (plan.is_drawn())
+  if (is_plan_drawn)
     entries.push_back(legend_entry(Colours::kPlan, Colours::kPlan, "walls of " + plan.name(), width));
   if (components.empty()) return entries;
   entries.push_back(legend_entry(Colours::kSharedWall, Colours::kSharedFree, "in two maps or more", width));
@@ -209,16 +219,20 @@ Colour map_colour(std::size_t map) {
 
 std::string preview_png(const NamedMerge& merge) {
   const auto& [names, maps, result, drawing] = merge;
-  const PlanUnderMaps plan(merge);
+  PlanUnderMaps plan(merge);
   const std::vector<std::string> called = short_names(names);
   const bool is_any_merged = !result.components.empty() || plan.lone_map();
   const TextSize size = is_any_merged ? TextSize::large : TextSize::small;
   std::vector<Canvas> blocks;
   int width = kPageMinWidth;
   const std::size_t components = std::min(result.components.size(), kMaxComponentPanels);
+  bool is_plan_drawn = plan.lone_map().has_value();
   for (std::size_t i = 0; i < components; ++i) {
     MapPanel panel = component_panel(maps, result, i);
-    if (plan.is_under(i)) plan.draw_into(panel);
+    if (plan.is_under(i)) {
+      plan.draw_into(panel);
+      is_plan_drawn = true;
+    }
     blocks.push_back(draw_panel(panel, size));
     width = std::max(width, blocks.back().width());
   }
@@ -235,19 +249,18 @@ std::string preview_png(const NamedMerge& merge) {
     width = std::max(width, blocks.back().width());
   }
   const std::vector<Canvas> entries =
-      legend(called, std::span(result.components).first(components), plan, width);
+      legend(called, std::span(result.components).first(components), plan, is_plan_drawn, width);
   if (!entries.empty()) blocks.push_back(flow(entries, width, kLegendGap));
 
   std::vector<Canvas> left_out;
-  std::size_t more = result.left_out.size();
   for (const LeftOut& one : result.left_out) {
     if (left_out.size() == kMaxLeftOutPanels) break;
-    --more;
     const std::size_t map = one.map;
     if (plan.lone_map() == map) continue;
     left_out.push_back(draw_panel(left_out_panel(called.at(map), maps.at(map), map), TextSize::small));
   }
   if (!left_out.empty()) {
+    const std::size_t more = result.left_out.size() - left_out.size() - (plan.lone_map() ? 1 : 0);
     blocks.push_back(heading(more == 0 ? "Left out" : fmt::format("Left out (and {} more)", more), size));
     blocks.push_back(flow(left_out, width, kGap));
   }

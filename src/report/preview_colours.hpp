@@ -13,8 +13,8 @@ struct PreviewColours {
   /// Free in as many maps as occupied; nothing else has it. The fewer say otherwise than the rest, the nearer
   /// to what the rest say.
   static constexpr Colour kDisagreement{213, 94, 0};
-  static constexpr Colour kPlan{112, 48,
-                                16};  ///< walls of a plan where no map has one; as on the report page
+  /// Walls of a plan where no map has one; as on the report page.
+  static constexpr Colour kPlan{112, 48, 16};
 };
 
 }  // namespace gridmerge::internal

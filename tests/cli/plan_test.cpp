@@ -191,9 +191,13 @@ TEST_F(MergePlan, OneMapIsEnough) {
   EXPECT_EQ(read_file(output + "/report.html"), page);
   const std::vector<std::string> doubtful{"merge",   west, "--plan", plan,       "--plan-scale",
                                           "1.2:1.3", "-o", output,   "--accept", "0.99999"};
-  EXPECT_NE(run(doubtful).out.find(
-                "--accept with a higher --max-false-joins asks for less: the most probable place is"),
-            std::string::npos);
+  EXPECT_NE(run(doubtful).out.find("\n     a lower --accept asks for less\n"), std::string::npos);
+  const std::vector<std::string> none_false{
+      "merge", west, "--plan", plan, "--plan-scale", "1.2:1.3", "-o", output, "--max-false-joins", "0"};
+  EXPECT_NE(
+      run(none_false)
+          .out.find("\n     a higher --max-false-joins asks for less: the most probable place is false with"),
+      std::string::npos);
   const Outcome stranger = run({"merge", other, "--plan", plan, "--plan-scale", "1.2:1.3", "-o", output});
   EXPECT_EQ(stranger.exit_code, 3);
   EXPECT_EQ(stranger.out.find("--accept"), std::string::npos) << stranger.out;

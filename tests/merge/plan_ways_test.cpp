@@ -109,6 +109,22 @@ TEST(BestWay, MembersThatSeeScalesOnBothSidesOfTheMiddleAgree) {
             0.9);
 }
 
+/// A middle may lie near that of surer scales, or far from where it began. Nobody goes unheard for it: who
+/// says something else is a rival.
+TEST(BestWay, NoScaleIsTooNearOthersToBeHeard) {
+  const auto alone = [](const std::vector<Hypothesis>& said_once) { return probability({said_once}); };
+  // All are ways of one voice: each takes from the first one what it has.
+  const double first =
+      alone({said(kHere, 1.0, 0.5), said(kElsewhere, 1.03, 0.1), said(kElsewhere, 1.06, 0.3)});
+  const double apart =
+      alone({said(kHere, 1.0, 0.5), said(kElsewhere, 1.03, 0.1), said(kElsewhere, 1.3, 0.3)});
+  EXPECT_NEAR(first, apart, 0.02);
+  std::vector<std::vector<Hypothesis>> drawn_away{{said(kHere, 1.0, 0.96)}, {said(kHere, 1.038, 0.5)}};
+  for (int i = 0; i < 8; ++i) drawn_away.push_back({said(kElsewhere, 1.058, 0.2)});
+  EXPECT_GT(best_way(part_of(drawn_away), PreparedMap(draw_building(1)))->probability, 0.0);
+  EXPECT_EQ(best_way(part_of(drawn_away), PreparedMap(draw_building(1)))->scale, 1.0);
+}
+
 TEST(BestWay, SaysNothingWhereNobodyDoes) {
   EXPECT_EQ(probability({}), 0.0);
   EXPECT_EQ(probability({{}, {}, {}}), 0.0);

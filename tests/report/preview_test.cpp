@@ -326,6 +326,58 @@ TEST(Preview, DrawsTheWallsOfThePlanWhereMapsHaveNone) {
   EXPECT_TRUE(preview_on_a_plan(maps, off, &plan).pixels(Colours::kPlan).empty());
 }
 
+TEST(Preview, ThePlanOfAWholeSiteLeavesMapsLarge) {
+  const std::vector<OccupancyGrid> maps{map_from({"#..#"}, 0.5), map_from({"#..#"}, 0.5)};
+  OccupancyGrid site = make_grid(4000, 3000, 0.25, {}, Cell::free);
+  site.at(2, 2) = site.at(3999, 2999) = site.at(0, 2999) = Cell::occupied;
+  MergeResult result = test::merged(maps, {{{0, {}}, {1, {}}}});
+  result.plan = PlanPlacement{"site.png", 2.0, {{{0, 1}, {}, 2.0, 0.99, Reason::none}}, 0.25};
+  const Picture drawn = preview_on_a_plan(maps, result, &site);
+  EXPECT_EQ(drawn.cells(Colours::kPlan), 1u);
+  EXPECT_EQ(drawn.cells(Colours::kSharedWall), 2u);
+}
+
+TEST(Preview, DrawsThePlanUnderBentMaps) {
+  const std::vector<OccupancyGrid> maps{map_from({"#..#"}, 0.5), map_from({"#..#"}, 0.5)};
+  const OccupancyGrid plan = map_from({"######", "#....#", "#....#", "######"}, 0.25);
+  MergeResult result = test::merged(maps, {{{0, {0.5, 0.5, 0.0}}, {1, {0.5, 0.5, 0.0}}}});
+  const std::vector<Point2> down(25, Point2{0.0, -0.5});  // by a cell: onto a wall of the plan
+  for (Member& member : result.components[0].members)
+    member.deformation = Deformation({-1.0, -1.0, 0.0}, 1.0, 5, 5, down);
+  result.plan = PlanPlacement{"floor.png", 2.0, {{{0, 1}, {0.5, 0.5, 0.0}, 2.0, 0.99, Reason::none}}, 0.25};
+  const Picture drawn = preview_on_a_plan(maps, result, &plan);
+  EXPECT_EQ(drawn.cells(Colours::kSharedWall), 2u);
+  EXPECT_EQ(drawn.cells(Colours::kPlan), 14u);
+}
+
+TEST(Preview, DrawsAPlanOfFinerAndOfCoarserCells) {
+  const std::vector<OccupancyGrid> maps{map_from({"#..#"}, 0.5), map_from({"#..#"}, 0.5)};
+  MergeResult result = test::merged(maps, {{{0, {2.0, 2.0, 0.0}}, {1, {2.0, 2.0, 0.0}}}});
+  const PlanPart part{{0, 1}, {2.0, 2.0, 0.0}, 2.0, 0.99, Reason::none};
+  const OccupancyGrid finer = map_from({"####", "####"}, 0.125), coarser = map_from({"#"}, 0.5);
+  result.plan = PlanPlacement{"floor.png", 2.0, {part}, 0.125};  // a wall of 1 m x 0.5 m
+  EXPECT_EQ(preview_on_a_plan(maps, result, &finer).cells(Colours::kPlan), 2u);
+  result.plan = PlanPlacement{"floor.png", 2.0, {part}, 0.5};  // of 1 m x 1 m
+  EXPECT_EQ(preview_on_a_plan(maps, result, &coarser).cells(Colours::kPlan), 4u);
+}
+
+/// Many components are not all shown: then neither is what lies under them.
+TEST(Preview, ThePlanIsInTheLegendIfItIsDrawn) {
+  std::vector<OccupancyGrid> maps;
+  std::vector<std::vector<Member>> components;
+  for (std::size_t i = 0; i < 14; ++i) {
+    maps.push_back(map_from({"#..#"}, 0.5));
+    maps.push_back(map_from({"#..#"}, 0.5));
+    components.push_back({{2 * i, {}}, {2 * i + 1, {}}});
+  }
+  const OccupancyGrid plan = map_from({"######", "#....#", "#....#", "######"}, 0.25);
+  MergeResult result = test::merged(maps, components);
+  for (const auto& [first, is_drawn] : {std::pair<std::size_t, bool>{0, true}, {26, false}}) {
+    result.plan = PlanPlacement{"floor.png", 2.0, {{{first, first + 1}, {}, 2.0, 0.99, Reason::none}}, 0.25};
+    EXPECT_EQ(preview_on_a_plan(maps, result, &plan).pixels(Colours::kPlan).empty(), !is_drawn);
+  }
+}
+
 TEST(Preview, ShowsALoneMapOnThePlan) {
   const std::vector<OccupancyGrid> maps{map_from({"#..."}, 0.5), map_from({"#"}, 0.5)};
   const OccupancyGrid plan = map_from({"######", "#....#", "#....#", "######"}, 0.25);
@@ -336,6 +388,20 @@ TEST(Preview, ShowsALoneMapOnThePlan) {
   EXPECT_EQ(drawn.cells(Colours::kPlan), 16u);
   EXPECT_EQ(drawn.cells(free_tint(map_colour(0))), 3u);
   EXPECT_GE(drawn.pixels(map_colour(1)).size(), 1u) << "the other one is shown as left out";
+
+  // Whether it is the first that is left out, or one of those that are too many to be shown.
+  std::vector<OccupancyGrid> many(14, maps[1]);
+  for (std::size_t i = 0; i < many.size(); ++i) {
+    if (i > 1) result.left_out.push_back({i, Reason::ambiguous});
+  }
+  const auto on = [&](std::size_t map) {
+    std::vector<OccupancyGrid> some = many;
+    some[map] = maps[0];
+    result.plan = PlanPlacement{"floor.png", 2.0, {{{map}, {0.5, 0.5, 0.0}, 2.0, 0.99, Reason::none}}, 0.25};
+    return preview_on_a_plan(some, result, &plan);
+  };
+  // Twelve are shown, and one more is told of, by text: as much ink each time, but for the colours.
+  EXPECT_EQ(on(13).image.height, on(12).image.height);
 }
 
 TEST(Preview, OfNothingIsAnEmptyPage) {

@@ -21,8 +21,8 @@ struct MergeOptions {
   /// not used. Neither `scales` nor the random walk is allowed.
   MatchOptions match;
   /// So many joins of the whole merge may be expected to be false, beside what `match.accept_probability`
-  /// asks of each: the least sure ones are not made. Of more than 50 maps, so many for every 50. As many parts
-  /// on a plan may be expected to be false besides; see place_on_plan().
+  /// asks of each: the least sure ones are not made. Of more than 50 maps, so many for every 50. As many
+  /// parts on a plan may be expected to be false besides; see place_on_plan().
   double max_false_joins = 0.05;
   /// Of more than 50 maps only likely pairs are matched: those left out hide, as far as is known, at most
   /// this share of all joins. Up to 0.2, and of fewer maps, all pairs are matched. In [0, 1).

@@ -34,9 +34,10 @@ GRIDMERGE_EXPORT void validate_plan(const std::vector<OccupancyGrid>& maps, cons
 /// elsewhere on the plan count against it. The surest part decides the plan's scale, if it is as probable as
 /// `options.match.accept_probability`. Of the others, what lies within 4 % of it counts. They hang on the
 /// plan if they are as probable, with what their maps and those that hang there say of each other, and if
-/// `options.max_false_joins` allows it: so many parts on the plan may be expected to be false, beside the
-/// false joins within parts. All parts on the plan become one component, in the plan's frame at that scale.
-/// Parts of which nothing is sure stay as they were. MergeResult::plan tells of all.
+/// `options.max_false_joins` allows it: so many parts on the plan may be expected to be false (of more than
+/// 50 maps, so many for every 50), beside the false joins within parts. All parts on the plan become one
+/// component, in the plan's frame at that scale. Parts of which nothing is sure stay as they were.
+/// MergeResult::plan tells of all.
 ///
 /// Within a part nothing moves, and the plan is no part of the merged map. `merged` is what merge() returned
 /// for these maps and options. Neither the number of threads nor the order of the maps plays a part. Throws

@@ -125,9 +125,11 @@ GRIDMERGE_EXPORT Colour map_colour(std::size_t map);
 
 /// A PNG that shows a merge: each component with its maps in their own colours, what they share and where
 /// they disagree, a scale bar in metres, and the colours' meaning; below, the maps that were left out, each
-/// by itself in its own frame. Of each kind the first twelve are shown, and how many more there are. Small
-/// maps are magnified, large ones drawn at a coarser resolution: the picture is at most 2400 pixels wide, and
-/// no map in it higher. Names are UTF-8; folders that all of them lie in are not shown.
+/// by itself in its own frame. The walls of a plan are drawn where no map has one, as far from the maps as
+/// these are long; a single map that hangs there is shown like a component. Of each kind the first twelve are
+/// shown, and how many more there are. Small maps are magnified, large ones drawn at a coarser resolution:
+/// the picture is at most 2400 pixels wide, and no map in it higher. Names are UTF-8; folders that all of
+/// them lie in are not shown.
 GRIDMERGE_EXPORT std::string preview_png(const NamedMerge& merge);
 
 }  // namespace gridmerge
