@@ -7,7 +7,8 @@ usage: benchmark/engines.py [--robots N] [--rounds N]
 Runs in an environment that has the package gridmerge, and distributed and mpi4py (with an mpiexec) or what of them
 there is. A team of simulated robots is merged by one process with one thread, then with two workers of each engine, in
 turn, several times. Wall times are compared within a round, because other work on the machine changes them. The CPU
-time is that of the workers and the program together, without the start of either. Every answer has to be that of one
+time is that of the workers and the program together, without the start of either. The speed-up of pairs is that until
+the last match is there: the joint step comes after it, and nobody shares that. Every answer has to be that of one
 process. At last: what a task costs that does nothing.
 """
 
@@ -61,15 +62,21 @@ def fingerprint(result: gridmerge.MergeResult) -> str:
 
 def timed_merge(paths: list[str], executor: Executor | None) -> dict[str, float | str]:
     before = {} if executor is None else cpu_of_workers(executor)
-    wall, cpu = time.monotonic(), process_times()
-    result = gridmerge.merge(paths, executor=executor, threads=1)
-    wall, cpu = time.monotonic() - wall, process_times() - cpu
+    shares: list[float] = []  # when it was told how far the work is
+
+    def told(share: float) -> None:
+        if share < 1.0:
+            shares.append(time.monotonic())
+
+    began, cpu = time.monotonic(), process_times()
+    result = gridmerge.merge(paths, executor=executor, threads=1, progress=told)
+    wall, cpu = time.monotonic() - began, process_times() - cpu
     if executor is not None:
         after = cpu_of_workers(executor)
         cpu += sum(
             after[worker] - before.get(worker, after[worker]) for worker in after if worker != os.getpid()
         )
-    return {"wall": wall, "cpu": cpu, "answer": fingerprint(result)}
+    return {"wall": wall, "pairs": shares[-1] - began, "cpu": cpu, "answer": fingerprint(result)}
 
 
 def task_cost(executor: Executor, tasks: int = 200) -> float:
@@ -167,13 +174,14 @@ def main() -> None:
                 rows.setdefault(name, []).append(measure(paths))
         alone = rows["one process"]
         print(f"{len(paths)} maps, {arguments.rounds} rounds, medians; {WORKERS} workers\n")
-        print("| | wall time [s] | speed-up of a round | CPU time [s] | a task [ms] | answer |")
-        print("| --- | --- | --- | --- | --- | --- |")
+        print("| | wall time [s] | speed-up | of pairs | CPU time [s] | a task [ms] | answer |")
+        print("| --- | --- | --- | --- | --- | --- | --- |")
         for name, runs in rows.items():
             wall = statistics.median(float(one["wall"]) for one in runs)
             cpu = statistics.median(float(one["cpu"]) for one in runs)
-            speed = statistics.median(
-                float(a["wall"]) / float(b["wall"]) for a, b in zip(alone, runs, strict=True)
+            speed, speed_of_pairs = (
+                statistics.median(float(a[key]) / float(b[key]) for a, b in zip(alone, runs, strict=True))
+                for key in ("wall", "pairs")
             )
             task = (
                 ""
@@ -182,7 +190,8 @@ def main() -> None:
             )
             same = all(one["answer"] == alone[0]["answer"] for one in runs)
             print(
-                f"| {name} | {wall:.1f} | {speed:.2f} | {cpu:.1f} | {task} | {'the same' if same else 'DIFFERS'} |"
+                f"| {name} | {wall:.1f} | {speed:.2f} | {speed_of_pairs:.2f} | {cpu:.1f} | {task} | "
+                f"{'the same' if same else 'DIFFERS'} |"
             )
 
 

@@ -7,12 +7,13 @@ usage: benchmark/scale.py MAP... [--max-missed SHARE] [--search NAME] [--workers
 Runs in an environment that has the package gridmerge. It merges the maps once, with one thread and with an executor
 that runs each task in this process and notes what it takes. A replay then gives the tasks to N workers: each task goes
 to the worker that is free first, and a round begins when the one before has ended. What the program itself does is no
-worker's work: comparisons of signatures are shared by the cores of its own machine, the joint step by nobody, and each
-task costs it a moment. Each task of several workers reads its maps anew: that is the most it can cost.
+worker's work. The cores of its own machine share the comparisons of signatures, and what comes after the last task:
+maps that lie alone meet merged groups, and all is written. Nobody shares the joint steps between rounds, and each task
+costs the program a moment. Each task of several workers reads its maps anew: that is the most it can cost.
 
 `--times 10` replays a merge of ten times as many maps: of each task a hundred, packed into tasks as large as an
-executor gets then, a hundred times the comparisons, and ten times the rest of what the program does. The table has what
-the replay takes, and what the model says: comparisons shared by one machine, and matches by all.
+executor gets then, a hundred times the comparisons and the meetings with groups, and ten times the rest of what the
+program does. The table has what the replay takes, and what the model says: what one machine shares, and matches by all.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ class Trace:
     rounds: list[Round]
     loading: float  # CPU seconds of reading all maps once
     a_map: float  # of reading one
-    after: float  # of the program after the last task
+    after: float  # of the program after the last task: most of it is meetings of maps with groups
 
     @property
     def comparisons(self) -> float:
@@ -135,7 +136,8 @@ def packed(tasks: list[Task], times: int) -> Iterator[Task]:
 def replay(trace: Trace, workers: int, times: int) -> float:
     """Wall seconds with so many workers and so many times the maps."""
     reading = trace.a_map if workers > 1 else 0.0
-    now = times * trace.loading + times**2 * trace.comparisons / min(workers, CORES_OF_A_MACHINE)
+    cores = min(workers, CORES_OF_A_MACHINE)
+    now = times * trace.loading + times**2 * trace.comparisons / cores
     for number, one in enumerate(trace.rounds):
         if number > 0:
             now += one.before * times
@@ -147,12 +149,12 @@ def replay(trace: Trace, workers: int, times: int) -> float:
             start = max(heapq.heappop(free), given)
             heapq.heappush(free, start + SECONDS_OF_A_TASK + reading * task.maps + task.seconds)
         now = max(max(free), given)
-    return now + trace.after * times
+    return now + trace.after * times**2 / cores
 
 
 def model(trace: Trace, workers: int, times: int) -> float:
-    comparing = trace.comparisons / min(workers, CORES_OF_A_MACHINE)
-    return times**2 * (comparing + trace.matches / workers)
+    of_one_machine = (trace.comparisons + trace.after) / min(workers, CORES_OF_A_MACHINE)
+    return times**2 * (of_one_machine + trace.matches / workers)
 
 
 def main() -> None:
@@ -173,8 +175,8 @@ def main() -> None:
     longest = max(task.seconds for one in trace.rounds for task in one.tasks)
     print(
         f"{len(arguments.maps)} maps, {len(result.components)} components; rounds of {sizes} tasks\n"
-        f"CPU seconds: {trace.matches:.1f} of tasks, the longest {longest:.2f}; of the program {trace.loading:.1f} to read "
-        f"maps, {trace.comparisons:.1f} to compare signatures, "
+        f"CPU seconds: {trace.matches:.1f} of tasks, the longest {longest:.2f}; of the program "
+        f"{trace.loading:.1f} to read maps, {trace.comparisons:.1f} to compare signatures, "
         f"{sum(one.before for one in trace.rounds[1:]):.1f} between rounds, "
         f"{sum(one.between for one in trace.rounds):.1f} beside tasks, {trace.after:.1f} at the end\n"
     )

@@ -17,13 +17,14 @@ from ._tasks import MapSpec
 
 TASK_SECONDS = 0.4
 """What a task is to take at most, so that an engine's few milliseconds for each count for little."""
-_LEAST_TASK_SECONDS = 0.1  # an engine's milliseconds still count for less than a tenth
-_TASKS_OF_A_ROUND = 64  # at least, if none would be shorter: workers that end early wait for the last one
+_LEAST_TASK_SECONDS = 0.2  # an engine's few milliseconds still count for little
+_TASKS_OF_A_ROUND = 64  # unless they would be shorter than that: workers that end early wait for the last one
 MOST_ATTEMPTS = 3
 """At a task whose worker dies, or with which the engine fails."""
 _MOST_WAITING = 1024  # tasks that the engine has at a time: it may have hundreds of workers
 _MOST_BYTES_WAITING = 2**29  # of the maps that are sent with these tasks, unless one task has more
 _MOST_PAIRS = 500  # of a task
+_MOST_FOUND = 20_000  # pairs, some 1.5 kB each: the others' second look begins anew
 _MOST_BYTES = 2**24  # of the maps that are sent with a task, unless one pair has more
 
 
@@ -84,6 +85,11 @@ class Wanted:
     def cells(self) -> int:
         return self.fixed.cells + self.moving.cells
 
+    @property
+    def maps(self) -> frozenset[str]:
+        """What both hold, whichever is called fixed."""
+        return frozenset((self.fixed.content, self.moving.content))
+
 
 @dataclass(slots=True)
 class _Task:
@@ -112,6 +118,7 @@ class MatchingExecutor:
         self._hypotheses = hypotheses
         self._cache = cache
         self._rates: dict[str, float] = {}  # seconds per cell of both maps, by search
+        self._found: dict[frozenset[str], bytes] = {}  # by quick searches, for the look that may follow
 
     def make(
         self,
@@ -180,9 +187,12 @@ class MatchingExecutor:
                         ) from failure.__cause__
                     again.append(task)
                     continue
-                for one, match in zip(task.wanted, matches, strict=True):
+                for one, (match, seen) in zip(task.wanted, matches, strict=True):
                     one.take(match)
                     self._keep(one, match)
+                    self._found.pop(one.maps, None)
+                    if seen and len(self._found) < _MOST_FOUND:
+                        self._found[one.maps] = seen
                 made += len(matches)
                 if progress is not None:
                     progress(found + made)
@@ -235,7 +245,10 @@ class MatchingExecutor:
                 if map.content not in places:
                     places[map.content] = len(maps)
                     maps.append(map.spec)
-        pairs = [(places[one.fixed.content], places[one.moving.content], one.search) for one in task.wanted]
+        pairs = []
+        for one in task.wanted:
+            found = self._found.get(one.maps, b"")
+            pairs.append((places[one.fixed.content], places[one.moving.content], one.search, found))
         return self._submit(
             _tasks.match_pairs,
             _core.engine_id(),
@@ -246,7 +259,7 @@ class MatchingExecutor:
             self._hypotheses,
         )
 
-    def _matches_of(self, task: _Task, future: Future[_tasks.Answer]) -> list[bytes]:
+    def _matches_of(self, task: _Task, future: Future[_tasks.Answer]) -> list[_tasks.Made]:
         """Raises _Failure for what another attempt may mend, and FileError or ExecutorError for what none does."""
         try:
             answer = future.result()
@@ -270,7 +283,7 @@ class MatchingExecutor:
         if not isinstance(content, list) or len(content) != len(task.wanted):
             raise _Failure("its answer is none of a task")
         try:
-            seconds = sum(_core.seconds_of(match) for match in content)
+            seconds = sum(map(_seconds_of, content))
         except (TypeError, ValueError) as error:
             raise _Failure(f"its answer {error}") from error
         self._learn(task, seconds)
@@ -294,6 +307,14 @@ class MatchingExecutor:
 
 class _Failure(Exception):
     """Of one attempt at a task."""
+
+
+def _seconds_of(made: _tasks.Made) -> float:
+    """What the match took. Raises TypeError or ValueError for what is none."""
+    match, found = made
+    if not isinstance(found, bytes):
+        raise TypeError("is none of a task")
+    return _core.seconds_of(match)
 
 
 def _describe(error: BaseException) -> str:

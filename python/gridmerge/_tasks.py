@@ -20,10 +20,12 @@ FileSpec: TypeAlias = tuple[Literal["file"], bytes, float, bool, str]
 GridSpec: TypeAlias = tuple[Literal["grid"], OccupancyGrid, str]
 """A map, and what it holds."""
 MapSpec: TypeAlias = FileSpec | GridSpec
-PairSpec: TypeAlias = tuple[int, int, str]
-"""Two maps of the task by their indices, and the search."""
-Answer: TypeAlias = tuple[str, int, list[bytes] | str]
-"""What became of the task, its number, and the matches or a word about what went wrong."""
+PairSpec: TypeAlias = tuple[int, int, str, bytes]
+"""Two maps of the task by their indices, the search, and what an earlier quick search of them has found."""
+Made: TypeAlias = tuple[bytes, bytes]
+"""A match, and what a quick search has found, for another look."""
+Answer: TypeAlias = tuple[str, int, list[Made] | str]
+"""What became of the task, its number, and what it made or a word about what went wrong."""
 
 _MOST_CELLS = 2**25  # of the maps that a worker keeps
 
@@ -77,8 +79,8 @@ def match_pairs(
         "matches",
         number,
         [
-            _core.match_prepared(prepared[fixed], prepared[moving], search, accept, hypotheses)
-            for fixed, moving, search in pairs
+            _core.match_prepared(prepared[fixed], prepared[moving], search, accept, hypotheses, found)
+            for fixed, moving, search, found in pairs
         ],
     )
 

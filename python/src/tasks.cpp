@@ -4,6 +4,7 @@
 #include "gridmerge/bag/bag.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/match/stored_match.hpp"
+#include "match/looked_twice.hpp"
 #include "rounds.hpp"
 #include "worker.hpp"
 
@@ -23,17 +24,43 @@ Prepared prepare(const Map& map) {
   return {std::make_shared<const PreparedMap>(*map.grid)};
 }
 
-nb::bytes match_prepared(const Prepared& fixed, const Prepared& moving, const std::string& search,
-                         double accept, std::size_t max_hypotheses) {
+/// What a quick look has found, for the second look that may follow; none if these bytes are nothing of the
+/// kind: then that look begins anew.
+std::optional<QuickLook> quick_look_from(const std::string& bytes) {
+  if (bytes.empty()) return std::nullopt;
+  try {
+    return match_from_bytes(bytes).hypotheses;
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
+/// The match and, of a quick search that leaves the maps apart, what it has found. `found` is that of the
+/// same maps, or nothing: the exhaustive search goes on from it, with the same answer.
+std::pair<nb::bytes, nb::bytes> match_prepared(const Prepared& fixed, const Prepared& moving,
+                                               const std::string& search, double accept,
+                                               std::size_t max_hypotheses, const nb::bytes& found) {
   MatchOptions options;
   options.max_hypotheses = max_hypotheses;
   set_search(options, search, accept);
-  const std::string bytes = compute_in_worker(nb::none(), [&](const Report& /*report*/) {
-    MatchResult result;
-    with_threads(1, [&] { result = match(*fixed.map, *moving.map, options); });
-    return to_bytes(result);
+  const std::string before = to_string(found);
+  const auto [made, now_found] = compute_in_worker(nb::none(), [&](const Report& /*report*/) {
+    QuickMatch quick;
+    with_threads(1, [&] {
+      const std::optional<QuickLook> known = quick_look_from(before);
+      if (options.search == SearchMethod::quick)
+        quick = match_quickly(*fixed.map, *moving.map, options);
+      else if (options.search == SearchMethod::exhaustive && known)
+        quick.result = match_again(*fixed.map, *moving.map, options, *known);
+      else
+        quick.result = match(*fixed.map, *moving.map, options);
+    });
+    const bool may_follow = !quick.found.empty() && quick.result.verdict != Verdict::accepted;
+    MatchResult kept;
+    kept.hypotheses = std::move(quick.found);
+    return std::pair(to_bytes(quick.result), may_follow ? to_bytes(kept) : std::string());
   });
-  return to_nb_bytes(bytes);
+  return {to_nb_bytes(made), to_nb_bytes(now_found)};
 }
 
 /// About how long a match takes, until it is known better [s per cell of both maps].
@@ -69,7 +96,7 @@ void bind_tasks(nb::module_& module) {
       nb::arg("map"));
   module.def("prepare", &prepare, nb::arg("map"));
   module.def("match_prepared", &match_prepared, nb::arg("fixed"), nb::arg("moving"), nb::arg("search"),
-             nb::arg("accept"), nb::arg("max_hypotheses"));
+             nb::arg("accept"), nb::arg("max_hypotheses"), nb::arg("found"));
   module.def("seconds_per_cell", &seconds_per_cell, nb::arg("search"));
   module.def("load_regular", &load_regular, nb::arg("path"), nb::arg("resolution"),
              nb::arg("literal_thresholds"));

@@ -21,6 +21,13 @@ import pytest
 from gridmerge import _core, _executor, _tasks
 
 
+def but_for_the_time(answer: _tasks.Answer) -> list[bytes]:
+    """Of each match, which has its time behind 8 numbers and 2 bytes."""
+    kind, _, made = answer
+    assert kind == "matches"
+    return [match[:66] + match[74:] for match, _ in made]
+
+
 def answer(result: gridmerge.MergeResult, folder: Path) -> tuple[str, bytes]:
     """What a merge writes, but for its times."""
     result.save(folder)
@@ -172,8 +179,8 @@ def test_a_round_of_little_work_has_small_tasks(robots: list[str], monkeypatch: 
     matching = _executor.MatchingExecutor(Inline(), 0.95, 12)
     one = _executor.Wanted(maps[0], maps[1], "quick", lambda match: None)
     matching._rates["quick"] = 0.01 / one.cells  # seconds of a pair: 0.01
-    assert matching._task_seconds([one] * 10) == pytest.approx(0.1)
-    assert matching._task_seconds([one] * 1280) == pytest.approx(0.2)
+    assert matching._task_seconds([one] * 10) == pytest.approx(0.2)
+    assert matching._task_seconds([one] * 1920) == pytest.approx(0.3)
     assert matching._task_seconds([one] * 10_000) == pytest.approx(0.4)
 
 
@@ -190,8 +197,41 @@ def test_tasks_are_pure_and_picklable(robots: list[str]) -> None:
     for args in inline.sent:
         once, twice = _tasks.match_pairs(*args), _tasks.match_pairs(*pickle.loads(pickle.dumps(args)))
         assert once[:2] == twice[:2]
-        assert [one[:58] for one in once[2]] == [one[:58] for one in twice[2]]  # up to the time
+        assert but_for_the_time(once) == but_for_the_time(twice)
     assert all(spec[0] == "file" for args in inline.sent for spec in args[2])
+
+
+def test_a_second_look_goes_on_from_what_the_first_one_found(four: list[str]) -> None:
+    inline = Inline()
+    gridmerge.merge(four, executor=inline)
+    first = [args for args in inline.sent if args[3][0][2] == "quick"]
+    second = [args for args in inline.sent if args[3][0][2] == "exhaustive"]
+    assert first
+    assert second
+    assert all(found == b"" for args in first for *_, found in args[3])
+    assert all(found for args in second for *_, found in args[3])
+    for args in second:
+        whole = but_for_the_time(_tasks.match_pairs(*args))
+        for other in (b"", b"what another version found"):
+            pairs = tuple((*pair[:3], other) for pair in args[3])
+            assert but_for_the_time(_tasks.match_pairs(*args[:3], pairs, *args[4:])) == whole
+
+
+def test_what_was_found_is_kept_no_longer_than_it_is_of_use(
+    four: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(_executor, "_MOST_FOUND", 1)
+    maps = [_executor.of_grid(gridmerge.load(path)) for path in four]
+    taken: list[bytes] = []
+    matching = _executor.MatchingExecutor(Inline(), 0.95, 12)
+    pairs = [(a, b) for a in range(4) for b in range(a)]
+    matching.make([_executor.Wanted(maps[a], maps[b], "quick", taken.append) for a, b in pairs])
+    assert len(matching._found) == 1
+    (kept,) = matching._found
+    a, b = next(pair for pair in pairs if kept == {maps[pair[0]].content, maps[pair[1]].content})
+    matching.make([_executor.Wanted(maps[b], maps[a], "exhaustive", taken.append)])
+    assert matching._found == {}
+    assert len(taken) == len(pairs) + 1
 
 
 def test_paths_hold_wherever_the_program_goes(
@@ -218,7 +258,8 @@ def test_a_task_that_fails_again_and_again_is_an_error_that_names_the_executor(r
 
 @pytest.mark.parametrize(
     "answer",
-    [None, 7, ("matches", 0, "x"), ("matches", 99, []), ("matches", 0, [b"no match"]), ("matches", 0, [])],
+    [None, 7, ("matches", 0, "x"), ("matches", 99, []), ("matches", 0, [b"no match"]), ("matches", 0, [])]
+    + [("matches", 0, [made]) for made in ((b"no match", b""), (b"", b"", b""), None)],
 )
 def test_an_answer_that_is_none_is_a_failure(answer: Any, robots: list[str]) -> None:
     class Wrong(Executor):
