@@ -24,4 +24,9 @@ GRIDMERGE_INTERNAL_EXPORT QuickMatch match_quickly(const PreparedMap& fixed, con
 GRIDMERGE_INTERNAL_EXPORT MatchResult match_again(const PreparedMap& fixed, const PreparedMap& moving,
                                                   MatchOptions options, const QuickLook& found);
 
+/// match() by the exhaustive search, which ends after the quick look if that finds no pose of this
+/// probability.
+GRIDMERGE_INTERNAL_EXPORT MatchResult match_if_promising(const PreparedMap& fixed, const PreparedMap& moving,
+                                                         const MatchOptions& options, double promising_from);
+
 }  // namespace gridmerge::internal

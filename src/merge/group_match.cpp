@@ -8,6 +8,7 @@
 
 #include "grid/parallel.hpp"
 #include "gridmerge/merge/fuse.hpp"
+#include "match/looked_twice.hpp"
 #include "merge/candidates.hpp"
 #include "merge/join_weights.hpp"
 #include "merge/joins.hpp"
@@ -16,6 +17,11 @@
 namespace gridmerge::internal {
 
 namespace {
+
+/// Among many maps, a group and a map get a thorough look if the quick one finds a pose of this probability.
+/// That look is for maps that share little, and a group has seen much: of two campuses of 300 maps the quick
+/// look accepted 18 meetings, and the thorough look none of the other 358.
+constexpr double kWorthASecondLook = 0.1;
 
 /// A group of several maps and a map that lies alone.
 struct Meeting {
@@ -107,9 +113,10 @@ JoinProblem GroupMatches::heard(const JoinProblem& problem, const ConsistentSet&
     }
     all = std::move(worth);
   }
+  const bool is_thorough = !worth_meeting || options_.search != SearchMethod::exhaustive;
   std::vector<Meeting> meetings;
   for (const auto& [g, map] : all) {
-    Key key{static_cast<double>(inputs[map].index)};
+    Key key{static_cast<double>(inputs[map].index), is_thorough ? 1.0 : 0.0};
     for (const PlacedNode& node : groups[g]) {
       const SE2& T = node.T_group_map;
       key.insert(key.end(), {static_cast<double>(inputs[node.map].index), T.x, T.y, T.theta});
@@ -130,7 +137,9 @@ JoinProblem GroupMatches::heard(const JoinProblem& problem, const ConsistentSet&
   }
   parallel_tasks(fresh.size(), [&](std::size_t i) {
     const auto& [meeting, result] = fresh[i];
-    *result = match(*prepared[meeting->group], *inputs[meeting->map].prepared, options_);
+    const PreparedMap &group = *prepared[meeting->group], &map = *inputs[meeting->map].prepared;
+    *result = is_thorough ? match(group, map, options_)
+                          : match_if_promising(group, map, options_, kWorthASecondLook);
   });
   kept_ = std::move(needed);
 

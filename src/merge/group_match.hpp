@@ -29,7 +29,8 @@ class GroupMatches {
   /// the candidates of the member that has most in common with the map. Its other pairs with the group then
   /// neither speak for it nor against it, since the group has spoken for all. The same problem where no group
   /// says anything. Of the maps that lie alone those are asked about of which nothing is known beforehand.
-  /// With `worth_meeting` only those that it names are matched. Matches are kept for the next call, those
+  /// With `worth_meeting` only those that it names are matched, and thoroughly only those of which the quick
+  /// look thinks something. Matches are kept for the next call, those
   /// that it does not need are forgotten. Runs in the calling TBB arena. O(maps alone * groups) times
   /// match().
   JoinProblem heard(const JoinProblem& problem, const ConsistentSet& consistent_set,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -56,6 +57,7 @@ TEST(SearchMethod, WhatItLeavesUndecidedIs) {
 }
 
 using internal::match_again;
+using internal::match_if_promising;
 using internal::match_quickly;
 using internal::QuickMatch;
 
@@ -86,6 +88,27 @@ TEST(SearchMethod, ASecondLookTakesTheFirstOnesWord) {
   EXPECT_EQ(match_again(one, other, {}, found).verdict, Verdict::refused);
   found.front().probability = 0.99;
   EXPECT_EQ(match_again(one, other, {}, found).probability, 0.99);
+}
+
+TEST(SearchMethod, APromisingQuickLookIsFollowedByAThoroughOne) {
+  const PreparedMap one(test::draw_building(1)), other(test::draw_building(2));
+  MatchResult quick = match_quickly(one, other, {}).result, whole = match(one, other);
+  ASSERT_EQ(quick.verdict, Verdict::refused);
+  ASSERT_GT(quick.probability, 0.0);
+  quick.seconds = whole.seconds = 0.0;
+  ASSERT_NE(to_bytes(quick), to_bytes(whole));
+  const auto look = [&](double from) {
+    MatchResult result = match_if_promising(one, other, {}, from);
+    result.seconds = 0.0;
+    return to_bytes(result);
+  };
+  EXPECT_EQ(look(quick.probability), to_bytes(whole));
+  EXPECT_EQ(look(std::nextafter(quick.probability, 1.0)), to_bytes(quick));
+
+  MatchResult same = match_if_promising(one, one, {}, 0.0), plain = match(one, one);
+  ASSERT_EQ(plain.verdict, Verdict::accepted);
+  same.seconds = plain.seconds = 0.0;
+  EXPECT_EQ(to_bytes(same), to_bytes(plain));
 }
 
 TEST(SearchMethod, TheThoroughLookFindsWhatTheQuickOneFinds) {
