@@ -8,8 +8,8 @@ ROWS.md has the table that benchmark/fleet.py prints; merges of all pairs are dr
 
     core seconds = comparison * maps * (maps - 1) / 2 + match * pairs that are looked at
 
-Both factors are those with the least sum of squares of relative errors, and none is negative. Prints them, and how far
-each row is off. A row that was left out while the rest was fitted says more: that is in the last column.
+A comparison is measured apart. A match, with all that comes with it, is what gives the least sum of squares of relative
+errors. Prints it, and how far each row is off. A row that was left out while the rest was fitted says more: that is in the last column.
 """
 
 import argparse
@@ -56,20 +56,12 @@ def read_rows(path: pathlib.Path) -> list[Row]:
     return rows
 
 
-def fit(rows: list[Row]) -> Model:
-    """By the normal equations of what each row's seconds are divided by."""
-    a = [row.pairs / row.seconds for row in rows]
-    b = [row.looked_at / row.seconds for row in rows]
-    aa, ab, bb = (sum(x * y for x, y in zip(u, v, strict=True)) for u, v in ((a, a), (a, b), (b, b)))
-    determinant = aa * bb - ab * ab
-    if len(rows) > 1 and determinant > 1e-12 * aa * bb:
-        comparison = (sum(a) * bb - sum(b) * ab) / determinant
-        match = (sum(b) * aa - sum(a) * ab) / determinant
-        if comparison >= 0.0 and match >= 0.0:
-            return Model(comparison, match)
-    # One of them is at its bound: the better of the two.
-    alone = (Model(sum(a) / aa, 0.0), Model(0.0, sum(b) / bb))
-    return min(alone, key=lambda model: sum(model.off(row) ** 2 for row in rows))
+def fit(rows: list[Row], comparison: float) -> Model:
+    """What a match takes. Three rows or so cannot tell both factors apart: both grow with pairs."""
+    shares = [row.looked_at / row.seconds for row in rows]
+    rest = [1.0 - comparison * row.pairs / row.seconds for row in rows]
+    match = sum(x * y for x, y in zip(shares, rest, strict=True)) / sum(x * x for x in shares)
+    return Model(comparison, max(match, 0.0))
 
 
 def draw(rows: list[Row], model: Model, path: pathlib.Path) -> None:
@@ -97,20 +89,24 @@ def main() -> None:
     )
     parser.add_argument("rows", type=pathlib.Path, metavar="ROWS.md")
     parser.add_argument("--plot", type=pathlib.Path, metavar="FILE.png")
+    parser.add_argument(
+        "--comparison", type=float, default=0.15, help="milliseconds, as gridmerge_signatures measures it"
+    )
     arguments = parser.parse_args()
+    comparison = arguments.comparison / 1000
 
     rows = read_rows(arguments.rows)
     likely = [row for row in rows if not row.is_of_all_pairs]
     if not likely:
         parser.error(f"{arguments.rows} has no row of likely pairs")
-    model = fit(likely)
+    model = fit(likely, comparison)
     print(f"a comparison {1000 * model.comparison:.3f} ms, a match {1000 * model.match:.1f} ms\n")
     print(
         "| maps | core time [s] | model [s] | off | off, if fitted without it |\n| --- | --- | --- | --- | --- |"
     )
     for row in likely:
         others = [one for one in likely if one is not row]
-        without = f"{fit(others).off(row):+.0%}" if others else ""
+        without = f"{fit(others, comparison).off(row):+.0%}" if others else ""
         print(f"| {row.maps} | {row.seconds:.1f} | {model.of(row):.1f} | {model.off(row):+.0%} | {without} |")
     if arguments.plot:
         draw(rows, model, arguments.plot)

@@ -8,8 +8,8 @@ Runs in an environment that has the package gridmerge. It merges the maps once, 
 that runs each task in this process and notes what it takes. A replay then gives the tasks to N workers: each task goes
 to the worker that is free first, and a round begins when the one before has ended. What the program itself does is no
 worker's work. The cores of its own machine share the comparisons of signatures, and what comes after the last task:
-maps that lie alone meet merged groups, and all is written. Nobody shares the joint steps between rounds, and each task
-costs the program a moment. Each task of several workers reads its maps anew: that is the most it can cost.
+maps that lie alone meet merged groups. Nobody shares the joint steps between rounds, and each task costs the program a
+moment. Each task of several workers reads and prepares its maps anew: that is the most that workers can lose so.
 
 `--times 10` replays a merge of ten times as many maps: of each task a hundred, packed into tasks as large as an
 executor gets then, a hundred times the comparisons and the meetings with groups, and ten times the rest of what the
@@ -28,10 +28,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import gridmerge
-from gridmerge._executor import TASK_SECONDS
+from gridmerge import _tasks
+from gridmerge._executor import TASK_SECONDS, of_map
 
 CORES_OF_A_MACHINE = 16
-SECONDS_OF_A_TASK = 0.008  # of the engine, in its worker: what docs/fleets.md has of MPI
+SECONDS_OF_A_TASK = 0.003  # of the engine, in its worker: what docs/fleets.md has of Dask
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class Round:
 class Trace:
     rounds: list[Round]
     loading: float  # CPU seconds of reading all maps once
-    a_map: float  # of reading one
+    a_map: float  # of reading one in a worker, and of what its matches share
     after: float  # of the program after the last task: most of it is meetings of maps with groups
 
     @property
@@ -108,12 +109,17 @@ class Recorder(Executor):
 
 def record(paths: list[str], max_missed: float, search: str) -> tuple[Trace, gridmerge.MergeResult]:
     began = time.process_time()
-    for path in paths:
-        gridmerge.load(path)
+    grids = [gridmerge.load(path) for path in paths]
     loading = time.process_time() - began
+    specs = [of_map(grid, is_file=True).spec for grid in grids]
+    began = time.process_time()
+    for spec in specs:
+        _tasks._prepare(spec)
+    preparing = time.process_time() - began
+    _tasks._shelf = _tasks._Shelf()
     recorder = Recorder()
     result = gridmerge.merge(paths, max_missed=max_missed, search=search, executor=recorder, threads=1)
-    return Trace(recorder.rounds, loading, loading / len(paths), recorder.since_last_task()), result
+    return Trace(recorder.rounds, loading, preparing / len(paths), recorder.since_last_task()), result
 
 
 def packed(tasks: list[Task], times: int) -> Iterator[Task]:
@@ -145,7 +151,7 @@ def replay(trace: Trace, workers: int, times: int) -> float:
         free = [now] * workers
         given = now
         for task in packed(one.tasks, times**2):
-            given += one.between * task.seconds / matches
+            given += one.between * task.seconds / max(matches, 1e-9)
             start = max(heapq.heappop(free), given)
             heapq.heappush(free, start + SECONDS_OF_A_TASK + reading * task.maps + task.seconds)
         now = max(max(free), given)

@@ -10,6 +10,7 @@
 
 #include "console.hpp"
 #include "gridmerge/report/merge_record.hpp"
+#include "merge/consistent_set.hpp"
 #include "merge/doubled_walls.hpp"
 #include "merge/fused_windows.hpp"
 #include "merge/joins.hpp"
@@ -179,7 +180,8 @@ std::string explain_no_change(const AskedMerge& asked, const MergeResult& result
 std::string what_asks_for_less(const AskedMerge& asked, double probability, const char* what) {
   const bool is_below = probability < asked.search.accept_from();
   const double doubt = 1.0 - probability;
-  if (doubt <= asked.max_false_joins) return is_below ? "     a lower --accept asks for less\n" : "";
+  if (doubt <= false_joins_allowed(asked.max_false_joins, asked.names.size()))
+    return is_below ? "     a lower --accept asks for less\n" : "";
   return fmt::format("     {}a higher --max-false-joins asks for less: {} is false with probability {:.3f}\n",
                      is_below ? "a lower --accept with " : "", what, doubt);
 }

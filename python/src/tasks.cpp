@@ -35,8 +35,8 @@ std::optional<QuickLook> quick_look_from(const std::string& bytes) {
   }
 }
 
-/// The match and, of a quick search that leaves the maps apart, what it has found. `found` is that of the
-/// same maps, or nothing: the exhaustive search goes on from it, with the same answer.
+/// The match and what a quick search has found. `found` is that of the same maps, or nothing: the exhaustive
+/// search goes on from it, with the same answer.
 std::pair<nb::bytes, nb::bytes> match_prepared(const Prepared& fixed, const Prepared& moving,
                                                const std::string& search, double accept,
                                                std::size_t max_hypotheses, const nb::bytes& found) {
@@ -55,10 +55,10 @@ std::pair<nb::bytes, nb::bytes> match_prepared(const Prepared& fixed, const Prep
       else
         quick.result = match(*fixed.map, *moving.map, options);
     });
-    const bool may_follow = !quick.found.empty() && quick.result.verdict != Verdict::accepted;
+    const bool is_quick = options.search == SearchMethod::quick;
     MatchResult kept;
     kept.hypotheses = std::move(quick.found);
-    return std::pair(to_bytes(quick.result), may_follow ? to_bytes(kept) : std::string());
+    return std::pair(to_bytes(quick.result), is_quick ? to_bytes(kept) : std::string());
   });
   return {to_nb_bytes(made), to_nb_bytes(now_found)};
 }

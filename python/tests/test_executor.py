@@ -9,6 +9,7 @@ import pickle
 import random
 import re
 import signal
+import struct
 import threading
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
@@ -217,6 +218,24 @@ def test_a_second_look_goes_on_from_what_the_first_one_found(four: list[str]) ->
             anew = list(args)
             anew[3] = tuple((*pair[:3], other) for pair in args[3])
             assert but_for_the_time(_tasks.match_pairs(*anew)) == whole
+
+
+def test_a_second_look_takes_the_first_ones_word(robots: list[str], elsewhere: str) -> None:
+    """So what was found is not only sent, but used."""
+    specs = tuple(_executor.of_grid(gridmerge.load(path)).spec for path in (robots[0], elsewhere))
+
+    def probability(pair: tuple[int, int], search: str, found: bytes) -> tuple[float, bytes]:
+        pairs = ((*pair, search, found),)
+        kind, _, made = _tasks.match_pairs(_core.engine_id(), 0, specs, pairs, 0.95, 12)
+        assert kind == "matches"
+        assert not isinstance(made, str)
+        ((match, quickly),) = made
+        return struct.unpack_from("<d", match, 24)[0], quickly  # behind the pose
+
+    sure, of_copies = probability((0, 0), "quick", b"")
+    assert sure > 0.95
+    assert probability((0, 1), "exhaustive", b"")[0] < 0.95
+    assert probability((0, 1), "exhaustive", of_copies)[0] == sure
 
 
 def test_what_was_found_is_kept_no_longer_than_it_is_of_use(

@@ -24,8 +24,8 @@ GRIDMERGE_INTERNAL_EXPORT QuickMatch match_quickly(const PreparedMap& fixed, con
 GRIDMERGE_INTERNAL_EXPORT MatchResult match_again(const PreparedMap& fixed, const PreparedMap& moving,
                                                   MatchOptions options, const QuickLook& found);
 
-/// match() by the exhaustive search, which ends after the quick look if that finds no pose of this
-/// probability.
+/// match() by the exhaustive search, which ends after the quick look if its best pose is less probable than
+/// this.
 GRIDMERGE_INTERNAL_EXPORT MatchResult match_if_promising(const PreparedMap& fixed, const PreparedMap& moving,
                                                          const MatchOptions& options, double promising_from);
 

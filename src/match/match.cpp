@@ -124,8 +124,7 @@ MatchResult match_again(const PreparedMap& fixed, const PreparedMap& moving, Mat
 MatchResult match_if_promising(const PreparedMap& fixed, const PreparedMap& moving,
                                const MatchOptions& options, double promising_from) {
   QuickMatch quick = match_quickly(fixed, moving, options);
-  if (quick.result.verdict == Verdict::accepted || quick.result.probability < promising_from)
-    return std::move(quick.result);
+  if (quick.result.probability < promising_from) return std::move(quick.result);
   const double seconds = quick.result.seconds;
   MatchResult result = match_again(fixed, moving, options, quick.found);
   result.seconds += seconds;

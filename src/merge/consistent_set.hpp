@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "internal_export.hpp"
 #include "merge/pair_candidates.hpp"
 
 namespace gridmerge::internal {
@@ -67,7 +68,7 @@ inline constexpr std::size_t kFewMaps = 50;
 /// So many joins of a merge of so many maps may be expected to be false, by MergeOptions::max_false_joins.
 /// Many maps are many teams, and each has the budget of one: or what is surely one map would be cut for maps
 /// that have nothing to do with it. Throws std::invalid_argument for a budget that is negative or not finite.
-double false_joins_allowed(double max_false_joins, std::size_t maps);
+GRIDMERGE_INTERNAL_EXPORT double false_joins_allowed(double max_false_joins, std::size_t maps);
 
 /// find_consistent_set() with as many joins as a budget of false ones allows: as long as more are expected,
 /// the groups are cut from a higher probability on, that of the least sure member. Joined are they from

@@ -25,8 +25,9 @@ inline bool takes_all_pairs(std::size_t maps, double max_missed) {
   return max_missed <= kHiddenShare || maps <= kFewMaps;
 }
 
-/// Core time of a pair if all pairs of many maps are matched: docs/scale.md, "Model", derives them [s].
-inline constexpr double kSecondsOfAPair = 0.19;        // both looks
+/// Core time of a pair if all pairs of many maps are matched: docs/scale.md, "Model", has what they follow
+/// from [s].
+inline constexpr double kSecondsOfAPair = 0.12;        // both looks
 inline constexpr double kSecondsOfAQuickLook = 0.032;  // and no other
 
 /// Chooses the pairs of many maps that are looked at, by signatures of the maps: in rounds, the likeliest

@@ -52,8 +52,8 @@ double middle_scale(double scale, const std::vector<const Hypothesis*>& all) {
   return scale;
 }
 
-/// The distinct scales that voices propose, the most probable ones, each the middle of those near it. Of each
-/// hypothesis one is the same scale, unless there are too many.
+/// The distinct scales that voices propose, the most probable ones, each the middle of those near it. Each
+/// hypothesis is of the same scale as one of them, unless there are more than kMostScales.
 std::vector<double> scales_of(const MergePart& part) {
   std::vector<const Hypothesis*> all;
   for (const PlanVoice& voice : part.voices) {

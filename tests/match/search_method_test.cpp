@@ -109,6 +109,13 @@ TEST(SearchMethod, APromisingQuickLookIsFollowedByAThoroughOne) {
   ASSERT_EQ(plain.verdict, Verdict::accepted);
   same.seconds = plain.seconds = 0.0;
   EXPECT_EQ(to_bytes(same), to_bytes(plain));
+
+  MatchOptions easy;  // whoever accepts less is told the same probability
+  easy.accept_probability = quick.probability;
+  ASSERT_EQ(match_quickly(one, other, easy).result.verdict, Verdict::accepted);
+  MatchResult believed = match_if_promising(one, other, easy, 0.0);
+  EXPECT_EQ(believed.probability, match(one, other, easy).probability);
+  EXPECT_NE(believed.probability, quick.probability);
 }
 
 TEST(SearchMethod, TheThoroughLookFindsWhatTheQuickOneFinds) {

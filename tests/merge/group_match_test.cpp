@@ -74,6 +74,22 @@ TEST_F(GroupMatchesTest, PlaceAMapThatFitsTheWholeGroup) {
   EXPECT_EQ(after.groups[1].front().map, 3U);
 }
 
+TEST_F(GroupMatchesTest, OfManyMapsPlaceThoseThatAreWorthMeeting) {
+  using Groups = std::vector<std::unique_ptr<PreparedMap>>;
+  using Meetings = std::vector<std::pair<std::size_t, std::size_t>>;
+  for (const bool is_worth : {true, false}) {
+    GroupMatches groups({});
+    const JoinProblem heard = groups.heard(problem_, consistent_set_, inputs_,
+                                           [&](const Groups& prepared, const Meetings& meetings) {
+                                             EXPECT_TRUE(prepared[0]);
+                                             EXPECT_EQ(meetings, (Meetings{{0, 2}, {0, 3}}));
+                                             return std::vector<bool>{is_worth, true};
+                                           });
+    const ConsistentSet after = find_consistent_set(heard, 0.95);
+    EXPECT_EQ(after.groups[0].size(), is_worth ? 3U : 2U);
+  }
+}
+
 TEST_F(GroupMatchesTest, PlaceMapsWhateverTheSearch) {
   for (const SearchMethod search : {SearchMethod::quick, SearchMethod::thorough, SearchMethod::exhaustive}) {
     MergeOptions options;
