@@ -73,7 +73,7 @@ class PlanUnderMaps {
     for (const PlanPlace& place : plan_places(merge.result)) {
       if (place.on_plan) place_ = place;  // all are one component, or one map
     }
-    if (place_) walls_ = scaled(walls_of_plan(*merge.plan), place_->scale);
+    plan_ = merge.plan;
     name_ = short_names({merge.result.plan->name}).front();
   }
 
@@ -86,10 +86,16 @@ class PlanUnderMaps {
 
   bool is_under(std::size_t component) const { return place_ && place_->component == component; }
 
+  /// Whether it is under one of so many components, those first, or under a lone map.
+  bool is_drawn(std::size_t components) const {
+    return place_ && (!place_->component || *place_->component < components);
+  }
+
   /// Into a panel, which grows as far as the plan reaches, but by its longer side on each side at most: the
   /// maps would be lost on the plan of a whole site.
   void draw_into(MapPanel& panel) {
     Box box = covered_box(panel.maps, panel.deformations);
+    walls_ = scaled(walls_of_plan(*plan_), place_->scale);
     const double margin = std::max(box.max_x - box.min_x, box.max_y - box.min_y);
     cut_walls({box.min_x - margin, box.min_y - margin, box.max_x + margin, box.max_y + margin});
     panel.plan = {&walls_, place_->T_scene_plan};
@@ -108,8 +114,9 @@ class PlanUnderMaps {
     }
   }
 
+  const OccupancyGrid* plan_ = nullptr;
   std::optional<PlanPlace> place_;
-  OccupancyGrid walls_;
+  OccupancyGrid walls_;  // of the panel that was drawn into
   std::string name_;
 };
 
@@ -152,7 +159,7 @@ Canvas legend_entry(Colour left, Colour right, const std::string& label, int wid
 }
 
 std::vector<Canvas> legend(const std::vector<std::string>& names, std::span<const Component> components,
-                           const PlanUnderMaps& plan, bool is_plan_drawn, int width) {
+                           const PlanUnderMaps& plan, int width) {
   std::vector<Canvas> entries;
   for (const Component& component : components) {
     for (const Member& member : component.members) {
@@ -165,7 +172,7 @@ std::vector<Canvas> legend(const std::vector<std::string>& names, std::span<cons
     const Colour colour = map_colour(*map);
     entries.push_back(legend_entry(colour, free_tint(colour), names.at(*map), width));
   }
-  if (is_plan_drawn)
+  if (plan.is_drawn(components.size()))
     entries.push_back(legend_entry(Colours::kPlan, Colours::kPlan, "walls of " + plan.name(), width));
   if (components.empty()) return entries;
   entries.push_back(legend_entry(Colours::kSharedWall, Colours::kSharedFree, "in two maps or more", width));
@@ -226,13 +233,9 @@ std::string preview_png(const NamedMerge& merge) {
   std::vector<Canvas> blocks;
   int width = kPageMinWidth;
   const std::size_t components = std::min(result.components.size(), kMaxComponentPanels);
-  bool is_plan_drawn = plan.lone_map().has_value();
   for (std::size_t i = 0; i < components; ++i) {
     MapPanel panel = component_panel(maps, result, i);
-    if (plan.is_under(i)) {
-      plan.draw_into(panel);
-      is_plan_drawn = true;
-    }
+    if (plan.is_under(i)) plan.draw_into(panel);
     blocks.push_back(draw_panel(panel, size));
     width = std::max(width, blocks.back().width());
   }
@@ -249,7 +252,7 @@ std::string preview_png(const NamedMerge& merge) {
     width = std::max(width, blocks.back().width());
   }
   const std::vector<Canvas> entries =
-      legend(called, std::span(result.components).first(components), plan, is_plan_drawn, width);
+      legend(called, std::span(result.components).first(components), plan, width);
   if (!entries.empty()) blocks.push_back(flow(entries, width, kLegendGap));
 
   std::vector<Canvas> left_out;

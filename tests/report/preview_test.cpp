@@ -13,9 +13,9 @@
 #include "io/png.hpp"
 #include "merge/drawing.hpp"
 #include "report/map_panel.hpp"
+#include "report/picture.hpp"
 #include "report/preview_colours.hpp"
 #include "report/results.hpp"
-#include "report/style.hpp"
 
 namespace gridmerge {
 
@@ -23,40 +23,10 @@ using namespace internal;
 namespace {
 
 using test::map_from;
-using Rgb = std::tuple<int, int, int>;
+using test::Picture;
+using test::rgb;
+using test::Rgb;
 using Colours = internal::PreviewColours;
-
-Rgb rgb(Colour colour) {
-  return {colour.red, colour.green, colour.blue};
-}
-
-struct Picture {
-  PngImage image;
-
-  Rgb at(int x, int y) const {
-    const auto i =
-        (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)) *
-        3;
-    return {image.samples[i], image.samples[i + 1], image.samples[i + 2]};
-  }
-
-  // The pixels of a colour, rows first.
-  std::vector<std::pair<int, int>> pixels(Colour colour) const {
-    std::vector<std::pair<int, int>> found;
-    for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) {
-        if (at(x, y) == rgb(colour)) found.emplace_back(x, y);
-      }
-    }
-    return found;
-  }
-
-  // How many map cells have the colour, drawn `zoom` pixels wide. The legend's samples are smaller than a
-  // cell here.
-  std::size_t cells(Colour colour, std::size_t zoom = 32) const {
-    return pixels(colour).size() / (zoom * zoom);
-  }
-};
 
 Picture preview(const std::vector<OccupancyGrid>& maps, const std::vector<std::vector<Member>>& components) {
   std::vector<std::string> names;
@@ -294,120 +264,6 @@ TEST(Preview, TheLegendHasASampleOfTheWallsAndTheFreeSpaceOfEachMap) {
     EXPECT_NE(picture.at(left + 2 * side + 1, top), line);
   }
   EXPECT_EQ(free_tint({255, 0, 155}), (Colour{255, 194, 231}));  // a quarter of the colour, of 100 parts 24
-}
-
-Picture preview_on_a_plan(const std::vector<OccupancyGrid>& maps, const MergeResult& result,
-                          const OccupancyGrid* plan) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < maps.size(); ++i) names.push_back("map" + std::to_string(i) + ".yaml");
-  return {decode_png(preview_png({names, maps, result, plan}))};
-}
-
-TEST(Preview, DrawsTheWallsOfThePlanWhereMapsHaveNone) {
-  // At its scale of 2, the plan has cells as large as those of the maps.
-  const std::vector<OccupancyGrid> maps{map_from({"#..#"}, 0.5), map_from({"#..#"}, 0.5)};
-  const OccupancyGrid plan = map_from({"######", "#....#", "#....#", "######"}, 0.25);
-  MergeResult result = test::merged(maps, {{{0, {0.5, 0.5, 0.0}}, {1, {0.5, 0.5, 0.0}}}});
-  const PlanPart part{{0, 1}, {0.5, 0.5, 0.0}, 2.0, 0.99, Reason::none};
-  result.plan = PlanPlacement{"folder/floor.png", 2.0, {part}, 0.25};
-  const Picture drawn = preview_on_a_plan(maps, result, &plan);
-  EXPECT_EQ(drawn.cells(Colours::kPlan), 16u);  // all that the plan has: the maps' walls lie beside them
-  EXPECT_EQ(drawn.cells(Colours::kSharedWall), 2u);
-  EXPECT_EQ(drawn.cells(Colours::kSharedFree), 2u);
-  EXPECT_TRUE(preview_on_a_plan(maps, result, nullptr).pixels(Colours::kPlan).empty());
-
-  MergeResult over = result;  // a cell to the left: the left walls of the maps lie on one of the plan's
-  for (Member& member : over.components[0].members) member.T_component_map.x = 0.0;
-  const Picture covered = preview_on_a_plan(maps, over, &plan);
-  EXPECT_EQ(covered.cells(Colours::kPlan), 15u);
-  EXPECT_EQ(covered.cells(Colours::kSharedWall), 2u);
-
-  MergeResult off = result;
-  off.plan = PlanPlacement{"floor.png", 1.0, {{{0, 1}, {}, 2.0, 0.5, Reason::ambiguous}}, 0.25};
-  EXPECT_TRUE(preview_on_a_plan(maps, off, &plan).pixels(Colours::kPlan).empty());
-}
-
-TEST(Preview, ThePlanOfAWholeSiteLeavesMapsLarge) {
-  const std::vector<OccupancyGrid> maps{map_from({"#..#"}, 0.5), map_from({"#..#"}, 0.5)};
-  OccupancyGrid site = make_grid(4000, 3000, 0.25, {}, Cell::free);
-  site.at(2, 2) = site.at(3999, 2999) = site.at(0, 2999) = Cell::occupied;
-  MergeResult result = test::merged(maps, {{{0, {}}, {1, {}}}});
-  result.plan = PlanPlacement{"site.png", 2.0, {{{0, 1}, {}, 2.0, 0.99, Reason::none}}, 0.25};
-  const Picture drawn = preview_on_a_plan(maps, result, &site);
-  EXPECT_EQ(drawn.cells(Colours::kPlan), 1u);
-  EXPECT_EQ(drawn.cells(Colours::kSharedWall), 2u);
-}
-
-TEST(Preview, DrawsThePlanUnderBentMaps) {
-  const std::vector<OccupancyGrid> maps{map_from({"#..#"}, 0.5), map_from({"#..#"}, 0.5)};
-  const OccupancyGrid plan = map_from({"######", "#....#", "#....#", "######"}, 0.25);
-  MergeResult result = test::merged(maps, {{{0, {0.5, 0.5, 0.0}}, {1, {0.5, 0.5, 0.0}}}});
-  const std::vector<Point2> down(25, Point2{0.0, -0.5});  // by a cell: onto a wall of the plan
-  for (Member& member : result.components[0].members)
-    member.deformation = Deformation({-1.0, -1.0, 0.0}, 1.0, 5, 5, down);
-  result.plan = PlanPlacement{"floor.png", 2.0, {{{0, 1}, {0.5, 0.5, 0.0}, 2.0, 0.99, Reason::none}}, 0.25};
-  const Picture drawn = preview_on_a_plan(maps, result, &plan);
-  EXPECT_EQ(drawn.cells(Colours::kSharedWall), 2u);
-  EXPECT_EQ(drawn.cells(Colours::kPlan), 14u);
-}
-
-TEST(Preview, DrawsAPlanOfFinerAndOfCoarserCells) {
-  const std::vector<OccupancyGrid> maps{map_from({"#..#"}, 0.5), map_from({"#..#"}, 0.5)};
-  MergeResult result = test::merged(maps, {{{0, {2.0, 2.0, 0.0}}, {1, {2.0, 2.0, 0.0}}}});
-  const PlanPart part{{0, 1}, {2.0, 2.0, 0.0}, 2.0, 0.99, Reason::none};
-  const OccupancyGrid finer = map_from({"####", "####"}, 0.125), coarser = map_from({"#"}, 0.5);
-  result.plan = PlanPlacement{"floor.png", 2.0, {part}, 0.125};  // a wall of 1 m x 0.5 m
-  EXPECT_EQ(preview_on_a_plan(maps, result, &finer).cells(Colours::kPlan), 2u);
-  result.plan = PlanPlacement{"floor.png", 2.0, {part}, 0.5};  // of 1 m x 1 m
-  EXPECT_EQ(preview_on_a_plan(maps, result, &coarser).cells(Colours::kPlan), 4u);
-}
-
-/// Many components are not all shown: then neither is what lies under them.
-TEST(Preview, ThePlanIsInTheLegendIfItIsDrawn) {
-  std::vector<OccupancyGrid> maps;
-  std::vector<std::vector<Member>> components;
-  for (std::size_t i = 0; i < 14; ++i) {
-    maps.push_back(map_from({"#..#"}, 0.5));
-    maps.push_back(map_from({"#..#"}, 0.5));
-    components.push_back({{2 * i, {}}, {2 * i + 1, {}}});
-  }
-  const OccupancyGrid plan = map_from({"######", "#....#", "#....#", "######"}, 0.25);
-  MergeResult result = test::merged(maps, components);
-  for (const auto& [first, is_drawn] : {std::pair<std::size_t, bool>{0, true}, {26, false}}) {
-    result.plan = PlanPlacement{"floor.png", 2.0, {{{first, first + 1}, {}, 2.0, 0.99, Reason::none}}, 0.25};
-    EXPECT_EQ(preview_on_a_plan(maps, result, &plan).pixels(Colours::kPlan).empty(), !is_drawn);
-  }
-}
-
-TEST(Preview, ShowsALoneMapOnThePlan) {
-  const std::vector<OccupancyGrid> maps{map_from({"#..."}, 0.5), map_from({"#"}, 0.5)};
-  const OccupancyGrid plan = map_from({"######", "#....#", "#....#", "######"}, 0.25);
-  MergeResult result;
-  result.left_out = {{0, Reason::ambiguous}, {1, Reason::ambiguous}};
-  result.plan = PlanPlacement{"floor.png", 2.0, {{{0}, {0.5, 0.5, 0.0}, 2.0, 0.99, Reason::none}}, 0.25};
-  const Picture drawn = preview_on_a_plan(maps, result, &plan);
-  EXPECT_EQ(drawn.cells(Colours::kPlan), 16u);
-  EXPECT_EQ(drawn.cells(free_tint(map_colour(0))), 3u);
-  EXPECT_GE(drawn.pixels(map_colour(1)).size(), 1u) << "the other one is shown as left out";
-
-  // With twelve others all are shown, whether it is the first that is left out or the last one.
-  const auto ink_of = [&](std::size_t map, std::size_t others) {
-    std::vector<OccupancyGrid> some(others + 1, maps[1]);
-    some[map] = maps[0];
-    result.left_out.clear();
-    for (std::size_t i = 0; i < some.size(); ++i) result.left_out.push_back({i, Reason::ambiguous});
-    result.plan = PlanPlacement{"floor.png", 2.0, {{{map}, {0.5, 0.5, 0.0}, 2.0, 0.99, Reason::none}}, 0.25};
-    const Picture shown = preview_on_a_plan(some, result, &plan);
-    // The heading stands below the plan's panel, its scale and the legend, and above the other maps.
-    const int below = shown.pixels(Colours::kPlan).back().second + 1;
-    const int first = map == 0 ? 1 : 0;
-    const int above = shown.pixels(map_colour(static_cast<std::size_t>(first))).front().second;
-    std::size_t ink = 0;
-    for (const auto& [x, y] : shown.pixels(Style::kInk)) ink += y > below && y < above ? 1U : 0U;
-    return static_cast<double>(ink);
-  };
-  EXPECT_NEAR(ink_of(12, 12), ink_of(0, 12), 50.0);  // names differ by digits, " (and 1 more)" is more
-  EXPECT_GT(ink_of(0, 13), ink_of(0, 12) + 100.0);
 }
 
 TEST(Preview, OfNothingIsAnEmptyPage) {
