@@ -54,6 +54,26 @@ test("layers are faded and coloured", async () => {
   await tab.close();
 });
 
+test("beside its buttons the map takes the pointer everywhere, in a low window too", async () => {
+  for (const height of [800, 300]) {
+    const tab = await open(folder(), { viewport: { width: 1280, height } });
+    const covered = await tab.page.evaluate(() => {
+      const canvas = document.querySelector(".stage canvas")!;
+      const { left, top, right, bottom } = canvas.getBoundingClientRect();
+      const found: string[] = [];
+      for (let y = top + 5; y < bottom; y += 10) {
+        for (let x = left + 5; x < right; x += 10) {
+          const there = document.elementFromPoint(x, y)!;
+          if (there !== canvas && !there.closest("button")) found.push(`${x}, ${y}: ${there.className}`);
+        }
+      }
+      return found;
+    });
+    assert.deepEqual(covered, []);
+    await tab.close();
+  }
+});
+
 test("the view moves and zooms, by mouse, buttons and keys", async () => {
   const tab = await open(folder());
   const { page } = tab;
