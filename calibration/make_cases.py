@@ -4,7 +4,7 @@
 ones, and what the engine makes of each (gridmerge evaluate --features).
 
 usage: calibration/make_cases.py GRIDMERGE OUTPUT [--buildings N] [--seed N] [--jobs N] [--real FOLDER]
-                                 [--domains A,B,...] [--keep]
+                                 [--unrelated N] [--domains A,B,...] [--keep]
 
 Every kind of building is a domain, and so is every real building: a model is judged on a domain that its fit has not
 seen. Each building is made at random: its size, how much robots share, how far maps bend, their resolution, clutter,
@@ -18,13 +18,15 @@ Kinds of unrelated pairs of simulated maps:
     same_building  of one building, and no place in common
     other_kind     of two kinds
 The first and the last are of one resolution, as true pairs are. An unrelated pair belongs to the fixed map's domain;
-`other` is the moving map's. The cases do not depend on --jobs. --domains says which features are written.
+`other` is the moving map's. Of all that a domain has, --unrelated are drawn, as many of each kind as there are. The cases do
+not depend on --jobs. --domains says which features are written.
 """
 
 import argparse
 import collections
 import concurrent.futures
 import csv
+import itertools
 import math
 import os
 import pathlib
@@ -154,6 +156,19 @@ def write_cases(folder: pathlib.Path, root: pathlib.Path, cases: list[Row]) -> N
     write_rows(folder / "cases.tsv", CASE, cases)
 
 
+def draw_unrelated(cases: list[Row], count: int, seed: str) -> list[Row]:
+    """All true pairs, and `count` unrelated ones, of each kind in turn."""
+    dice = random.Random(seed)
+    by_kind = collections.defaultdict(list)
+    for row in cases:
+        if row["truth"] == "negative":
+            by_kind[row["kind"]].append(row)
+    for its in by_kind.values():
+        dice.shuffle(its)
+    in_turn = (row for rows in itertools.zip_longest(*by_kind.values()) for row in rows if row is not None)
+    return [row for row in cases if row["truth"] != "negative"] + list(itertools.islice(in_turn, count))
+
+
 def by_domain(cases: list[Row]) -> dict[str, list[Row]]:
     domains = collections.defaultdict(list)
     for row in cases:
@@ -201,6 +216,7 @@ def main() -> None:
     parser.add_argument("--buildings", type=int, default=50, help="of each kind")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--unrelated", type=int, default=130, help="unrelated pairs of each domain")
     parser.add_argument("--domains", help="write features of these only")
     parser.add_argument("--real", type=pathlib.Path, metavar="FOLDER", help="of calibration/make_real_cases.py")
     parser.add_argument("--keep", action="store_true", help="features that are there are not written again")
@@ -212,12 +228,14 @@ def main() -> None:
     cases += cases_between(buildings, random.Random(f"{arguments.seed} unrelated"))
     folders, roots = {}, {}
     for domain, its in by_domain(cases).items():
+        its = draw_unrelated(its, arguments.unrelated, f"{arguments.seed} {domain}")
         folders[domain], roots[domain] = output / domain, output
         write_cases(folders[domain], output, its)
         made = sum(kind_of(building) == domain for building in buildings)
         print(f"{domain}: {made} of {arguments.buildings} buildings could be made; {counts(its)}", flush=True)
     if arguments.real:
         for domain, its in by_domain(real_cases(arguments.real)).items():
+            its = draw_unrelated(its, arguments.unrelated, f"{arguments.seed} {domain}")
             folders[domain], roots[domain] = output / "real" / domain, arguments.real
             write_cases(folders[domain], arguments.real, its)
             print(f"{domain}: {counts(its)}", flush=True)

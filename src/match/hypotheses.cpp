@@ -129,21 +129,31 @@ PoseJudge::PoseJudge(const ComparedMaps& maps)
       cells_(maps.fixed, maps.moving, stride_of_counted(maps.moving)),
       patches_(maps.moving_walls) {}
 
-PoseFigures PoseJudge::figures(const SE2& T_cells) const {
-  const LikelihoodField &fixed = maps_.fixed_walls, &moving = maps_.moving_walls;
-  const double cell = maps_.cell;
-  const Evidence walls = walls_(T_cells);
-  const AgreementCounts common = cells_.count(to_map_frames(T_cells, fixed, moving));
-  const double cells_per_cell = std::pow(maps_.moving.resolution / cell, 2);
-  const WallSupport support = measure_wall_support(fixed, moving, T_cells);
-  const WallsMet met = measure_walls_met(fixed, patches_, T_cells);
-  const Hold hold = measure_hold(sliding_walls_, T_cells, cell);
-
+PoseFigures PoseJudge::cheap_figures(const SE2& T_cells, const Evidence& walls) const {
+  const AgreementCounts common = cells_.count(to_map_frames(T_cells, maps_.fixed_walls, maps_.moving_walls));
+  const double cells_per_cell = std::pow(maps_.moving.resolution / maps_.cell, 2);
   PoseFigures figures;
   figures.score = walls.score + area_evidence(cells_per_cell * static_cast<double>(common.agreement),
                                               cells_per_cell * static_cast<double>(common.disagreement));
   figures.wall_score = walls.score;
-  figures.seen_walls = walls.seen_walls * cell;
+  figures.seen_walls = walls.seen_walls * maps_.cell;
+  figures.acceptance_index = common.acceptance_index();
+  figures.common_area =
+      static_cast<double>(common.both_known()) * maps_.moving.resolution * maps_.moving.resolution;
+  figures.overlap = maps_.smaller_area > 0.0 ? std::min(1.0, figures.common_area / maps_.smaller_area) : 0.0;
+  figures.sigma = walls.model.sigma * maps_.cell;
+  figures.outliers = walls.model.outliers;
+  return figures;
+}
+
+PoseFigures PoseJudge::figures(const SE2& T_cells) const {
+  const LikelihoodField &fixed = maps_.fixed_walls, &moving = maps_.moving_walls;
+  const double cell = maps_.cell;
+  const WallSupport support = measure_wall_support(fixed, moving, T_cells);
+  const WallsMet met = measure_walls_met(fixed, patches_, T_cells);
+  const Hold hold = measure_hold(sliding_walls_, T_cells, cell);
+
+  PoseFigures figures = cheap_figures(T_cells, walls_(T_cells));
   figures.walls_met = met.rigidly;
   figures.walls_met_locally = met.locally;
   figures.wall_lines = support.lines;
@@ -153,12 +163,6 @@ PoseFigures PoseJudge::figures(const SE2& T_cells) const {
   figures.held = hold.least;
   figures.held_most = hold.most;
   figures.free_direction = undirected_angle(hold.direction + fixed.T_map_grid.theta);
-  figures.acceptance_index = common.acceptance_index();
-  figures.common_area =
-      static_cast<double>(common.both_known()) * maps_.moving.resolution * maps_.moving.resolution;
-  figures.overlap = maps_.smaller_area > 0.0 ? std::min(1.0, figures.common_area / maps_.smaller_area) : 0.0;
-  figures.sigma = walls.model.sigma * cell;
-  figures.outliers = walls.model.outliers;
   return figures;
 }
 
@@ -221,10 +225,6 @@ Settled PoseJudge::settle(const Hypothesis& hypothesis) const {
     }
   }
   return {judge(climbed), false};
-}
-
-double PoseJudge::acceptance_index(const SE2& T_cells) const {
-  return agreement(to_map_frames(T_cells, maps_.fixed_walls, maps_.moving_walls));
 }
 
 double PoseJudge::agreement(const SE2& T_fixed_moving) const {

@@ -58,8 +58,9 @@ class PoseJudge {
   /// itself exactly.
   Settled settle(const Hypothesis& hypothesis) const;
 
-  /// Of the cells that are counted, the share that agrees under a pose between the grid frames [cells].
-  double acceptance_index(const SE2& T_cells) const;
+  /// What is known of a pose between the grid frames [cells] at little cost: its walls' evidence and its
+  /// cells. Figures of other kinds are 0.
+  PoseFigures cheap_figures(const SE2& T_cells, const Evidence& walls) const;
 
   const WallEvidence& walls() const { return walls_; }
 

@@ -17,12 +17,6 @@ constexpr std::size_t kRankedPoses = 6;
 constexpr std::size_t kCountedPoses = 40;
 constexpr std::size_t kThoroughPoses = 12;
 
-/// What a pose promises before its dear figures are known: the quality of its walls and of its cells.
-double promise(const ScoredPose& pose, double acceptance_index) {
-  return std::log(std::max(rank_of(pose.evidence, RankBy::quality), 1e-9)) -
-         std::log(1.01 - acceptance_index);
-}
-
 std::vector<Hypothesis> judge_all(const PoseJudge& judge, const std::vector<SE2>& T_cells) {
   std::vector<Hypothesis> judged(T_cells.size());
   parallel_for(T_cells.size(), [&](std::size_t i) { judged[i] = judge.judge(T_cells[i]); });
@@ -66,17 +60,18 @@ std::vector<Hypothesis> look_thoroughly(const ComparedMaps& maps, const PoseJudg
   const RefineOptions refinement = refinement_of(maps, search.coarse_factor, kCountedPoses, RankBy::quality);
   const std::vector<ScoredPose> poses = refine(judge.walls(), maps.moving_walls, candidates, refinement,
                                                [&](double share) { report(0.5 + 0.4 * share); });
+  // By the rank as far as it is known without the dear figures.
   struct Promising {
     SE2 T_cells;
-    double promise;
+    double rank;
   };
   std::vector<Promising> promising(poses.size());
   parallel_for(poses.size(), [&](std::size_t i) {
-    promising[i] = {poses[i].T_fixed_moving,
-                    promise(poses[i], judge.acceptance_index(poses[i].T_fixed_moving))};
+    const SE2& T_cells = poses[i].T_fixed_moving;
+    promising[i] = {T_cells, rank_of(judge.cheap_figures(T_cells, poses[i].evidence))};
   });
   std::stable_sort(promising.begin(), promising.end(),
-                   [](const Promising& a, const Promising& b) { return a.promise > b.promise; });
+                   [](const Promising& a, const Promising& b) { return a.rank > b.rank; });
   std::vector<SE2> T_cells;
   for (std::size_t i = 0; i < std::min(promising.size(), kThoroughPoses); ++i)
     T_cells.push_back(promising[i].T_cells);

@@ -43,8 +43,6 @@ std::span<const PoseFigure> pose_figures() {
                  &F::free_direction},
       PoseFigure{"acceptance_index", "share", "of the cells known in both maps, the share that is equal",
                  &F::acceptance_index},
-      PoseFigure{"next_acceptance_index", "share", "the largest one of the pair's other hypotheses",
-                 &F::next_acceptance_index},
       PoseFigure{"common_area", "m^2", "area that is known in both maps", &F::common_area},
       PoseFigure{"overlap", "share", "of the smaller map's known cells, the share that is known in both",
                  &F::overlap},

@@ -63,10 +63,11 @@ double cells_agree(double acceptance_index) {
   return missing(std::min(acceptance_index, kNearlyAll), 0.01);
 }
 
-/// By how much more of the cells agree than under the next pose, or than maps agree under any.
-double agrees_better(const PoseFigures& f) {
-  constexpr double kAnyPose = 0.93;
-  return cells_agree(f.acceptance_index) - cells_agree(std::max(f.next_acceptance_index, kAnyPose));
+/// Where little overlaps, the true pose hardly contradicts itself; a wrong one that overlaps much agrees in
+/// as large a share of its cells, and has many that do not.
+double uncontradicted(const PoseFigures& f) {
+  constexpr double kAnywhere = 0.5;  // [m^2]: of two scans of one place so much may differ
+  return -std::log(std::max(0.0, 1.0 - f.acceptance_index) * f.common_area + kAnywhere);
 }
 
 }  // namespace
@@ -95,10 +96,10 @@ std::span<const VerdictTerm> verdict_terms() {
           kQuality, 0.0, 2.0, bend_explains},
       VerdictTerm{"cells agree", "-ln(1.01 - min(acceptance_index, 0.99))", kQuality, 1.0, 3.92,
                   [](const F& f) { return cells_agree(f.acceptance_index); }},
-      VerdictTerm{"agrees better", "what \"cells agree\" is more than for max(next_acceptance_index, 0.93)",
-                  kQuality, 0.0, 1.39, agrees_better},
       VerdictTerm{"things met", "-ln(1.05 - share), the share of things met drawn towards 1/3 by 4 m",
-                  kQuality, 0.05, 2.5, [](const F& f) { return missing(things_share(f), 0.05); }}};
+                  kQuality, 0.05, 2.5, [](const F& f) { return missing(things_share(f), 0.05); }},
+      VerdictTerm{"explained", "-ln(outliers + 0.05)", kQuality, 0.6, 2.65,
+                  [](const F& f) { return -logarithm(f.outliers + 0.05, 0.05); }}};
   static_assert(kTerms.size() == kVerdictWeights.size(), "each term has its weight in verdict_model.hpp");
   return kTerms;
 }
@@ -107,10 +108,11 @@ std::span<const RankTerm> rank_terms() {
   using F = PoseFigures;
   static constexpr std::array kTerms{
       RankTerm{"evidence", "ln(score)", [](const F& f) { return logarithm(f.score, 1.0); }},
-      RankTerm{"seen", "-ln(seen_walls)", [](const F& f) { return -logarithm(f.seen_walls, 1.0); }},
+      RankTerm{"contradicted", "-ln((1 - acceptance_index) common_area + 0.5 m^2)", uncontradicted},
       RankTerm{"cells", "-ln(1.01 - acceptance_index)",
                [](const F& f) { return missing(f.acceptance_index, 0.01); }},
       RankTerm{"lines", "ln(wall_lines + 0.5)", [](const F& f) { return std::log(f.wall_lines + 0.5); }},
+      RankTerm{"held", "as \"held\"", how_held},
       RankTerm{"things", "as \"things met\"", [](const F& f) { return missing(things_share(f), 0.05); }},
       RankTerm{"tolerance", "ln(sigma)", [](const F& f) { return logarithm(f.sigma, 0.03); }}};
   static_assert(kTerms.size() == kRankWeights.size(), "each term has its weight in verdict_model.hpp");
@@ -141,9 +143,6 @@ namespace {
 /// Nothing stands out more: also what has no rivals.
 constexpr double kMaxStandingOut = 20.0;  // nats
 
-/// What has less than this share of a pose's score has too little in common to tell whose cells agree better.
-constexpr double kRivalScore = 0.5;
-
 }  // namespace
 
 void compare_rivals(std::span<PoseFigures> hypotheses,
@@ -153,14 +152,11 @@ void compare_rivals(std::span<PoseFigures> hypotheses,
     PoseFigures& one = hypotheses[i];
     const double rank = rank_of(one, model);
     double next_score = 0.0, others = std::exp(-kMaxStandingOut);
-    one.next_acceptance_index = 0.0;
     for (std::size_t j = 0; j < hypotheses.size(); ++j) {
       const PoseFigures& other = hypotheses[j];
       if (j == i || (other.score < one.score && are_near && are_near(i, j))) continue;
       next_score = std::max(next_score, other.score);
       others += std::exp(rank_of(other, model) - rank);
-      if (other.score >= kRivalScore * one.score)
-        one.next_acceptance_index = std::max(one.next_acceptance_index, other.acceptance_index);
     }
     one.score_margin = one.score > 0.0 ? (one.score - next_score) / std::sqrt(one.score) : 0.0;
     one.stands_out = -std::log(others);

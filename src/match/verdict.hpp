@@ -75,10 +75,10 @@ const VerdictModel& rigid_model();
 /// overlap much.
 double rank_of(const PoseFigures& figures, const VerdictModel& model = rigid_model());
 
-/// Gives each of several distinct hypotheses of one pair what it has before its rivals: `score_margin`,
-/// `stands_out` and, of the rivals that have half of its score or more, `next_acceptance_index`. All others
-/// are its rivals, except those that are near (`are_near`, of two indices) and score less: bent maps have no
-/// exact pose, so that a second maximum beside the first says nothing against it. O(hypotheses^2).
+/// Gives each of several distinct hypotheses of one pair what it has before its rivals: `score_margin` and
+/// `stands_out`. All others are its rivals, except those that are near (`are_near`, of two indices) and score
+/// less: bent maps have no exact pose, so that a second maximum beside the first says nothing against it.
+/// O(hypotheses^2).
 void compare_rivals(std::span<PoseFigures> hypotheses,
                     const std::function<bool(std::size_t, std::size_t)>& are_near = {},
                     const VerdictModel& model = rigid_model());

@@ -12,32 +12,33 @@ struct VerdictWeight {
   double weight;
 };
 
-inline constexpr double kVerdictBias = -14.435;
+inline constexpr double kVerdictBias = -14.380;
 
 /// In the order of verdict_terms().
 // clang-format off
 inline constexpr std::array kVerdictWeights{
     VerdictWeight{"tells apart", 3.000},
     VerdictWeight{"held", 1.000},
-    VerdictWeight{"stands out", 0.315},
-    VerdictWeight{"far ahead, bent", 8.458},
-    VerdictWeight{"met locally", 2.635},
-    VerdictWeight{"bend explains", 5.285},
-    VerdictWeight{"cells agree", 3.544},
-    VerdictWeight{"agrees better", 0.721},
-    VerdictWeight{"things met", 1.573},
+    VerdictWeight{"stands out", 0.414},
+    VerdictWeight{"far ahead, bent", 7.600},
+    VerdictWeight{"met locally", 0.955},
+    VerdictWeight{"bend explains", 6.293},
+    VerdictWeight{"cells agree", 3.313},
+    VerdictWeight{"things met", 1.679},
+    VerdictWeight{"explained", 1.823},
 };
 // clang-format on
 
 /// In the order of rank_terms().
 // clang-format off
 inline constexpr std::array kRankWeights{
-    VerdictWeight{"evidence", 3.191},
-    VerdictWeight{"seen", 1.764},
-    VerdictWeight{"cells", 3.234},
-    VerdictWeight{"lines", 2.775},
-    VerdictWeight{"things", 2.900},
-    VerdictWeight{"tolerance", 1.520},
+    VerdictWeight{"evidence", 2.764},
+    VerdictWeight{"contradicted", 2.373},
+    VerdictWeight{"cells", 2.492},
+    VerdictWeight{"lines", 2.895},
+    VerdictWeight{"held", 0.607},
+    VerdictWeight{"things", 2.307},
+    VerdictWeight{"tolerance", 1.927},
 };
 // clang-format on
 

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <string>
 
 #include "gridmerge/match/match.hpp"
 #include "match/prepared_map.hpp"
@@ -123,6 +125,28 @@ TEST(PoseJudge, OfAMapOnItselfNothingIsAgainstIt) {
   EXPECT_GE(figures.held_most, figures.held);
   EXPECT_DOUBLE_EQ(figures.sigma, 0.7 * building.resolution);  // the tightest model
   EXPECT_DOUBLE_EQ(figures.outliers, 0.02);
+}
+
+TEST(PoseJudge, CheapFiguresAreThoseOfAllFigures) {
+  const OccupancyGrid building = test::draw_building(1);
+  const PreparedMap left(test::map_part(building, {0, 0, 12, 13}, {1.0, 2.0, 0.5})),
+      right(test::map_part(building, {5, 0, 18, 13}, {}));
+  const ComparedMaps maps(left, right);
+  const PoseJudge judge(maps);
+  const std::set<std::string> dear{"walls_met",   "walls_met_locally", "wall_lines",
+                                   "seen_things", "things_met",        "spread",
+                                   "held",        "held_most",         "free_direction"};
+  const std::set<std::string> of_rivals{"score_margin", "stands_out"};
+  const SE2 T_true = to_cells({1.0, 2.0, 0.5}, maps.fixed_walls, maps.moving_walls);
+  for (const SE2& off : {SE2{}, SE2{4.0, -7.0, 0.1}, SE2{-3.0, 11.0, 0.9}}) {
+    const SE2 T = T_true * off;
+    const PoseFigures cheap = judge.cheap_figures(T, judge.walls()(T)), all = judge.judge(T).figures;
+    ASSERT_GT(all.common_area, 0.0);
+    for (const PoseFigure& figure : pose_figures()) {
+      const bool is_cheap = !dear.contains(figure.name) && !of_rivals.contains(figure.name);
+      EXPECT_EQ(cheap.*figure.value, is_cheap ? all.*figure.value : 0.0) << figure.name;
+    }
+  }
 }
 
 TEST(PoseJudge, TellsLengthsInMetresWhateverTheCell) {

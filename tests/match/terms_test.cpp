@@ -69,18 +69,17 @@ TEST(VerdictTerms, OfQualityAreWhatTheirFormulasSay) {
   EXPECT_NEAR(term("cells agree", with({{&F::acceptance_index, 0.95}})), -std::log(0.06), kNear);
   EXPECT_NEAR(term("cells agree", with({{&F::acceptance_index, 1.0}})), -std::log(0.02), kNear);
   EXPECT_EQ(term("cells agree", with({{&F::acceptance_index, 0.5}})), 1.0);
-  const auto better = [](double index, double next) {
-    return term("agrees better", with({{&F::acceptance_index, index}, {&F::next_acceptance_index, next}}));
-  };
-  EXPECT_NEAR(better(0.97, 0.95), std::log(0.06 / 0.04), kNear);
-  EXPECT_NEAR(better(0.97, 0.1), std::log(0.08 / 0.04), kNear);
-  EXPECT_NEAR(better(1.0, 0.1), std::log(0.08 / 0.02), 0.004);
-  EXPECT_EQ(better(0.94, 0.97), 0.0);
 
   const PoseFigures things = with({{&F::things_met, 0.9}, {&F::seen_things, 12.0}});
   EXPECT_NEAR(term("things met", things), -std::log(1.05 - (0.9 * 12.0 + 4.0 / 3.0) / 16.0), kNear);
   EXPECT_NEAR(term("things met", {}), -std::log(1.05 - 1.0 / 3.0), kNear);
   EXPECT_EQ(term("things met", with({{&F::things_met, 0.0}, {&F::seen_things, 1e9}})), 0.05);
+}
+
+TEST(VerdictTerms, WhatIsExplainedGrowsAsOutliersShrink) {
+  EXPECT_NEAR(term("explained", with({{&F::outliers, 0.2}})), -std::log(0.25), kNear);
+  EXPECT_EQ(term("explained", with({{&F::outliers, 0.9}})), 0.6);
+  EXPECT_EQ(term("explained", with({{&F::outliers, 0.0}})), 2.65);
 }
 
 TEST(VerdictTerms, FarAheadGrowsWithTheLeadAndWithTheBend) {
@@ -100,11 +99,14 @@ TEST(RankTerms, AreWhatTheirFormulasSay) {
   EXPECT_NEAR(rank_term("evidence", with({{&F::score, 600.0}})), std::log(600.0), kNear);
   EXPECT_NEAR(rank_term("evidence", with({{&F::score, 1.2}})), std::log(1.2), kNear);
   EXPECT_EQ(rank_term("evidence", with({{&F::score, -7.0}})), 0.0);
-  EXPECT_NEAR(rank_term("seen", with({{&F::seen_walls, 1.2}})), -std::log(1.2), kNear);
-  EXPECT_EQ(rank_term("seen", with({{&F::seen_walls, 0.4}})), 0.0);
+  EXPECT_NEAR(rank_term("contradicted", with({{&F::acceptance_index, 0.95}, {&F::common_area, 90.0}})),
+              -std::log(0.05 * 90.0 + 0.5), kNear);
+  EXPECT_NEAR(rank_term("contradicted", with({{&F::acceptance_index, 1.0}, {&F::common_area, 1e6}})),
+              -std::log(0.5), kNear);
   EXPECT_NEAR(rank_term("cells", with({{&F::acceptance_index, 1.0}})), -std::log(0.01), kNear);
   EXPECT_NEAR(rank_term("cells", with({{&F::acceptance_index, 0.95}})), -std::log(0.06), kNear);
   EXPECT_NEAR(rank_term("lines", with({{&F::wall_lines, 3.0}})), std::log(3.5), kNear);
+  EXPECT_NEAR(rank_term("held", with({{&F::held, 40.0}, {&F::held_most, 50.0}})), std::log(0.8), kNear);
   EXPECT_NEAR(rank_term("things", {}), -std::log(1.05 - 1.0 / 3.0), kNear);
   EXPECT_NEAR(rank_term("tolerance", with({{&F::sigma, 0.04}})), std::log(0.04), kNear);
   EXPECT_NEAR(rank_term("tolerance", with({{&F::sigma, 0.001}})), std::log(0.03), kNear);

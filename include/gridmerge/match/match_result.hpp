@@ -57,7 +57,6 @@ struct PoseFigures {
   double held_most = 0.0;
   double free_direction = 0.0;
   double acceptance_index = 0.0;
-  double next_acceptance_index = 0.0;
   double common_area = 0.0;
   double overlap = 0.0;
   double sigma = 0.0;
