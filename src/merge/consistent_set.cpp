@@ -107,15 +107,50 @@ std::vector<OpenJoin> find_open_joins(const JoinProblem& problem, const Consiste
   return open;
 }
 
-double expected_false_joins(const ConsistentSet& consistent_set) {
-  double expected = 0.0;
+namespace {
+
+/// A member of a group, and how many false joins are expected because of it.
+struct Doubt {
+  double probability;
+  double false_joins;
+};
+
+/// Of all members; none of those that are fixed or alone, whose probability is 1.
+std::vector<Doubt> doubts_of(const ConsistentSet& consistent_set) {
+  std::vector<Doubt> doubts;
   for (const NodeGroup& group : consistent_set.groups) {
-    double doubt = 0.0;
-    for (const PlacedNode& node : group) doubt += 1.0 - node.probability;  // 0 where it is fixed or alone
     // Every map is doubted given the others: two maps doubt one join twice.
-    expected += doubt * static_cast<double>(group.size() - 1) / static_cast<double>(group.size());
+    const double share = static_cast<double>(group.size() - 1) / static_cast<double>(group.size());
+    for (const PlacedNode& node : group) {
+      if (node.probability < 1.0) doubts.push_back({node.probability, share * (1.0 - node.probability)});
+    }
   }
-  return expected;
+  return doubts;
+}
+
+double false_joins_of(const std::vector<Doubt>& doubts) {
+  double sum = 0.0;
+  for (const Doubt& doubt : doubts) sum += doubt.false_joins;
+  return sum;
+}
+
+/// From which probability on members fit into the budget, if what is cut left all others as they are. Above
+/// that of the least sure one.
+double fitting_from(std::vector<Doubt> doubts, double budget) {
+  std::sort(doubts.begin(), doubts.end(),
+            [](const Doubt& a, const Doubt& b) { return a.probability > b.probability; });
+  double sum = 0.0;
+  for (std::size_t i = 0; i < doubts.size(); ++i) {
+    sum += doubts[i].false_joins;
+    if (sum > budget) return std::nextafter(doubts[i].probability, 2.0);
+  }
+  return doubts.empty() ? 1.0 : std::nextafter(doubts.back().probability, 2.0);
+}
+
+}  // namespace
+
+double expected_false_joins(const ConsistentSet& consistent_set) {
+  return false_joins_of(doubts_of(consistent_set));
 }
 
 double false_joins_allowed(double max_false_joins, std::size_t maps) {
@@ -130,16 +165,16 @@ ConsistentSet find_consistent_set_within(const JoinProblem& problem, double acce
   const JoinWeights weights(problem);
   const GroupSearch search(weights, problem, accept_probability);
   ConsistentSet consistent_set = kept_from(search, accept_probability);
-  constexpr double kMinStep = 0.2;    // of the doubt that is still allowed, so that this ends
+  constexpr int kFreeCuts = 8;        // after so many each takes a share of the doubt that is still allowed,
+  constexpr double kMinStep = 0.2;    // so that this ends
   constexpr double kMinDoubt = 1e-9;  // from there on nothing is surer
   const std::vector<UsedCandidate> without_budget = consistent_set.used;
   double keep = accept_probability;
-  while (expected_false_joins(consistent_set) > max_false_joins && 1.0 - keep > kMinDoubt) {
-    double least = 1.0;
-    for (const NodeGroup& group : consistent_set.groups) {
-      for (const PlacedNode& node : group) least = std::min(least, node.probability);
-    }
-    keep = std::min(1.0, std::max(std::nextafter(least, 2.0), keep + kMinStep * (1.0 - keep)));
+  for (int cuts = 0; 1.0 - keep > kMinDoubt; ++cuts) {
+    const std::vector<Doubt> doubts = doubts_of(consistent_set);
+    if (false_joins_of(doubts) <= max_false_joins) break;
+    const double least = cuts < kFreeCuts ? 0.0 : keep + kMinStep * (1.0 - keep);
+    keep = std::min(1.0, std::max(fitting_from(doubts, max_false_joins), least));
     consistent_set = kept_from(search, keep);
   }
   const std::vector<UsedCandidate>& used = consistent_set.used;

@@ -402,35 +402,6 @@ RC_GTEST_PROP(ConsistentSet, OrderOfTheMapsPlaysNoPart, ()) {
   }
 }
 
-/// Three pairs of maps, each with one candidate of its own odds.
-JoinProblem three_pairs() {
-  JoinProblem problem;
-  problem.maps.assign(6, {{{0.0, 0.0}, 5.0, 20.0}});
-  for (std::size_t i = 0; i < 3; ++i)
-    problem.pairs.push_back(
-        {2 * i, 2 * i + 1, {CandidateJoin{{1.0, 0.0, 0.0}, 2.5 + 1.5 * static_cast<double>(i), 0.1}}});
-  return problem;
-}
-
-TEST(ConsistentSetWithin, MakesAsManyJoinsAsTheBudgetOfFalseOnesAllows) {
-  const JoinProblem problem = three_pairs();  // doubts of 0.18, 0.056 and 0.022
-  const auto joins = [&](double budget) {
-    return 6 - find_consistent_set_within(problem, 0.8, budget).groups.size();
-  };
-  EXPECT_EQ(joins(1.0), 3U);
-  EXPECT_EQ(joins(0.1), 2U);
-  EXPECT_EQ(joins(0.03), 1U);
-  EXPECT_EQ(joins(0.0), 0U);
-  const auto over_budget = [&](double budget) {
-    return find_consistent_set_within(problem, 0.8, budget).over_budget.size();
-  };
-  EXPECT_EQ(over_budget(1.0), 0U);
-  EXPECT_EQ(over_budget(0.1), 1U);
-  EXPECT_EQ(over_budget(0.0), 3U);
-  for (const double budget : {1.0, 0.1, 0.03, 0.001, 0.0})
-    EXPECT_LE(expected_false_joins(find_consistent_set_within(problem, 0.8, budget)), budget);
-}
-
 /// No pair is as sure as a small budget asks for, but all of them together are.
 TEST(ConsistentSetWithin, KeepsWhatManyPairsAreSureOfTogether) {
   World world(6);
@@ -438,11 +409,6 @@ TEST(ConsistentSetWithin, KeepsWhatManyPairsAreSureOfTogether) {
   const ConsistentSet consistent_set = find_consistent_set_within(world.problem, kAccept, 0.01);
   ASSERT_EQ(consistent_set.groups.size(), 1U);
   world.expect_true(consistent_set.groups[0]);
-}
-
-TEST(ConsistentSetWithin, RefusesABudgetThatIsNone) {
-  EXPECT_THROW(find_consistent_set_within({}, 0.8, -0.1), std::invalid_argument);
-  EXPECT_THROW(find_consistent_set_within({}, 0.8, std::nan("")), std::invalid_argument);
 }
 
 }  // namespace
