@@ -18,7 +18,7 @@ Kinds of unrelated pairs of simulated maps:
     same_building  of one building, and no place in common
     other_kind     of two kinds
 The first and the last are of one resolution, as true pairs are. An unrelated pair belongs to the fixed map's domain;
-`other` is the moving map's. Of all that a domain has, --unrelated are drawn, as many of each kind as there are. The cases do
+`other` is the moving map's. Of all that a domain has, --unrelated are drawn, of each kind in turn. The cases do
 not depend on --jobs. --domains says which features are written.
 """
 

@@ -2,7 +2,6 @@
 #include "match/looks.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "grid/parallel.hpp"
 #include "search/thorough.hpp"

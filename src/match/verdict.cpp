@@ -63,11 +63,11 @@ double cells_agree(double acceptance_index) {
   return missing(std::min(acceptance_index, kNearlyAll), 0.01);
 }
 
-/// Where little overlaps, the true pose hardly contradicts itself; a wrong one that overlaps much agrees in
-/// as large a share of its cells, and has many that do not.
+/// At the true pose two maps hardly contradict each other. A wrong pose that overlaps much may agree in as
+/// large a share of the cells, and yet contradict in a larger area.
 double uncontradicted(const PoseFigures& f) {
-  constexpr double kAnywhere = 0.5;  // [m^2]: of two scans of one place so much may differ
-  return -std::log(std::max(0.0, 1.0 - f.acceptance_index) * f.common_area + kAnywhere);
+  constexpr double kAlwaysDiffers = 0.5;  // [m^2]: of two scans of one place
+  return -std::log(std::max(0.0, 1.0 - f.acceptance_index) * f.common_area + kAlwaysDiffers);
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ std::span<const RankTerm> rank_terms() {
   using F = PoseFigures;
   static constexpr std::array kTerms{
       RankTerm{"evidence", "ln(score)", [](const F& f) { return logarithm(f.score, 1.0); }},
-      RankTerm{"contradicted", "-ln((1 - acceptance_index) common_area + 0.5 m^2)", uncontradicted},
+      RankTerm{"uncontradicted", "-ln((1 - acceptance_index) common_area + 0.5 m^2)", uncontradicted},
       RankTerm{"cells", "-ln(1.01 - acceptance_index)",
                [](const F& f) { return missing(f.acceptance_index, 0.01); }},
       RankTerm{"lines", "ln(wall_lines + 0.5)", [](const F& f) { return std::log(f.wall_lines + 0.5); }},

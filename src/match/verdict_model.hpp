@@ -33,7 +33,7 @@ inline constexpr std::array kVerdictWeights{
 // clang-format off
 inline constexpr std::array kRankWeights{
     VerdictWeight{"evidence", 2.764},
-    VerdictWeight{"contradicted", 2.373},
+    VerdictWeight{"uncontradicted", 2.373},
     VerdictWeight{"cells", 2.492},
     VerdictWeight{"lines", 2.895},
     VerdictWeight{"held", 0.607},

@@ -134,8 +134,8 @@ double false_joins_of(const std::vector<Doubt>& doubts) {
   return sum;
 }
 
-/// From which probability on members fit into the budget, if what is cut left all others as they are. Above
-/// that of the least sure one.
+/// From which probability on members fit into the budget, if what is cut left all others as they are. It lies
+/// above the probability of the least sure member.
 double fitting_from(std::vector<Doubt> doubts, double budget) {
   std::sort(doubts.begin(), doubts.end(),
             [](const Doubt& a, const Doubt& b) { return a.probability > b.probability; });
@@ -165,16 +165,18 @@ ConsistentSet find_consistent_set_within(const JoinProblem& problem, double acce
   const JoinWeights weights(problem);
   const GroupSearch search(weights, problem, accept_probability);
   ConsistentSet consistent_set = kept_from(search, accept_probability);
-  constexpr int kFreeCuts = 8;        // after so many each takes a share of the doubt that is still allowed,
-  constexpr double kMinStep = 0.2;    // so that this ends
+  constexpr int kFreeCuts = 8;      // the later ones take a share of the doubt that is still allowed, so that
+  constexpr double kMinStep = 0.2;  // this ends
   constexpr double kMinDoubt = 1e-9;  // from there on nothing is surer
   const std::vector<UsedCandidate> without_budget = consistent_set.used;
   double keep = accept_probability;
   for (int cuts = 0; 1.0 - keep > kMinDoubt; ++cuts) {
     const std::vector<Doubt> doubts = doubts_of(consistent_set);
     if (false_joins_of(doubts) <= max_false_joins) break;
-    const double least = cuts < kFreeCuts ? 0.0 : keep + kMinStep * (1.0 - keep);
-    keep = std::min(1.0, std::max(fitting_from(doubts, max_false_joins), least));
+    const double fitting = fitting_from(doubts, max_false_joins);
+    // A group's members may be as unsure after a cut as before: probabilities hang on its frame, a little.
+    const bool gains = fitting > keep && cuts < kFreeCuts;
+    keep = std::min(1.0, gains ? fitting : std::max(fitting, keep + kMinStep * (1.0 - keep)));
     consistent_set = kept_from(search, keep);
   }
   const std::vector<UsedCandidate>& used = consistent_set.used;

@@ -70,11 +70,11 @@ inline constexpr std::size_t kFewMaps = 50;
 /// that have nothing to do with it. Throws std::invalid_argument for a budget that is negative or not finite.
 GRIDMERGE_INTERNAL_EXPORT double false_joins_allowed(double max_false_joins, std::size_t maps);
 
-/// find_consistent_set() with as many joins as a budget of false ones allows: as long as more are expected,
-/// the groups are cut from a higher probability on, that from which the surest members fill it. Joined are
-/// they from `accept_probability` on: what two maps alone say is seldom as sure as what many say in the end.
-/// O(joins) times find_consistent_set(). Throws std::invalid_argument as find_consistent_set(), and for a
-/// budget that is negative or not finite.
+/// find_consistent_set() with no more joins than a budget of false ones allows. While more are expected, the
+/// groups are cut at a higher probability: the one from which on the surest members fit into the budget. What
+/// a cut makes surer afterwards is not joined again. Groups are joined from `accept_probability` on: what two
+/// maps alone say is seldom as sure as what many say in the end. At most about 100 cuts of one search.
+/// Throws std::invalid_argument as find_consistent_set(), and for a budget that is negative or not finite.
 ConsistentSet find_consistent_set_within(const JoinProblem& problem, double accept_probability,
                                          double max_false_joins);
 

@@ -99,9 +99,9 @@ TEST(RankTerms, AreWhatTheirFormulasSay) {
   EXPECT_NEAR(rank_term("evidence", with({{&F::score, 600.0}})), std::log(600.0), kNear);
   EXPECT_NEAR(rank_term("evidence", with({{&F::score, 1.2}})), std::log(1.2), kNear);
   EXPECT_EQ(rank_term("evidence", with({{&F::score, -7.0}})), 0.0);
-  EXPECT_NEAR(rank_term("contradicted", with({{&F::acceptance_index, 0.95}, {&F::common_area, 90.0}})),
+  EXPECT_NEAR(rank_term("uncontradicted", with({{&F::acceptance_index, 0.95}, {&F::common_area, 90.0}})),
               -std::log(0.05 * 90.0 + 0.5), kNear);
-  EXPECT_NEAR(rank_term("contradicted", with({{&F::acceptance_index, 1.0}, {&F::common_area, 1e6}})),
+  EXPECT_NEAR(rank_term("uncontradicted", with({{&F::acceptance_index, 1.0}, {&F::common_area, 1e6}})),
               -std::log(0.5), kNear);
   EXPECT_NEAR(rank_term("cells", with({{&F::acceptance_index, 1.0}})), -std::log(0.01), kNear);
   EXPECT_NEAR(rank_term("cells", with({{&F::acceptance_index, 0.95}})), -std::log(0.06), kNear);

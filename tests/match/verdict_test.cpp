@@ -53,7 +53,7 @@ PoseFigures changed(double PoseFigures::*figure, double value) {
   return figures;
 }
 
-/// Both were found in two simulated offices that share a tenth of their floors.
+/// Both were found between two maps of one simulated office that share a tenth of its floor.
 TEST(RankOf, ATruePoseThatOverlapsLittleStandsBeforeAWrongOneThatContradictsItself) {
   PoseFigures little, much;
   little.score = 1057.0;
