@@ -144,7 +144,6 @@ void remove_stale(FileSet& files, const fs::path& directory, const std::set<std:
 }  // namespace
 
 void prepare_dataset(const fs::path& directory) {
-  const MadeDirectories made(directory);
   check_directory(directory);
   for (const char* const name : {kBuilding, kPairs, kOnBuilding, kNegatives, kSets})
     check_destination(directory / name);

@@ -13,11 +13,18 @@ namespace gridmerge::internal {
 
 namespace fs = std::filesystem;
 
+// Another program that looks at the same time may have made a directory, and removes it as it is empty: then
+// one is missing that was there, and all is tried again.
+constexpr int kTries = 1000;
+
 MadeDirectories::MadeDirectories(const fs::path& directory) {
   std::error_code error;
   for (fs::path part = directory; !part.empty() && !fs::exists(part, error); part = part.parent_path())
     made_.push_back(part);
-  fs::create_directories(directory, error);
+  for (int i = 0; i < kTries; ++i) {
+    fs::create_directories(directory, error);
+    if (error != std::errc::no_such_file_or_directory) break;
+  }
   if (!error) error = flush_parents();
   if (error) {
     remove_empty();
@@ -44,8 +51,12 @@ void MadeDirectories::remove_empty() const {
 }
 
 void check_directory(const fs::path& directory) {
-  if (::access(directory.c_str(), W_OK | X_OK) != 0)
-    throw FileError(directory, "cannot be written to: " + std::generic_category().message(errno));
+  for (int i = 1;; ++i) {
+    const MadeDirectories made(directory);
+    if (::access(directory.c_str(), W_OK | X_OK) == 0) return;
+    if (errno != ENOENT || i == kTries)
+      throw FileError(directory, "cannot be written to: " + std::generic_category().message(errno));
+  }
 }
 
 }  // namespace gridmerge::internal

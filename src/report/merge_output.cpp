@@ -89,7 +89,8 @@ std::vector<fs::path> outputs_in(const fs::path& directory) {
   for (const std::string& name : names_in(directory, error)) {
     if (is_merge_output(name) || is_export(name)) outputs.push_back(directory / name);
   }
-  if (error) throw FileError(directory, "cannot be read: " + error.message());
+  if (error && error != std::errc::no_such_file_or_directory)  // then there are none
+    throw FileError(directory, "cannot be read: " + error.message());
   return outputs;
 }
 
@@ -164,7 +165,6 @@ std::optional<double> check_merged_size(const std::vector<std::string>& names,
 }
 
 void prepare_merge_output(const fs::path& directory, const std::vector<fs::path>& inputs) {
-  const MadeDirectories made(directory);
   check_directory(directory);
   protect(inputs, directory);
   for (const char* const name : {"merged.yaml", "merged.pgm", kPreview, kReport, kTransforms})
