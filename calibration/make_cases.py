@@ -169,11 +169,12 @@ def draw_unrelated(cases: list[Row], count: int, seed: str) -> list[Row]:
     return [row for row in cases if row["truth"] != "negative"] + list(itertools.islice(in_turn, count))
 
 
-def by_domain(cases: list[Row]) -> dict[str, list[Row]]:
+def by_domain(cases: list[Row], unrelated: int, seed: int) -> dict[str, list[Row]]:
+    """The cases of each domain, so many unrelated ones of them."""
     domains = collections.defaultdict(list)
     for row in cases:
         domains[row["domain"]].append(row)
-    return domains
+    return {domain: draw_unrelated(its, unrelated, f"{seed} {domain}") for domain, its in domains.items()}
 
 
 def counts(cases: list[Row]) -> str:
@@ -227,15 +228,13 @@ def main() -> None:
     cases = [row for building in buildings for row in cases_within(output, building)]
     cases += cases_between(buildings, random.Random(f"{arguments.seed} unrelated"))
     folders, roots = {}, {}
-    for domain, its in by_domain(cases).items():
-        its = draw_unrelated(its, arguments.unrelated, f"{arguments.seed} {domain}")
+    for domain, its in by_domain(cases, arguments.unrelated, arguments.seed).items():
         folders[domain], roots[domain] = output / domain, output
         write_cases(folders[domain], output, its)
         made = sum(kind_of(building) == domain for building in buildings)
         print(f"{domain}: {made} of {arguments.buildings} buildings could be made; {counts(its)}", flush=True)
     if arguments.real:
-        for domain, its in by_domain(real_cases(arguments.real)).items():
-            its = draw_unrelated(its, arguments.unrelated, f"{arguments.seed} {domain}")
+        for domain, its in by_domain(real_cases(arguments.real), arguments.unrelated, arguments.seed).items():
             folders[domain], roots[domain] = output / "real" / domain, arguments.real
             write_cases(folders[domain], arguments.real, its)
             print(f"{domain}: {counts(its)}", flush=True)

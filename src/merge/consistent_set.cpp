@@ -134,17 +134,18 @@ double false_joins_of(const std::vector<Doubt>& doubts) {
   return sum;
 }
 
-/// From which probability on members fit into the budget, if what is cut left all others as they are. It lies
-/// above the probability of the least sure member.
+/// From which probability on members fit into a budget that they exceed together, if what is cut left all
+/// others as they are. It lies above the probability of the least sure member.
 double fitting_from(std::vector<Doubt> doubts, double budget) {
   std::sort(doubts.begin(), doubts.end(),
             [](const Doubt& a, const Doubt& b) { return a.probability > b.probability; });
   double sum = 0.0;
-  for (std::size_t i = 0; i < doubts.size(); ++i) {
-    sum += doubts[i].false_joins;
-    if (sum > budget) return std::nextafter(doubts[i].probability, 2.0);
-  }
-  return doubts.empty() ? 1.0 : std::nextafter(doubts.back().probability, 2.0);
+  const auto first_too_many = std::find_if(doubts.begin(), doubts.end(), [&](const Doubt& doubt) {
+    sum += doubt.false_joins;
+    return sum > budget;
+  });
+  // Summed in another order, they may fit after all.
+  return std::nextafter(std::min(first_too_many, doubts.end() - 1)->probability, 2.0);
 }
 
 }  // namespace
@@ -165,8 +166,9 @@ ConsistentSet find_consistent_set_within(const JoinProblem& problem, double acce
   const JoinWeights weights(problem);
   const GroupSearch search(weights, problem, accept_probability);
   ConsistentSet consistent_set = kept_from(search, accept_probability);
-  constexpr int kFreeCuts = 8;      // the later ones take a share of the doubt that is still allowed, so that
-  constexpr double kMinStep = 0.2;  // this ends
+  // After some cuts each takes a share of the doubt that is still allowed, so that this ends.
+  constexpr int kFreeCuts = 8;
+  constexpr double kMinStep = 0.2;
   constexpr double kMinDoubt = 1e-9;  // from there on nothing is surer
   const std::vector<UsedCandidate> without_budget = consistent_set.used;
   double keep = accept_probability;
