@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gridmerge/search/random_walk.hpp"
 
-#include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -15,6 +12,7 @@
 #include "grid/parallel.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/grid/resample.hpp"
+#include "search/step_proposals.hpp"
 #include "similarity/lattice_frames.hpp"
 
 namespace gridmerge {
@@ -22,9 +20,6 @@ namespace gridmerge {
 using namespace internal;
 
 namespace {
-
-/// A step of the walk: x, y, and the way of a cell at the moving map's radius when it turns [cells].
-using Step = Eigen::Vector3d;
 
 /// The known rectangle of a map, about its centre.
 struct Rectangle {
@@ -103,74 +98,6 @@ class Poses {
   Rectangle fixed_;
   Rectangle moving_;
   double cell_;  // [m]
-};
-
-/// So many steps make a covariance of three numbers.
-constexpr std::size_t kMinMemory = 4;
-
-/// Normal proposals, learnt from the last accepted steps.
-class Proposals {
- public:
-  explicit Proposals(const RandomWalkOptions& options)
-      : options_(options), deviations_(Step::Constant(options.first_step)) {}
-
-  Step draw(std::mt19937_64& random) {
-    Step step;
-    for (int i = 0; i < 3; ++i)
-      step[i] = std::max(scale_ * deviations_[i], options_.smallest_step) * normal_(random);
-    return mean_ + axes_ * step;
-  }
-
-  /// Samples that are refused again and again come from steps that are too large, or lead the wrong way. True
-  /// when the steps cannot become smaller, and start again at their size.
-  bool learn_refusal() {
-    constexpr int kPatience = 100;
-    if (++refused_ % kPatience != 0) return false;
-    scale_ *= 0.5;
-    mean_.setZero();
-    if (scale_ * deviations_.maxCoeff() >= options_.smallest_step) return false;
-    scale_ = 1.0;
-    return true;
-  }
-
-  /// What was learnt elsewhere says nothing of here.
-  void start_anew() {
-    steps_.clear();
-    mean_.setZero();
-    axes_.setIdentity();
-    deviations_.setConstant(options_.first_step);
-    scale_ = 1.0;
-    refused_ = 0;
-  }
-
-  void learn(const Step& accepted) {
-    refused_ = 0;
-    scale_ = 1.0;
-    steps_.push_back(accepted);
-    if (steps_.size() > options_.memory) steps_.pop_front();
-    if (steps_.size() < kMinMemory) return;
-    const double count = static_cast<double>(steps_.size());
-    mean_.setZero();
-    for (const Step& step : steps_) mean_ += step / count;
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    for (const Step& step : steps_) covariance += (step - mean_) * (step - mean_).transpose() / (count - 1.0);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
-    axes_ = eigen.eigenvectors();
-    for (int i = 0; i < 3; ++i) {
-      deviations_[i] = std::clamp(std::sqrt(std::max(0.0, eigen.eigenvalues()[i])), options_.smallest_step,
-                                  options_.largest_step);
-    }
-  }
-
- private:
-  const RandomWalkOptions& options_;
-  std::deque<Step> steps_;
-  Step mean_ = Step::Zero();
-  Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  // of the covariance
-  Step deviations_;                                     // along them
-  double scale_ = 1.0;                                  // of the steps, since the last accepted one
-  int refused_ = 0;                                     // since then
-  std::normal_distribution<double> normal_;
 };
 
 struct Sample {
@@ -362,7 +289,7 @@ class Walk {
   const RandomWalkOptions& options_;
   SimilarityMeter meter_;
   const Poses poses_;
-  Proposals proposals_;
+  StepProposals proposals_;
   std::mt19937_64 random_;
   double temperature_;
   RandomWalkResult result_;

@@ -104,6 +104,31 @@ TEST(Correlate, NoScoreExceedsTheBoundOfItsFourShifts) {
   }
 }
 
+TEST(PoolScores, HaveTheLargestOfEachTwoByTwo) {
+  std::mt19937 random(15);
+  for (int run = 0; run < 30; ++run) {
+    ScoreImage scores = blank(kCorrelateBlock * (1 + below(random, 3)), 1 + below(random, 20));
+    for (std::int16_t& score : scores.values) score = static_cast<std::int16_t>(below(random, 2001) - 1000);
+    ScoreImage pooled = blank(kCorrelateBlock, 3);  // of an earlier call
+    pool_scores(scores, pooled);
+    ASSERT_EQ(pooled.width % kCorrelateBlock, 0);
+    ASSERT_GE(pooled.width, scores.width / 2);
+    ASSERT_LT(pooled.width, scores.width / 2 + kCorrelateBlock);
+    ASSERT_EQ(pooled.height, (scores.height + 1) / 2);
+    ASSERT_EQ(pooled.values.size(), static_cast<std::size_t>(pooled.width) * pooled.height);
+    for (int y = 0; y < pooled.height; ++y) {
+      for (int x = 0; x < scores.width / 2; ++x) {
+        int largest = -32768;
+        for (int i = 0; i < 4; ++i) {
+          const int row = std::min(2 * y + i / 2, scores.height - 1), column = 2 * x + i % 2;
+          largest = std::max(largest, int{scores.values[row * scores.width + column]});
+        }
+        ASSERT_EQ(pooled.values[y * pooled.width + x], largest) << run << " " << x << " " << y;
+      }
+    }
+  }
+}
+
 TEST(Correlate, LooksWhereAScoreMayBeLargeEnoughAndIsRightThere) {
   std::mt19937 random(14);
   std::size_t passed_over = 0;

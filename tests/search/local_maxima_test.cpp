@@ -87,6 +87,13 @@ TEST(LocalMaxima, OfBlocksAreThoseOfTheWholeImageThatLieInThem) {
   }
 }
 
+TEST(LocalMaxima, AnImageOfThreeColumnsHasOneThatCanHoldThem) {
+  const ScoreImage scores{4, 4, {0, 1, 0, 8, 1, 5, 1, 8, 0, 4, 0, 8, 0, 0, 0, 8}};
+  ASSERT_EQ(find_local_maxima(scores, 3, 0).size(), 1U);
+  EXPECT_EQ(find_local_maxima(scores, 3, 0)[0].score, 5);
+  EXPECT_TRUE(find_local_maxima(scores, 2, 0).empty());
+}
+
 TEST(LocalMaxima, MaximumPassesOverTheColumnsThatOnlyFillUpABlock) {
   const ScoreImage scores{4, 2, {1, 2, 3, 9, -1, 5, 0, 9}};
   EXPECT_EQ(find_maximum(scores, 3), 5);

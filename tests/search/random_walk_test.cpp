@@ -143,6 +143,7 @@ TEST(RandomWalk, TheWholeTraceHoldsEveryProposal) {
   std::size_t accepted = 0, wide = 0;
   for (const WalkSample& sample : result.trace) {
     ++entries[sample.step];
+    EXPECT_TRUE(sample.measured || !sample.accepted) << sample.step;
     accepted += sample.accepted ? 1 : 0;
     wide += sample.wide ? 1 : 0;
     if (!sample.measured) continue;
@@ -376,6 +377,12 @@ TEST(RandomWalk, RefusesOptionsThatMakeNoSense) {
   refused([](auto& o) { o.wide_share = std::nan(""); });
   refused([](auto& o) { o.patience = 0; });
   refused([](auto& o) { o.max_proposals = 0; });
+  RandomWalkOptions least;
+  least.memory = 4;
+  least.smallest_step = least.first_step = least.largest_step = 2.0;
+  least.cooling = least.wide_share = 1.0;
+  least.patience = least.max_proposals = 1;
+  EXPECT_EQ(random_walk(map, map, {}, least).proposals, 1U);
   EXPECT_THROW(random_walk(map, map, {std::nan(""), 0.0, 0.0}), std::invalid_argument);
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "search/rotations.hpp"
@@ -68,6 +69,22 @@ TEST(BestPeaks, AreAboveAQuarterOfTheBest) {
   ASSERT_EQ(peaks.size(), 2u);
   EXPECT_TRUE(same(peaks[0], {5, 103, -4, 40}));
   EXPECT_TRUE(same(peaks[1], {5, 113, -4, 11}));
+}
+
+TEST(BestPeaks, AreAboveTheFloorThatIsAskedForToo) {
+  ScoreImage scores;
+  resize(scores, ScoreBlock::kColumns, 8);
+  std::fill(scores.values.begin(), scores.values.end(), std::int16_t{0});
+  for (const int x : {3, 8, 13})
+    scores.values[static_cast<std::size_t>(3 * scores.width + x)] = static_cast<std::int16_t>(4 * x);
+  TurnedWalls turned;
+  turned.shifts_x = ScoreBlock::kColumns;
+  std::vector<ScoreBlock> all;
+  for (int y = 0; y < scores.height; y += ScoreBlock::kRows) all.push_back({0, y});
+  // A quarter of the best is 13.
+  const std::vector<std::pair<int, std::size_t>> found{{0, 2}, {13, 2}, {31, 2}, {32, 1}, {51, 1}, {52, 0}};
+  for (const auto& [floor, count] : found)
+    EXPECT_EQ(best_peaks(scores, all, turned, 0, floor).size(), count) << floor;
 }
 
 TEST(BestPeaks, OfARotationAreNinetySix) {
