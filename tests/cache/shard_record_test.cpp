@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <array>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "gridmerge/io/file_error.hpp"
@@ -178,6 +182,27 @@ TEST_F(ShardsTest, WorkIsToldApartByWhatChangesMatches) {
   EXPECT_EQ(work_of(filled(), others), plain);
   others[0][3] = 'x';
   EXPECT_NE(work_of(filled(), others), plain);
+}
+
+TEST_F(ShardsTest, WorkIsToldApartByEveryNumberOfAKnownPose) {
+  const MergeWork plain = work_of(filled(), contents());
+  EXPECT_EQ(plain.engine, engine_id());
+  EXPECT_TRUE(std::find(plain.options.begin(), plain.options.end(),
+                        std::pair<std::string, std::string>("known-poses", "none")) != plain.options.end());
+  const KnownPose known{{1.0, 2.0, 0.3}, 1.0, 0.1, false};
+  std::vector<MergeWork> works{plain, work_of(filled({}, {known}), contents()),
+                               work_of(filled({}, {std::nullopt, known}), contents())};
+  for (int i = 0; i < 6; ++i) {
+    KnownPose other = known;
+    if (i < 5)
+      *std::array{&other.T_world_map.x, &other.T_world_map.y, &other.T_world_map.theta, &other.sd_position,
+                  &other.sd_theta}[static_cast<std::size_t>(i)] += 0.01;
+    other.fixed = i == 5;
+    works.push_back(work_of(filled({}, {other}), contents()));
+  }
+  for (std::size_t i = 0; i < works.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(works[i], works[j]) << i << " " << j;
+  EXPECT_EQ(works[1], work_of(filled({}, {known}), contents()));
 }
 
 TEST_F(ShardsTest, AMergeThatLacksMatchesIsTold) {
