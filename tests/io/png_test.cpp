@@ -9,6 +9,7 @@
 
 #include "io/image.hpp"
 #include "io/png_builder.hpp"
+#include "io/png_map.hpp"
 #include "io/support.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -45,6 +46,15 @@ TEST(Png, ReadsGray) {
   EXPECT_EQ(image.channels, 1);
   EXPECT_EQ(image.bit_depth, 8);
   EXPECT_EQ(image.samples, (Samples{0, 100, 205, 255}));
+}
+
+TEST(Png, TellsItsSizeInItsFirstTwentyFourBytes) {
+  const std::string image = PngBuilder{.width = 70000, .height = 513, .rows = ""}.build();
+  const std::optional<ImageSize> size = png_size(image.substr(0, 24));
+  ASSERT_TRUE(size);
+  EXPECT_EQ(size->width, 70000U);
+  EXPECT_EQ(size->height, 513U);
+  EXPECT_FALSE(png_size(image.substr(0, 23)));
 }
 
 TEST(Png, GrayBecomesLightness) {
