@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Where the engine works and where it breaks: families of simulated cases, each with one factor swept, and real maps where
-there are any. Writes OUTPUT/report.md with plots beside it.
+"""Where the engine works and where it breaks: families of simulated cases, each with one factor swept, and real maps
+where there are any. Writes OUTPUT/report.md with plots beside it.
 
 usage: benchmark/benchmark.py --gridmerge BINARY --output DIR [--data DIR] [--full] [--only PART,...]
 
-By default a quarter of an hour on two cores; --full takes eight times as many cases, and about two hours. --only measures some
-of the parts alone.
+By default a quarter of an hour on two cores; --full takes eight times as many cases, and about two hours. --only
+measures some of the parts alone.
 """
 
 import argparse
@@ -21,36 +21,63 @@ import subprocess
 import sys
 import time
 
-BASE = {"--kind": "office", "--size": "40x25", "--robots": "2", "--overlap": "0.5", "--drift": "0.3", "--others": "1"}
+BASE = {
+    "--kind": "office",
+    "--size": "40x25",
+    "--robots": "2",
+    "--overlap": "0.5",
+    "--drift": "0.3",
+    "--others": "1",
+}
 
 # Each family: what is swept, the unit, and the values as options.
 FAMILIES = {
-    "overlap": ("overlap asked for", [({"--overlap": v}, float(v)) for v in
-                                      ("0.9", "0.6", "0.4", "0.3", "0.2", "0.1", "0.05", "0.02")]),
-    "straight": ("overlap asked for, no drift", [({"--overlap": v, "--drift": "0"}, float(v)) for v in ("0.3", "0.2", "0.1")]),
+    "overlap": (
+        "overlap asked for",
+        [({"--overlap": v}, float(v)) for v in ("0.9", "0.6", "0.4", "0.3", "0.2", "0.1", "0.05", "0.02")],
+    ),
+    "straight": (
+        "overlap asked for, no drift",
+        [({"--overlap": v, "--drift": "0"}, float(v)) for v in ("0.3", "0.2", "0.1")],
+    ),
     "drift": ("drift", [({"--drift": v}, float(v)) for v in ("0", "0.25", "0.5", "1", "1.5", "2", "3")]),
-    "noise": ("range noise [m]", [({"--noise": v}, float(v)) for v in ("0", "0.02", "0.05", "0.1", "0.2", "0.4")]),
+    "noise": (
+        "range noise [m]",
+        [({"--noise": v}, float(v)) for v in ("0", "0.02", "0.05", "0.1", "0.2", "0.4")],
+    ),
     "clutter": ("clutter", [({"--clutter": v}, float(v)) for v in ("0", "1", "2", "4", "8")]),
     "range": ("range of the sensor [m]", [({"--range": v}, float(v)) for v in ("2", "4", "8", "16", "30")]),
-    "resolution": ("cell [m]", [({"--resolution": v}, float(v)) for v in ("0.025", "0.05", "0.1", "0.2", "0.4")]),
-    "kind": ("kind of building", [({"--kind": v, "--size": "14x11" if v == "apartment" else "40x25"}, v) for v in
-                                  ("office", "hall", "warehouse", "apartment", "symmetric", "loop", "curved", "outdoor")]),
+    "resolution": (
+        "cell [m]",
+        [({"--resolution": v}, float(v)) for v in ("0.025", "0.05", "0.1", "0.2", "0.4")],
+    ),
+    "kind": (
+        "kind of building",
+        [
+            ({"--kind": v, "--size": "14x11" if v == "apartment" else "40x25"}, v)
+            for v in ("office", "hall", "warehouse", "apartment", "symmetric", "loop", "curved", "outdoor")
+        ],
+    ),
     "size": ("side of the building [m]", [({"--size": f"{v}x{v}"}, v) for v in (10, 20, 40, 80, 160, 200)]),
 }
 PARTS = (*FAMILIES, "ratio", "teams", "walk", "real")
-RATIOS = (1, 2, 3, 4, 6)          # of the two maps' cells
+RATIOS = (1, 2, 3, 4, 6)  # of the two maps' cells
 TEAM_KINDS = ("office", "hall", "loop", "apartment")
-TEAM_SIZES = (2, 5, 10, 20, 30)   # robots of one floor of 100 m x 60 m
+TEAM_SIZES = (2, 5, 10, 20, 30)  # robots of one floor of 100 m x 60 m
 WALK_OVERLAPS = ("0.9", "0.6", "0.3")
-WALLS = (0, 2.5, 5, 10, 20, 40, 80, math.inf)  # limits of shared wall [m] between which pairs are counted together
-FIRST_SEED = 20001                # nothing of the engine was fitted to maps of this seed and the next ones
-LARGE = 160                       # floors of so many metres take a minute each, so there are fewer
+# Limits of shared wall [m] between which pairs are counted together.
+WALLS = (0, 2.5, 5, 10, 20, 40, 80, math.inf)
+FIRST_SEED = 20001  # nothing of the engine was fitted to maps of this seed and the next ones
+LARGE = 160  # floors of so many metres take a minute each, so there are fewer
 MOST_LARGE = 16
+NONE = "\N{EN DASH}"  # in a table, where there is no figure
 
 
 def run(command: list) -> tuple[int, float]:
     """Exit code, and peak memory in MB."""
-    process = subprocess.Popen([str(word) for word in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    process = subprocess.Popen(
+        [str(word) for word in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
     _, status, usage = os.wait4(process.pid, 0)
     return os.waitstatus_to_exitcode(status), usage.ru_maxrss / 1024
 
@@ -78,7 +105,10 @@ class Bench:
             return None
         result, memory = self.evaluate(folder, folder / "pairs.tsv", "--negatives", folder / "negatives.tsv")
         with (folder / "pairs.tsv").open(newline="") as file:
-            walls = {(row["fixed"], row["moving"]): float(row["shared_wall"]) for row in csv.DictReader(file, delimiter="\t")}
+            walls = {
+                (row["fixed"], row["moving"]): float(row["shared_wall"])
+                for row in csv.DictReader(file, delimiter="\t")
+            }
         for case in result["cases"]:
             case["shared_wall"] = walls.get((case["fixed"], case["moving"]))
         return result, memory
@@ -88,12 +118,16 @@ class Bench:
 
     def sweep(self, family: str, values: list) -> list[dict]:
         most = {i: MOST_LARGE for i, (_, value) in enumerate(values) if family == "size" and value >= LARGE}
-        jobs = [(i, options, seed) for i, (options, _) in enumerate(values) for seed in self.seeds(most.get(i))]
+        jobs = [
+            (i, options, seed) for i, (options, _) in enumerate(values) for seed in self.seeds(most.get(i))
+        ]
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             results = list(pool.map(lambda job: self.pair_case(f"{family}_{job[0]}", job[1], job[2]), jobs))
         rows = []
         for i, (_, value) in enumerate(values):
-            found = [result for (index, _, _), result in zip(jobs, results) if index == i and result]
+            found = [
+                result for (index, _, _), result in zip(jobs, results, strict=True) if index == i and result
+            ]
             cases = [case for result, _ in found for case in result["cases"]]
             self.cases += [case | {"family": family} for case in cases]
             rows.append(summarize(value, cases, max((memory for _, memory in found), default=0.0)))
@@ -105,18 +139,27 @@ class Bench:
         for ratio in RATIOS:
             cases, memory = [], 0.0
             for seed in self.seeds():
-                fine, coarse = (self.output / "cases" / f"ratio_{ratio}_{seed}_{which}" for which in ("fine", "coarse"))
+                fine, coarse = (
+                    self.output / "cases" / f"ratio_{ratio}_{seed}_{which}" for which in ("fine", "coarse")
+                )
                 # Without a wanted overlap robots do not depend on the resolution.
                 way = {"--overlap": "", "--longest-way": "120", "--size": "26x18", "--others": "0"}
-                if not all(self.simulate_plain(folder, way, seed, 0.05 * scale)
-                           for folder, scale in ((fine, 1), (coarse, ratio))):
+                if not all(
+                    self.simulate_plain(folder, way, seed, 0.05 * scale)
+                    for folder, scale in ((fine, 1), (coarse, ratio))
+                ):
                     continue
                 with (fine / "pairs.tsv").open(newline="") as file:
-                    pairs = [row for row in csv.DictReader(file, delimiter="\t") if float(row["overlap"]) > 0.3]
+                    pairs = [
+                        row for row in csv.DictReader(file, delimiter="\t") if float(row["overlap"]) > 0.3
+                    ]
                 table = fine / "ratio.tsv"
                 lines = ["fixed\tmoving\tx\ty\ttheta\ttolerance"]
-                lines += [f"{row['fixed']}\t../{coarse.name}/{row['moving']}\t{row['x']}\t{row['y']}\t{row['theta']}\t"
-                          f"{row['tolerance']}" for row in pairs]
+                lines += [
+                    f"{row['fixed']}\t../{coarse.name}/{row['moving']}\t{row['x']}\t{row['y']}\t{row['theta']}\t"
+                    f"{row['tolerance']}"
+                    for row in pairs
+                ]
                 table.write_text("\n".join(lines) + "\n")
                 result, peak = self.evaluate(fine, table)
                 cases += result["cases"]
@@ -126,12 +169,19 @@ class Bench:
 
     def simulate_plain(self, folder: pathlib.Path, options: dict, seed: int, resolution: float) -> bool:
         merged = {k: v for k, v in (BASE | options).items() if v != ""}
-        words = [word for option in (merged | {"--seed": seed, "--resolution": f"{resolution:g}"}).items() for word in option]
+        words = [
+            word
+            for option in (merged | {"--seed": seed, "--resolution": f"{resolution:g}"}).items()
+            for word in option
+        ]
         return run([self.gridmerge, "simulate", "-o", folder, "--threads", 1, "--quiet", *words])[0] == 0
 
     def teams(self) -> list[dict]:
         """Teams of six with a map of another building among theirs, merged jointly and up the tree."""
-        rows = [{"strategy": strategy, "maps": 0, "right": 0, "wrong": 0, "left out": 0} for strategy in ("joint", "tree")]
+        rows = [
+            {"strategy": strategy, "maps": 0, "right": 0, "wrong": 0, "left out": 0}
+            for strategy in ("joint", "tree")
+        ]
         for kind in TEAM_KINDS:
             for seed in self.seeds(max(2, self.repeats // 2)):
                 folder = self.output / "cases" / f"team_{kind}_{seed}"
@@ -139,16 +189,24 @@ class Bench:
                 if not self.simulate(folder, {"--kind": kind, "--robots": "6", "--size": size}, seed):
                     continue
                 for row in rows:
-                    sets = self.evaluate(folder, "--sets", folder / "sets.tsv", "--strategy", row["strategy"])[0]["sets"]
-                    for key, name in (("maps", "maps"), ("right", "maps_correct"), ("wrong", "maps_wrong"),
-                                      ("left out", "maps_left_out")):
+                    sets = self.evaluate(
+                        folder, "--sets", folder / "sets.tsv", "--strategy", row["strategy"]
+                    )[0]["sets"]
+                    for key, name in (
+                        ("maps", "maps"),
+                        ("right", "maps_correct"),
+                        ("wrong", "maps_wrong"),
+                        ("left out", "maps_left_out"),
+                    ):
                         row[key] += sets[name]
         return rows
 
     def team_sizes(self) -> list[dict]:
         """The first k of 30 robots of one floor: time and memory of gridmerge merge, both threads."""
         folder = self.output / "cases" / "team_30"
-        if not self.simulate(folder, {"--robots": "30", "--size": "100x60", "--overlap": "0.8", "--others": "0"}, 1):
+        if not self.simulate(
+            folder, {"--robots": "30", "--size": "100x60", "--overlap": "0.8", "--others": "0"}, 1
+        ):
             return []
         rows = []
         for robots in TEAM_SIZES:
@@ -159,9 +217,16 @@ class Bench:
             if code not in (0, 3):
                 sys.exit(f"benchmark: merging {robots} maps failed")
             merged = json.loads((folder / "merged" / "transforms.json").read_text())
-            rows.append({"maps": robots, "pairs": robots * (robots - 1) // 2, "seconds": f"{seconds:.1f}",
-                         "peak MB": f"{memory:.0f}", "components": len(merged["components"]),
-                         "left out": len(merged["left_out"])})
+            rows.append(
+                {
+                    "maps": robots,
+                    "pairs": robots * (robots - 1) // 2,
+                    "seconds": f"{seconds:.1f}",
+                    "peak MB": f"{memory:.0f}",
+                    "components": len(merged["components"]),
+                    "left out": len(merged["left_out"]),
+                }
+            )
         return rows
 
     def walk(self) -> list[dict]:
@@ -171,10 +236,14 @@ class Bench:
             engine, walk = [], []
             for seed in self.seeds(max(2, self.repeats // 4)):
                 folder = self.output / "cases" / f"walk_{overlap}_{seed}"
-                if not self.simulate(folder, {"--overlap": overlap, "--resolution": "0.1", "--others": "0"}, seed):
+                if not self.simulate(
+                    folder, {"--overlap": overlap, "--resolution": "0.1", "--others": "0"}, seed
+                ):
                     continue
                 engine += self.evaluate(folder, folder / "pairs.tsv")[0]["cases"]
-                walk += self.evaluate(folder, folder / "pairs.tsv", "--search", "random-walk", "--c-lock", "0,7.5")[0]["cases"]
+                walk += self.evaluate(
+                    folder, folder / "pairs.tsv", "--search", "random-walk", "--c-lock", "0,7.5"
+                )[0]["cases"]
             for method, cases in (("exhaustive", engine), ("random walk", walk)):
                 rows.append({"overlap": overlap, "method": method} | counts_of(cases))
         return rows
@@ -184,16 +253,19 @@ def counts_of(cases: list[dict]) -> dict:
     pairs = [case for case in cases if case["correct"] is not None]
     accepted = [case for case in pairs if case["verdict"] == "accepted"]
     seconds = sorted(case["seconds"] for case in cases)
-    return {"pairs": len(pairs), "best right": sum(case["correct"] for case in pairs),
-            "accepted right": sum(case["correct"] for case in accepted),
-            "accepted wrong": sum(not case["correct"] for case in accepted),
-            "median s": f"{seconds[len(seconds) // 2]:.3f}" if seconds else "–"}
+    return {
+        "pairs": len(pairs),
+        "best right": sum(case["correct"] for case in pairs),
+        "accepted right": sum(case["correct"] for case in accepted),
+        "accepted wrong": sum(not case["correct"] for case in accepted),
+        "median s": f"{seconds[len(seconds) // 2]:.3f}" if seconds else NONE,
+    }
 
 
 def interval(right: int, of: int) -> str:
     """The rates that could well have given so many of so many: Wilson's interval of 95 %."""
     if of == 0:
-        return "–"
+        return NONE
     z, rate = 1.96, right / of
     middle, half = rate + z * z / (2 * of), z * math.sqrt(rate * (1 - rate) / of + z * z / (4 * of * of))
     return f"{max(0.0, (middle - half) / (1 + z * z / of)):.2f} to {min(1.0, (middle + half) / (1 + z * z / of)):.2f}"
@@ -202,22 +274,35 @@ def interval(right: int, of: int) -> str:
 def by_shared_wall(cases: list[dict]) -> list[dict]:
     rows = []
     for least, below in itertools.pairwise(WALLS):
-        inside = [case for case in cases if case["shared_wall"] is not None and least <= case["shared_wall"] < below]
-        rows.append(with_intervals({"shared wall [m]": f"{least:g} to {below:g}" if below < math.inf else f"from {least:g}"}
-                                   | counts_of(inside)))
+        inside = [
+            case for case in cases if case["shared_wall"] is not None and least <= case["shared_wall"] < below
+        ]
+        rows.append(
+            with_intervals(
+                {"shared wall [m]": f"{least:g} to {below:g}" if below < math.inf else f"from {least:g}"}
+                | counts_of(inside)
+            )
+        )
     return rows
 
 
 def with_intervals(row: dict) -> dict:
     """With the intervals of the rates of right and accepted ones after their numbers."""
-    return row | {key: f"{row[key]} ({interval(row[key], row['pairs'])})" for key in ("best right", "accepted right")}
+    return row | {
+        key: f"{row[key]} ({interval(row[key], row['pairs'])})" for key in ("best right", "accepted right")
+    }
 
 
 def summarize(value, cases: list[dict], memory: float) -> dict:
     negatives = [case for case in cases if case["correct"] is None]
-    return {"value": value} | counts_of(cases) | {
-        "unrelated accepted": f"{sum(case['verdict'] == 'accepted' for case in negatives)} of {len(negatives)}",
-        "peak MB": f"{memory:.0f}"}
+    return (
+        {"value": value}
+        | counts_of(cases)
+        | {
+            "unrelated accepted": f"{sum(case['verdict'] == 'accepted' for case in negatives)} of {len(negatives)}",
+            "peak MB": f"{memory:.0f}",
+        }
+    )
 
 
 def table(rows: list[dict], first: str | None = None) -> str:
@@ -246,10 +331,15 @@ def plot_family(rows: list[dict], label: str, path: pathlib.Path) -> None:
     plt = pyplot()
     figure, axes = plt.subplots(figsize=(5, 3))
     numbers = [row["value"] for row in rows]
-    for key, colour, marker in (("best right", "#0072b2", "o"), ("accepted right", "#009e73", "s"),
-                                ("accepted wrong", "#d55e00", "x")):
+    for key, colour, marker in (
+        ("best right", "#0072b2", "o"),
+        ("accepted right", "#009e73", "s"),
+        ("accepted wrong", "#d55e00", "x"),
+    ):
         axes.plot(range(len(rows)), [share(row, key) for row in rows], color=colour, marker=marker, label=key)
-    axes.set_xticks(range(len(rows)), [str(number) for number in numbers], rotation=30 if label.startswith("kind") else 0)
+    axes.set_xticks(
+        range(len(rows)), [str(number) for number in numbers], rotation=30 if label.startswith("kind") else 0
+    )
     axes.set_xlabel(label)
     axes.set_ylabel("share of the pairs")
     axes.set_ylim(-0.02, 1.02)
@@ -264,7 +354,12 @@ def plot_cost(rows: list[dict], label: str, path: pathlib.Path) -> None:
     plt = pyplot()
     figure, axes = plt.subplots(figsize=(5, 3))
     values = [str(row["value"]) for row in rows]
-    axes.plot(values, [math.nan if row["median s"] == "–" else float(row["median s"]) for row in rows], color="#0072b2", marker="o")
+    axes.plot(
+        values,
+        [math.nan if row["median s"] == NONE else float(row["median s"]) for row in rows],
+        color="#0072b2",
+        marker="o",
+    )
     axes.set_xlabel(label)
     axes.set_ylabel("median seconds a match", color="#0072b2")
     axes.set_ylim(bottom=0)
@@ -317,7 +412,9 @@ def real_maps(bench: Bench, data: pathlib.Path) -> str:
         if (folder / "pairs.tsv").is_file():
             work = bench.output / "cases" / name
             work.mkdir(parents=True, exist_ok=True)
-            result, memory = bench.evaluate(work, folder / "pairs.tsv", "--negatives", folder / "negatives.tsv")
+            result, memory = bench.evaluate(
+                work, folder / "pairs.tsv", "--negatives", folder / "negatives.tsv"
+            )
             rows.append(summarize(name, result["cases"], memory))
     return "\n## Real maps\n" + (table(rows, "maps") if rows else f"There are none at {data}.\n")
 
@@ -344,18 +441,22 @@ def report_families(bench: Bench, families: dict) -> str:
             report += table(by_shared_wall([case for case in bench.cases if case["family"] == "overlap"]))
     if bench.cases:
         error = plot_probability(bench.cases, bench.output / "probability.png")
-        report += f"\n## The probability\n![ROC and reliability](probability.png)\n\nExpected calibration error {error:.3f} over "
-        report += f"{len(bench.cases)} cases of all families.\n"
+        report += "\n## The probability\n![ROC and reliability](probability.png)\n\n"
+        report += f"Expected calibration error {error:.3f} over {len(bench.cases)} cases of all families.\n"
     return report
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--gridmerge", type=pathlib.Path, required=True)
     parser.add_argument("--output", type=pathlib.Path, required=True)
     parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared/data"))
     parser.add_argument("--full", action="store_true")
-    parser.add_argument("--only", type=parts, default=PARTS, metavar="PART,...", help=f"of {', '.join(PARTS)}")
+    parser.add_argument(
+        "--only", type=parts, default=PARTS, metavar="PART,...", help=f"of {', '.join(PARTS)}"
+    )
     arguments = parser.parse_args()
     bench = Bench(arguments.gridmerge, arguments.output, 64 if arguments.full else 8)
     (arguments.output / "cases").mkdir(parents=True, exist_ok=True)
@@ -367,7 +468,9 @@ def main() -> None:
         families[family] = bench.sweep(family, FAMILIES[family][1])
     rest = ""
     if "ratio" in arguments.only:
-        rest += "\n## Ratio of the two maps' cells\n" + table([with_intervals(row) for row in bench.ratios()], "ratio")
+        rest += "\n## Ratio of the two maps' cells\n" + table(
+            [with_intervals(row) for row in bench.ratios()], "ratio"
+        )
     if "teams" in arguments.only:
         rest += "\n## Teams of six\n" + table(bench.teams())
         sizes = bench.team_sizes()
@@ -378,7 +481,8 @@ def main() -> None:
         rest += real_maps(bench, arguments.data)
 
     report = "# Where the engine works, and where it breaks\n"
-    report += f"Simulated maps; in each table one factor is swept, the others are {' '.join(f'{k} {v}' for k, v in BASE.items())}.\n"
+    others = " ".join(f"{k} {v}" for k, v in BASE.items())
+    report += f"Simulated maps; in each table one factor is swept, the others are {others}.\n"
     report += report_families(bench, families) + rest
     (arguments.output / "report.md").write_text(report)
     print(f"wrote {arguments.output / 'report.md'}")

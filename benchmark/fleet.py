@@ -4,9 +4,9 @@
 
 usage: benchmark/fleet.py GRIDMERGE OUTPUT [--maps N,N,...] [--campus fitted|reported] [--twin N] [MERGE OPTION...]
 
-Prints, for each number of maps: time of processor cores, memory, the share of pairs that was matched, and how many joins are right, wrong
-and lost. Up to `--twin` maps, the same maps are also merged with all pairs. A join is lost if two maps of one building
-lie together there, right, and not here. The maps stay in OUTPUT for the next run.
+Prints, for each number of maps: time of processor cores, memory, the share of pairs that was matched, and how many
+joins are right, wrong and lost. Up to `--twin` maps, the same maps are also merged with all pairs. A join is lost if
+two maps of one building lie together there, right, and not here. The maps stay in OUTPUT for the next run.
 
 The two campuses have other kinds of buildings and other seeds. Whatever is fitted to maps is fitted to the first one.
 """
@@ -127,7 +127,7 @@ def make_campus(gridmerge: str, campus: str, count: int, output: pathlib.Path) -
         while sum(len(maps) for _, maps in buildings) < count:
             folders = [output / campus / f"building_{i}" for i in range(number, number + 8)]
             made = pool.map(lambda job: make_building(gridmerge, campus, *job), enumerate(folders, number))
-            buildings += zip(folders, made)
+            buildings += zip(folders, made, strict=True)
             number += 8
     maps = [(home, name) for home, names in buildings for name in names][:count]
     random.Random(count).shuffle(maps)
@@ -288,8 +288,8 @@ def main() -> None:
             lost = "" if twin is None else str(len(twin.right - judged.right))
             print(
                 f"| {count}{label} | {outcome.seconds:.1f} | {outcome.megabytes:.0f} | {pairs} | "
-                f"{outcome.looked_at} ({100 * outcome.looked_at / pairs:.1f} %) | {judged.placed} | {judged.misplaced} | "
-                f"{len(judged.right)} | {len(judged.wrong)} | {lost} |",
+                f"{outcome.looked_at} ({100 * outcome.looked_at / pairs:.1f} %) | "
+                f"{judged.placed} | {judged.misplaced} | {len(judged.right)} | {len(judged.wrong)} | {lost} |",
                 flush=True,
             )
             if label:

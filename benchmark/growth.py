@@ -9,7 +9,8 @@ ROWS.md has the table that benchmark/fleet.py prints; merges of all pairs are dr
     core seconds = comparison * maps * (maps - 1) / 2 + match * pairs that are looked at
 
 A comparison is measured apart. A match, with all that comes with it, is what gives the least sum of squares of relative
-errors. Prints it, and how far each row is off. A row that was left out while the rest was fitted says more: that is in the last column.
+errors. Prints it, and how far each row is off. A row that was left out while the rest was fitted says more: that is in
+the last column.
 """
 
 import argparse

@@ -47,12 +47,16 @@ class Hour:
             cells = cells.copy()
             dice = np.random.default_rng((robot, second))
             cells.flat[dice.integers(cells.size, size=round(STIR * cells.size))] = 0
-        return gridmerge.OccupancyGrid.from_cells(cells, grid.resolution, self.shift(robot, lap) @ grid.origin)
+        return gridmerge.OccupancyGrid.from_cells(
+            cells, grid.resolution, self.shift(robot, lap) @ grid.origin
+        )
 
-    def truth(self, laps: Sequence[int], second: int) -> tuple[SimpleNamespace, list[gridmerge.OccupancyGrid]]:
+    def truth(
+        self, laps: Sequence[int], second: int
+    ) -> tuple[SimpleNamespace, list[gridmerge.OccupancyGrid]]:
         """The simulation's true transforms, and the robots' maps of this second, in the frames of these laps."""
         maps, grids = [], []
-        for robot, (lap, one) in enumerate(zip(laps, self.simulation.maps)):
+        for robot, (lap, one) in enumerate(zip(laps, self.simulation.maps, strict=True)):
             shift, grid = self.shift(robot, lap), self.grid(robot, second)
             maps.append(SimpleNamespace(transform=one.transform @ shift.inverse(), bend=one.bend))
             origin = shift @ self.shift(robot, self.lap(robot, second)[0]).inverse() @ grid.origin
@@ -83,9 +87,9 @@ def play(
     send: Callable[[int, int], None],
     look: Callable[[int], tuple[int, int, int, int]],
 ) -> None:
-    """Sends each robot's map of each second, `speed` seconds in one. A line for each lap: look() gives the maps that were
-    heard and the answers so far, the robots that are placed, and those of them that lie wrongly. Robots are counted halfway
-    between two starts."""
+    """Sends each robot's map of each second, `speed` seconds in one. A line for each lap: look() gives the maps that
+    were heard and the answers so far, the robots that are placed, and those of them that lie wrongly. Robots are
+    counted halfway between two starts."""
     done = threading.Event()
 
     def watch() -> None:
@@ -109,9 +113,14 @@ def play(
                 cost.look()
                 now_heard, now_answers, _, _ = look(second)
                 part = cost.resident
-                print(f"minutes {(second + 1 - LAP) // 60:2d} to {(second + 1) // 60:2d}: {now_heard - heard:5d} maps heard, "
-                      f"{now_answers - answers:4d} answers, {cost.cpu - cpu:5.1f} s of CPU, {min(part):4.0f} to {max(part):4.0f} MB, "
-                      f"mean {sum(part) / len(part):4.0f}; placed {placed / moments:.1f} of {len(hour.robots)}, wrong {wrong}", flush=True)
+                print(
+                    f"minutes {(second + 1 - LAP) // 60:2d} to {(second + 1) // 60:2d}: "
+                    f"{now_heard - heard:5d} maps heard, {now_answers - answers:4d} answers, "
+                    f"{cost.cpu - cpu:5.1f} s of CPU, {min(part):4.0f} to {max(part):4.0f} MB, "
+                    f"mean {sum(part) / len(part):4.0f}; "
+                    f"placed {placed / moments:.1f} of {len(hour.robots)}, wrong {wrong}",
+                    flush=True,
+                )
                 cpu, heard, answers, placed, wrong, moments = cost.cpu, now_heard, now_answers, 0, 0, 0
                 cost.resident = []
         print(f"{SECONDS * len(hour.robots)} maps were sent, in {time.monotonic() - begin:.0f} s", flush=True)

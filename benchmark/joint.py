@@ -23,16 +23,25 @@ from poses import Pose, compose, inverse, read_pose
 def merge(gridmerge: str, folder: pathlib.Path, maps: list[str]) -> list[dict[str, Pose]]:
     """The poses of each component's members."""
     with tempfile.TemporaryDirectory() as output:
-        subprocess.run([gridmerge, "merge", "-o", output, "--quiet", *(str(folder / name) for name in maps)],
-                       stdout=subprocess.DEVNULL)
+        subprocess.run(
+            [gridmerge, "merge", "-o", output, "--quiet", *(str(folder / name) for name in maps)],
+            stdout=subprocess.DEVNULL,
+        )
         merged = json.loads((pathlib.Path(output) / "transforms.json").read_text())
-    return [{pathlib.Path(member["source"]).name: read_pose(member["transform"])
-             for member in component["members"]} for component in merged["components"]]
+    return [
+        {
+            pathlib.Path(member["source"]).name: read_pose(member["transform"])
+            for member in component["members"]
+        }
+        for component in merged["components"]
+    ]
 
 
 def known_moments(gridmerge: str, path: pathlib.Path) -> tuple[float, float, float]:
     """The middle of a map's known area and its radius, from the map's own outline (gridmerge info --json)."""
-    info = json.loads(subprocess.run([gridmerge, "info", "--json", path], capture_output=True, check=True).stdout)["maps"][0]
+    info = json.loads(
+        subprocess.run([gridmerge, "info", "--json", path], capture_output=True, check=True).stdout
+    )["maps"][0]
     origin = info["origin"]
     width, height = info["width"] * info["resolution"], info["height"] * info["resolution"]
     middle = compose((origin["x"], origin["y"], origin["theta"]), (width / 2, height / 2, 0.0))
@@ -47,15 +56,20 @@ def displacement(moments: tuple[float, float, float], a: Pose, b: Pose) -> float
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("gridmerge")
     parser.add_argument("pairs", type=pathlib.Path)
     parser.add_argument("prefix")
     parser.add_argument("--orders", type=int, default=1)
     arguments = parser.parse_args()
     with arguments.pairs.open(newline="") as file:
-        rows = [row for row in csv.DictReader(file, delimiter="\t")
-                if row["fixed"].startswith(arguments.prefix) and row["moving"].startswith(arguments.prefix)]
+        rows = [
+            row
+            for row in csv.DictReader(file, delimiter="\t")
+            if row["fixed"].startswith(arguments.prefix) and row["moving"].startswith(arguments.prefix)
+        ]
     maps = sorted({row["fixed"] for row in rows} | {row["moving"] for row in rows})
     folder = arguments.pairs.parent
     components = merge(arguments.gridmerge, folder, maps)
@@ -71,7 +85,10 @@ def main() -> None:
             errors.append(displacement(moments[row["moving"]], found, truth))
             within += errors[-1] <= float(row["tolerance"])
     errors.sort()
-    print(f"{within} of {len(rows)} pairs within their tolerance; median {errors[len(errors) // 2]:.2f} m, most {errors[-1]:.2f} m")
+    print(
+        f"{within} of {len(rows)} pairs within their tolerance; "
+        f"median {errors[len(errors) // 2]:.2f} m, most {errors[-1]:.2f} m"
+    )
 
     dice, partitions, shift, turn = random.Random(3), set(), 0.0, 0.0
     for _ in range(arguments.orders):
@@ -85,7 +102,10 @@ def main() -> None:
             here, there = (compose(inverse(where[first]), where[name]) for where in (poses, same))
             shift = max(shift, math.hypot(here[0] - there[0], here[1] - there[1]))
             turn = max(turn, abs(math.remainder(here[2] - there[2], 2 * math.pi)))
-    print(f"{arguments.orders} orders: {len(partitions)} partition(s), relative poses within {shift:.1e} m and {turn:.1e} rad")
+    print(
+        f"{arguments.orders} orders: {len(partitions)} partition(s), "
+        f"relative poses within {shift:.1e} m and {turn:.1e} rad"
+    )
 
 
 if __name__ == "__main__":

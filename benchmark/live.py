@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`gridmerge node` beside rclpy, over the loopback interface: robots that explore, an hour of them, and maps of 4000 x 4000 cells.
+"""`gridmerge node` beside rclpy, over the loopback interface: robots that explore, an hour of them,
+and maps of 4000 x 4000 cells.
 
 usage: benchmark/live.py GRIDMERGE explore [--robots N] [--teams N] [--steps N]
        benchmark/live.py GRIDMERGE hour [--robots N] [--speed N]
@@ -16,9 +17,9 @@ explore: teams of robots publish their maps once a second, at N moments of their
 hour: robots that explore, stand, repeat their maps, and start anew in another frame every ten minutes, once a second
 each and --speed times as fast. What the node takes in time and memory must be that of the first ten minutes.
 
-large: two robots' maps of 4000 x 4000 cells, of one building of 170 m. Then the second one changes in a hundredth of its
-area, again and again: it is sent whole, and as an update. A line for each says when /merged_map is here, and what the node
-takes of CPU.
+large: two robots' maps of 4000 x 4000 cells, of one building of 170 m. Then the second one changes in a hundredth of
+its area, again and again: it is sent whole, and as an update. A line for each says when /merged_map is here, and what
+the node takes of CPU.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from __future__ import annotations
 import argparse
 import array
 import fcntl
+import functools
 import os
 import pathlib
 import signal
@@ -38,7 +40,12 @@ from typing import Any
 
 # Before anything of ROS starts.
 os.environ["ROS_LOCALHOST_ONLY"] = "1"
-for _variable in ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS", "CYCLONEDDS_URI", "RMW_IMPLEMENTATION"):
+for _variable in (
+    "ROS_AUTOMATIC_DISCOVERY_RANGE",
+    "ROS_STATIC_PEERS",
+    "CYCLONEDDS_URI",
+    "RMW_IMPLEMENTATION",
+):
     os.environ.pop(_variable, None)
 # Fast DDS loses maps of 16 MB with its usual buffers (docs/node.md).
 PROFILE = """<profiles xmlns="http://www.eprosima.com"><transport_descriptors><transport_descriptor>
@@ -53,15 +60,14 @@ _profile.write_text(PROFILE)
 os.environ["FASTRTPS_DEFAULT_PROFILES_FILE"] = os.environ["FASTDDS_DEFAULT_PROFILES_FILE"] = str(_profile)
 
 import gridmerge  # noqa: E402
+import hour  # noqa: E402
 import numpy as np  # noqa: E402
 import rclpy  # noqa: E402
 from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
 from map_msgs.msg import OccupancyGridUpdate  # noqa: E402
 from nav_msgs.msg import OccupancyGrid  # noqa: E402
-from rclpy.qos import DurabilityPolicy, QoSProfile  # noqa: E402
-
-import hour  # noqa: E402
 from online import KINDS, SURE, simulate_team, wrong_ones  # noqa: E402
+from rclpy.qos import DurabilityPolicy, QoSProfile  # noqa: E402
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LONGEST_WAIT = 300.0  # s: ends what would never end
@@ -107,7 +113,9 @@ class Live:
 
     def on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
-            self.diagnoses[status.name.removeprefix("gridmerge: ")] = {one.key: one.value for one in status.values}
+            self.diagnoses[status.name.removeprefix("gridmerge: ")] = {
+                one.key: one.value for one in status.values
+            }
 
     def value(self, robot: str, key: str) -> str:
         return self.diagnoses.get(robot, {}).get(key, "")
@@ -123,7 +131,9 @@ class Live:
             probability = float(values["probability"])
             robots.append(SimpleNamespace(name=name, transform=transform, probability=probability))
             components.setdefault(values["component"], []).append(name)
-        return SimpleNamespace(robots=robots, components=[SimpleNamespace(robots=one) for _, one in sorted(components.items())])
+        return SimpleNamespace(
+            robots=robots, components=[SimpleNamespace(robots=one) for _, one in sorted(components.items())]
+        )
 
     def new_lines(self) -> list[str]:
         """What the node has said since this was called last."""
@@ -152,8 +162,13 @@ class Live:
 def run_explore(program: str, arguments: argparse.Namespace) -> None:
     for number in range(arguments.teams):
         simulation = simulate_team(number, arguments.robots, arguments.steps)
-        moments = [[as_sent((*one.earlier, one.grid)[step]) for one in simulation.maps] for step in range(arguments.steps)]
-        possible = next((step for step, grids in enumerate(moments) if gridmerge.merge(grids).components), None)
+        moments = [
+            [as_sent((*one.earlier, one.grid)[step]) for one in simulation.maps]
+            for step in range(arguments.steps)
+        ]
+        possible = next(
+            (step for step, grids in enumerate(moments) if gridmerge.merge(grids).components), None
+        )
         with Live(program) as live:
             explore(live, KINDS[number % len(KINDS)], simulation, moments, possible)
 
@@ -170,7 +185,9 @@ def explore(
     possible: int | None,
 ) -> None:
     merged: list[OccupancyGrid] = []
-    live.node.create_subscription(OccupancyGrid, "/merged_map", lambda message: merged.__setitem__(slice(None), [message]), LATCHED)
+    live.node.create_subscription(
+        OccupancyGrid, "/merged_map", lambda message: merged.__setitem__(slice(None), [message]), LATCHED
+    )
     names = [f"tb{robot}" for robot in range(len(simulation.maps))]
     joined: float | None = None  # s
     wrong: set[str] = set()
@@ -191,13 +208,18 @@ def explore(
         sure.update(robot.name for robot in answer.robots if robot.probability >= SURE)
 
     for step, grids in enumerate(moments):
-        for name, grid in zip(names, grids):
+        for name, grid in zip(names, grids, strict=True):
             live.publish(name, grid, f"{name}/map", step)
         sent, solves = time.monotonic(), live.value("gridmerge", "solves")
         while time.monotonic() < begin + step + 1:
             look(grids)
-    # The first map of a robot may be replaced by the next before the node has found it: how many are heard says nothing.
-    while live.value("gridmerge", "settled") != "yes" or live.value("gridmerge", "solves") == solves or time.monotonic() < sent + 2.0:
+    # The first map of a robot may be replaced by the next before the node has found it:
+    # how many are heard says nothing.
+    while (
+        live.value("gridmerge", "settled") != "yes"
+        or live.value("gridmerge", "solves") == solves
+        or time.monotonic() < sent + 2.0
+    ):
         if time.monotonic() > sent + LONGEST_WAIT:
             raise SystemExit(f"never settled; the node says {live.diagnoses}")
         look(moments[-1])
@@ -205,32 +227,47 @@ def explore(
     answer = live.answer()
     # In the frame of the robot that the node heard first, which merge() takes the first map's for.
     first = answer.components[0].robots if answer.components else []
-    at_origin = {robot.name for robot in answer.robots if robot.transform.x == robot.transform.y == robot.transform.theta == 0.0}
+    at_origin = {
+        robot.name
+        for robot in answer.robots
+        if robot.transform.x == robot.transform.y == robot.transform.theta == 0.0
+    }
     anchor = next((name for name in first if name in at_origin), names[0])
     order = [anchor, *(name for name in names if name != anchor)]
     expected = gridmerge.merge([moments[-1][names.index(name)] for name in order])
-    largest = next((one for one in expected.components if any(member.map == 0 for member in one.members)), None)
+    largest = next(
+        (one for one in expected.components if any(member.map == 0 for member in one.members)), None
+    )
     same = "no" if answer.components or expected.components else "-"
     if largest is not None and answer.components:
 
         def is_here() -> bool:
-            return bool(merged) and np.array_equal(gridmerge.OccupancyGrid.from_msg(merged[0]).cells, largest.grid.cells)
+            return bool(merged) and np.array_equal(
+                gridmerge.OccupancyGrid.from_msg(merged[0]).cells, largest.grid.cells
+            )
 
         same = "yes" if live.holds_within(10.0, is_here) else "no"
     told = "never" if joined is None else f"at {joined:.1f} s"
     if joined is not None and possible is not None:
         told += f", {joined - possible:.1f} s after the maps of moment {possible}, which merge() joins first"
-    print(f"{kind:10s} first join {told}; settled {settled:.1f} s after the last maps; placed {len(answer.robots)} of {len(names)} "
-          f"(merge(): {sum(len(one.members) for one in expected.components)}), wrong at any time {len(wrong)}; of robots that were sure "
-          f"{len(lost['moved by'])} jumped, {len(lost['is no longer'])} were taken out, {len(lost['started anew'])} started anew; "
-          f"/merged_map is that of merge(): {same}", flush=True)
+    print(
+        f"{kind:10s} first join {told}; settled {settled:.1f} s after the last maps; "
+        f"placed {len(answer.robots)} of {len(names)} "
+        f"(merge(): {sum(len(one.members) for one in expected.components)}), wrong at any time {len(wrong)}; "
+        f"of robots that were sure {len(lost['moved by'])} jumped, {len(lost['is no longer'])} were taken out, "
+        f"{len(lost['started anew'])} started anew; "
+        f"/merged_map is that of merge(): {same}",
+        flush=True,
+    )
 
 
 def run_hour(live: Live, arguments: argparse.Namespace) -> None:
     played = hour.Hour(arguments.robots)
 
     def send(robot: int, second: int) -> None:
-        live.publish(f"tb{robot}", played.grid(robot, second), f"tb{robot}/map_{played.lap(robot, second)[0]}", second)
+        live.publish(
+            f"tb{robot}", played.grid(robot, second), f"tb{robot}/map_{played.lap(robot, second)[0]}", second
+        )
         rclpy.spin_once(live.node, timeout_sec=0.0)
 
     def look(second: int) -> tuple[int, int, int, int]:
@@ -248,7 +285,9 @@ def run_hour(live: Live, arguments: argparse.Namespace) -> None:
 
 
 def large_maps() -> list[gridmerge.OccupancyGrid]:
-    simulation = gridmerge.simulate("office", size=(170.0, 170.0), robots=2, overlap=0.7, drift=0.0, others=0, seed=3)
+    simulation = gridmerge.simulate(
+        "office", size=(170.0, 170.0), robots=2, overlap=0.7, drift=0.0, others=0, seed=3
+    )
     grids = []
     for one in simulation.maps:
         cells = np.zeros((4000, 4000), np.uint8)
@@ -262,7 +301,9 @@ def run_large(live: Live, arguments: argparse.Namespace) -> None:
     first, second = large_maps()
     cost = hour.Cost(live.program.pid)
     merged: list[OccupancyGrid] = []
-    live.node.create_subscription(OccupancyGrid, "/merged_map", lambda message: merged.__setitem__(slice(None), [message]), LATCHED)
+    live.node.create_subscription(
+        OccupancyGrid, "/merged_map", lambda message: merged.__setitem__(slice(None), [message]), LATCHED
+    )
     updates = live.node.create_publisher(OccupancyGridUpdate, "/tb2/map_updates", LATCHED)
 
     def measure(what: str, stamp: int, send: Callable[[], None]) -> None:
@@ -270,7 +311,9 @@ def run_large(live: Live, arguments: argparse.Namespace) -> None:
         cpu, begin = cost.cpu, time.monotonic()
         send()
         written = time.monotonic() - begin
-        live.wait_until(lambda: bool(merged) and merged[0].header.stamp.sec == stamp, f"a merged map of second {stamp}")
+        live.wait_until(
+            lambda: bool(merged) and merged[0].header.stamp.sec == stamp, f"a merged map of second {stamp}"
+        )
         seconds = time.monotonic() - begin
         cost.look()
         until_here, memory = cost.cpu - cpu, cost.resident[-1]
@@ -283,9 +326,13 @@ def run_large(live: Live, arguments: argparse.Namespace) -> None:
                 break
             rest = cost.cpu
         info = merged[0].info
-        print(f"{what:22s} written {written:4.2f} s, /merged_map of {info.width} x {info.height} cells after {seconds:4.2f} s "
-              f"and {until_here:4.2f} s of CPU, {memory:4.0f} MB; searched thoroughly: {cost.cpu - cpu - until_here:5.2f} s of CPU more, "
-              f"{max(cost.resident):4.0f} MB at most", flush=True)
+        print(
+            f"{what:22s} written {written:4.2f} s, /merged_map of {info.width} x {info.height} cells "
+            f"after {seconds:4.2f} s and {until_here:4.2f} s of CPU, {memory:4.0f} MB; "
+            f"searched thoroughly: {cost.cpu - cpu - until_here:5.2f} s of CPU more, "
+            f"{max(cost.resident):4.0f} MB at most",
+            flush=True,
+        )
 
     live.publish("tb1", first, "tb1/map", 1)
     live.wait_until(lambda: live.value("tb1", "maps") == "1", "the first map")
@@ -301,17 +348,22 @@ def run_large(live: Live, arguments: argparse.Namespace) -> None:
             part[dice.random(part.shape) < 0.003] = 1 + stamp % 2
             if as_update:
                 values = np.choose(part, (-1, 0, 100)).astype(np.int8)
-                update = OccupancyGridUpdate(x=corner, y=corner, width=side, height=side, data=array.array("b", values.tobytes()))
+                update = OccupancyGridUpdate(
+                    x=corner, y=corner, width=side, height=side, data=array.array("b", values.tobytes())
+                )
                 update.header.frame_id = "tb2/map"
                 update.header.stamp.sec = stamp
-                measure("as an update", stamp, lambda: updates.publish(update))
+                measure("as an update", stamp, functools.partial(updates.publish, update))
             else:
                 grid = gridmerge.OccupancyGrid.from_cells(cells, second.resolution, second.origin)
-                measure("1 % changes, as a whole", stamp, lambda: live.publish("tb2", grid, "tb2/map", stamp))
+                send = functools.partial(live.publish, "tb2", grid, "tb2/map", stamp)
+                measure("1 % changes, as a whole", stamp, send)
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("gridmerge")
     parser.add_argument("what", choices=("explore", "hour", "large"))
     parser.add_argument("--robots", type=int, default=6)

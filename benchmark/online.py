@@ -25,9 +25,8 @@ import time
 from dataclasses import dataclass
 
 import gridmerge
-import numpy as np
-
 import hour
+import numpy as np
 
 KINDS = ("office", "hall", "warehouse", "loop", "apartment", "outdoor")
 SURE = 0.98
@@ -81,7 +80,9 @@ def wrong_ones(
             for robot in component.robots:
                 k = int(robot[2:])
                 found = status[reference].transform.inverse() @ status[robot].transform
-                if displacement(grids[k], found, true_transform(simulation, i, k)) > tolerance_of(simulation, i, k):
+                if displacement(grids[k], found, true_transform(simulation, i, k)) > tolerance_of(
+                    simulation, i, k
+                ):
                     off.add(robot)
             if len(off) < len(best):
                 best = off
@@ -98,7 +99,15 @@ def simulate_team(number: int, robots: int, steps: int) -> gridmerge.Simulation:
     kind = KINDS[number % len(KINDS)]
     size = (20.0, 14.0) if kind == "apartment" else (44.0, 28.0)
     return gridmerge.simulate(
-        kind, size=size, robots=robots, overlap=0.6, drift=(0.0, 0.3, 1.0)[number % 3], steps=steps, others=0, seed=100 + number)
+        kind,
+        size=size,
+        robots=robots,
+        overlap=0.6,
+        drift=(0.0, 0.3, 1.0)[number % 3],
+        steps=steps,
+        others=0,
+        seed=100 + number,
+    )
 
 
 def run_team(number: int, arguments: argparse.Namespace, count: Count) -> None:
@@ -125,7 +134,9 @@ def run_team(number: int, arguments: argparse.Namespace, count: Count) -> None:
                 if event.kind in ("jumped", "left"):
                     count.jumps += 1
                     count.sure_jumps += event.robot in sure
-            sure |= {robot.name for robot in answer.robots if robot.state == "placed" and robot.probability >= SURE}
+            sure |= {
+                robot.name for robot in answer.robots if robot.state == "placed" and robot.probability >= SURE
+            }
             if answer.components and first == "never":
                 first = f"{step + 1}"
         placed.append(sum(len(component.robots) for component in team.answer().components))
@@ -140,20 +151,28 @@ def run_team(number: int, arguments: argparse.Namespace, count: Count) -> None:
     wrong = wrong_ones(simulation, grids, answer)
     merged = gridmerge.merge(grids)
     same = [tuple(f"tb{member.map}" for member in one.members) for one in merged.components] == [
-        one.robots for one in answer.components] and all(
-            np.array_equal(one.grid.cells, other.grid.cells) for one, other in zip(merged.components, answer.components))
+        one.robots for one in answer.components
+    ] and all(
+        np.array_equal(one.grid.cells, other.grid.cells)
+        for one, other in zip(merged.components, answer.components, strict=True)
+    )
     count.teams += 1
     count.robots += len(grids)
     count.placed += sum(len(component.robots) for component in answer.components)
     count.wrong += len(wrong)
     count.wrong_before += len(wrong_before)
     count.same += same
-    print(f"{kind:10s} first join at step {first:>5s} (merge() of the same maps: {first_batch:>5s}); placed by step "
-          f"{placed} (merge(): {batch}); wrong {len(wrong)}, before {len(wrong_before)}; the same at the end: {same}", flush=True)
+    print(
+        f"{kind:10s} first join at step {first:>5s} (merge() of the same maps: {first_batch:>5s}); placed by step "
+        f"{placed} (merge(): {batch}); wrong {len(wrong)}, before {len(wrong_before)}; the same at the end: {same}",
+        flush=True,
+    )
 
 
 def run_long(arguments: argparse.Namespace) -> None:
-    simulation = gridmerge.simulate("office", size=(44.0, 28.0), robots=arguments.robots, overlap=0.6, others=0, seed=9)
+    simulation = gridmerge.simulate(
+        "office", size=(44.0, 28.0), robots=arguments.robots, overlap=0.6, others=0, seed=9
+    )
     team = gridmerge.Team(quiet=1.0)
     dice = np.random.default_rng(1)
     for i, one in enumerate(simulation.maps):
@@ -163,7 +182,7 @@ def run_long(arguments: argparse.Namespace) -> None:
     print(f"{arguments.updates} updates of {arguments.robots} robots:")
     for part in range(parts):
         start, cpu = time.monotonic(), time.process_time()
-        for update in range(arguments.updates // parts):
+        for _ in range(arguments.updates // parts):
             i = int(dice.integers(len(simulation.maps)))
             grid = simulation.maps[i].grid
             cells = grid.cells.copy()
@@ -175,8 +194,11 @@ def run_long(arguments: argparse.Namespace) -> None:
         with open("/proc/self/statm") as file:
             resident = int(file.read().split()[1]) * resource.getpagesize() / 1e6
         n = arguments.updates // parts
-        print(f"  part {part + 1}: {1000 * (time.monotonic() - start) / n:.0f} ms an update, "
-              f"{1000 * (time.process_time() - cpu) / n:.0f} ms of CPU, {resident:.0f} MB resident", flush=True)
+        print(
+            f"  part {part + 1}: {1000 * (time.monotonic() - start) / n:.0f} ms an update, "
+            f"{1000 * (time.process_time() - cpu) / n:.0f} ms of CPU, {resident:.0f} MB resident",
+            flush=True,
+        )
 
 
 def run_hour(arguments: argparse.Namespace) -> None:
@@ -202,7 +224,9 @@ def run_hour(arguments: argparse.Namespace) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--teams", type=int, default=6)
     parser.add_argument("--robots", type=int, default=6)
     parser.add_argument("--steps", type=int, default=12)
@@ -217,9 +241,12 @@ def main() -> None:
     count = Count()
     for number in range(arguments.teams):
         run_team(number, arguments, count)
-    print(f"{count.teams} teams, {count.robots} robots: placed {count.placed}, wrong {count.wrong}; placed wrongly before the end "
-          f"{count.wrong_before}; jumps {count.jumps}, of robots that had been placed with {SURE} or more {count.sure_jumps}; "
-          f"the same as merge() at the end: {count.same} of {count.teams}")
+    print(
+        f"{count.teams} teams, {count.robots} robots: placed {count.placed}, wrong {count.wrong}; "
+        f"placed wrongly before the end {count.wrong_before}; "
+        f"jumps {count.jumps}, of robots that had been placed with {SURE} or more {count.sure_jumps}; "
+        f"the same as merge() at the end: {count.same} of {count.teams}"
+    )
     if arguments.updates:
         run_long(arguments)
 

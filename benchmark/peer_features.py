@@ -24,12 +24,18 @@ def match(fixed: Map, moving: Map, least_confidence: float) -> Answer:
     matcher = cv2.detail_AffineBestOf2NearestMatcher()
     found = matcher.apply(*features)
     pose = None
-    inliers = [one for one, is_inlier in zip(found.getMatches(), found.getInliers()) if is_inlier]
+    # Where OpenCV has too few matches to fit anything, it tells no inliers at all.
+    marked = zip(found.getMatches(), found.getInliers(), strict=False)
+    inliers = [one for one, is_inlier in marked if is_inlier]
     if len(inliers) >= 2:
         # The node's bundle adjustment keeps the scale; the poses of maps have none.
-        ends = [map_.points([keypoints[index].pt for index in indices]) for map_, keypoints, indices in (
-            (moving, features[0].getKeypoints(), [one.queryIdx for one in inliers]),
-            (fixed, features[1].getKeypoints(), [one.trainIdx for one in inliers]))]
+        ends = [
+            map_.points([keypoints[index].pt for index in indices])
+            for map_, keypoints, indices in (
+                (moving, features[0].getKeypoints(), [one.queryIdx for one in inliers]),
+                (fixed, features[1].getKeypoints(), [one.trainIdx for one in inliers]),
+            )
+        ]
         pose = rigid_fit(*ends)
     accepted = pose is not None and found.confidence >= least_confidence
     return Answer(pose, accepted, found.confidence)

@@ -20,7 +20,7 @@ UNKNOWN, FREE, OCCUPIED = 0, 1, 2
 class Map:
     cells: np.ndarray  # UNKNOWN, FREE or OCCUPIED; row 0 at the bottom, so that rows grow with y
     resolution: float  # [m]
-    origin: Pose       # of the lower-left corner of the lower-left cell
+    origin: Pose  # of the lower-left corner of the lower-left cell
 
     def points(self, pixels: np.ndarray) -> np.ndarray:
         """(N, 2) columns and rows, of which whole numbers are the middles of cells, to metres of the map frame."""
@@ -31,7 +31,7 @@ class Map:
 class Answer:
     pose: Pose | None  # the best one, whether accepted or not; None: the peer gives none
     accepted: bool
-    score: float       # what the acceptance rests on; each peer has its own scale
+    score: float  # what the acceptance rests on; each peer has its own scale
 
 
 def transformed(pose: Pose, points: np.ndarray) -> np.ndarray:
@@ -50,8 +50,15 @@ def read_map(path: pathlib.Path) -> Map:
         pixels = np.asarray(image)[::-1]
     grays = np.arange(256)
     occupancy = (255 - grays) / 255.0
-    kinds = np.select([grays == 205, occupancy > float(entries["occupied_thresh"]), occupancy < float(entries["free_thresh"])],
-                      [UNKNOWN, OCCUPIED, FREE], UNKNOWN).astype(np.uint8)  # 205 is what map savers write for unknown
+    kinds = np.select(
+        [
+            grays == 205,  # what map savers write for unknown
+            occupancy > float(entries["occupied_thresh"]),
+            occupancy < float(entries["free_thresh"]),
+        ],
+        [UNKNOWN, OCCUPIED, FREE],
+        UNKNOWN,
+    ).astype(np.uint8)
     cells = kinds[pixels]
     x, y, theta = (float(number) for number in entries["origin"].strip("[]").split(","))
     return Map(cells, float(entries["resolution"]), (x, y, theta))
@@ -62,8 +69,10 @@ def write_map(path: pathlib.Path, map_: Map) -> None:
     image = path.with_suffix(".pgm")
     Image.fromarray(np.array([205, 254, 0], np.uint8)[map_.cells[::-1]]).save(image)
     x, y, theta = map_.origin
-    path.write_text(f"image: {image.name}\nresolution: {map_.resolution}\norigin: [{x!r}, {y!r}, {theta!r}]\n"
-                    "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n")
+    path.write_text(
+        f"image: {image.name}\nresolution: {map_.resolution}\norigin: [{x!r}, {y!r}, {theta!r}]\n"
+        "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
 
 
 def coarsened(map_: Map, factor: int) -> Map:
@@ -97,7 +106,8 @@ class KnownCells:
 
 
 def rigid_fit(moving: np.ndarray, fixed: np.ndarray) -> Pose:
-    """The pose that takes the (N, 2) points `moving` to `fixed` with the least sum of squares (Umeyama 1991, no scale)."""
+    """The pose that takes the (N, 2) points `moving` to `fixed` with the least sum of squares
+    (Umeyama 1991, no scale)."""
     middle_moving, middle_fixed = moving.mean(axis=0), fixed.mean(axis=0)
     a, b = moving - middle_moving, fixed - middle_fixed
     theta = math.atan2(float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()), float((a * b).sum()))

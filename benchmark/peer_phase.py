@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Log-polar phase correlation (Reddy & Chatterji 1996; "Fourier-Mellin") of two maps' walls.
 
-The rotation follows from the maps' amplitude spectra, which do not feel a shift: in polar coordinates it is a shift along
-the angle. The spectra are equal after half a turn, so that each angle stands for two rotations; the translation follows by
-phase correlation for each of them, and the highest response wins. Both maps have one scale, so that a shift along the
-logarithm of the radius is not looked for, which spares the method mistakes.
+The rotation follows from the maps' amplitude spectra, which do not feel a shift: in polar coordinates it is a shift
+along the angle. The spectra are equal after half a turn, so that each angle stands for two rotations; the translation
+follows by phase correlation for each of them, and the highest response wins. Both maps have one scale, so that a shift
+along the logarithm of the radius is not looked for, which spares the method mistakes.
 """
 
 import dataclasses
@@ -17,27 +17,30 @@ from peer_maps import OCCUPIED, Answer, Map, common_resolution, transformed
 
 @dataclasses.dataclass(frozen=True)
 class Options:
-    """Of three settings the one whose responses separated simulated training pairs (the seeds of peers.py's training set) best.
-    The others had cells of 0.2 m, and blurs of 1 and of 1.5 cells."""
+    """Of three settings the one whose responses separated simulated training pairs (the seeds of peers.py's training
+    set) best. The others had cells of 0.2 m, and blurs of 1 and of 1.5 cells."""
 
-    cell: float = 0.1        # at which the maps are compared [m]; never finer than they are
-    blur: float = 1.5        # standard deviation of a wall's blur [cells of that size]
-    angles: int = 720        # over a whole turn
-    candidates: int = 4      # angles tried, two rotations each
+    cell: float = 0.1  # at which the maps are compared [m]; never finer than they are
+    blur: float = 1.5  # standard deviation of a wall's blur [cells of that size]
+    angles: int = 720  # over a whole turn
+    candidates: int = 4  # angles tried, two rotations each
 
 
 def walls_of(map_: Map, options: Options) -> tuple[np.ndarray, float, np.ndarray]:
-    """The walls, blurred and cropped; the size of a pixel [m]; the pixel (column, row) of the map that is first here."""
+    """The walls, blurred and cropped; the size of a pixel [m]; the pixel (column, row) of the map
+    that is first here."""
     walls = (map_.cells == OCCUPIED).astype(np.float32)
     rows, columns = np.nonzero(walls)
     if not rows.size:
         return np.zeros((0, 0), np.float32), map_.resolution, np.zeros(2)
     first = np.array([columns.min(), rows.min()])
-    walls = walls[first[1]:rows.max() + 1, first[0]:columns.max() + 1]
+    walls = walls[first[1] : rows.max() + 1, first[0] : columns.max() + 1]
     factor = max(1, round(options.cell / map_.resolution))
     margin = math.ceil(3.0 * options.blur) * factor
     height, width = walls.shape
-    walls = cv2.copyMakeBorder(walls, margin, margin + -height % factor, margin, margin + -width % factor, cv2.BORDER_CONSTANT)
+    walls = cv2.copyMakeBorder(
+        walls, margin, margin + -height % factor, margin, margin + -width % factor, cv2.BORDER_CONSTANT
+    )
     first = first - margin
     small = cv2.resize(walls, None, fx=1 / factor, fy=1 / factor, interpolation=cv2.INTER_AREA)
     small = cv2.GaussianBlur(np.minimum(small * factor, 1.0), None, options.blur)
@@ -46,7 +49,7 @@ def walls_of(map_: Map, options: Options) -> tuple[np.ndarray, float, np.ndarray
 
 def padded(image: np.ndarray, side: int) -> np.ndarray:
     canvas = np.zeros((side, side), np.float32)
-    canvas[:image.shape[0], :image.shape[1]] = image
+    canvas[: image.shape[0], : image.shape[1]] = image
     return canvas
 
 
@@ -57,9 +60,14 @@ def log_polar_spectrum(image: np.ndarray, side: int, options: Options) -> np.nda
     x = np.cos(np.pi * frequencies)
     high = 1.0 - np.outer(x, x)
     high_passed = (np.log1p(spectrum) * high * (2.0 - high)).astype(np.float32)
-    polar = cv2.warpPolar(high_passed, (side // 2, options.angles), (side // 2, side // 2), side / 2,
-                          cv2.INTER_LINEAR | cv2.WARP_POLAR_LOG)
-    return polar[:options.angles // 2]
+    polar = cv2.warpPolar(
+        high_passed,
+        (side // 2, options.angles),
+        (side // 2, side // 2),
+        side / 2,
+        cv2.INTER_LINEAR | cv2.WARP_POLAR_LOG,
+    )
+    return polar[: options.angles // 2]
 
 
 def likely_angles(fixed: np.ndarray, moving: np.ndarray, options: Options) -> list[float]:
@@ -67,8 +75,10 @@ def likely_angles(fixed: np.ndarray, moving: np.ndarray, options: Options) -> li
     cross = np.fft.fft(fixed, axis=0) * np.conj(np.fft.fft(moving, axis=0))
     total = cross.sum(axis=1)
     correlation = np.real(np.fft.ifft(total / np.maximum(np.abs(total), 1e-12)))
-    correlation = cv2.GaussianBlur(np.tile(correlation, 3)[:, None], None, 1.0, borderType=cv2.BORDER_REPLICATE).ravel()
-    correlation = correlation[correlation.size // 3:2 * correlation.size // 3]
+    correlation = cv2.GaussianBlur(
+        np.tile(correlation, 3)[:, None], None, 1.0, borderType=cv2.BORDER_REPLICATE
+    ).ravel()
+    correlation = correlation[correlation.size // 3 : 2 * correlation.size // 3]
     angles = []
     for peak in np.argsort(correlation)[::-1]:
         before, here, after = (correlation[(peak + step) % correlation.size] for step in (-1, 0, 1))

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""gridmerge beside what else anyone can install and match two occupancy grids with: the same pairs, the same truth, each by
-its own rule of acceptance. Writes OUTPUT/peers.md and OUTPUT/peers.tsv (the table), and OUTPUT/peer_pairs.tsv (every pair).
+"""gridmerge beside what else anyone can install and match two occupancy grids with: the same pairs, the same truth,
+each by its own rule of acceptance. Writes OUTPUT/peers.md and OUTPUT/peers.tsv (the table), and
+OUTPUT/peer_pairs.tsv (every pair).
 
 usage: benchmark/peers.py --gridmerge BINARY --output DIR [--mrpt BINARY] [--data DIR] [--limit N]
 
@@ -25,7 +26,7 @@ import tempfile
 import time
 from collections.abc import Callable
 
-from benchmark import table
+from benchmark import NONE, table
 from peer_maps import Answer, KnownCells, coarsened, read_map, write_map
 from poses import inverse, read_pose
 
@@ -38,7 +39,7 @@ OVERLAPS = ("0.6", "0.3")
 TRAINING = (OFFICE, ("hall", "40x25"), ("warehouse", "40x25"), ("apartment", "14x11"))
 TRAINING_SEEDS = range(101, 106)
 MRPT_OPTIONS = pathlib.Path(__file__).parent / "mrpt" / "options.ini"
-MRPT_CELL = 0.10     # [m] that of the example that the options are from
+MRPT_CELL = 0.10  # [m] that of the example that the options are from
 COUNTS = ("pairs", "best right", "accepted right", "accepted wrong", "refused")
 
 
@@ -81,7 +82,9 @@ def run_measured(command: list, accepted_codes: tuple[int, ...] = (0,)) -> tuple
         output.seek(0)
         errors.seek(0)
         if code not in accepted_codes:
-            sys.exit(f"peers: {' '.join(str(word) for word in command)} ended with {code}: {errors.read().strip()}")
+            sys.exit(
+                f"peers: {' '.join(str(word) for word in command)} ended with {code}: {errors.read().strip()}"
+            )
         return output.read(), usage.ru_utime + usage.ru_stime
 
 
@@ -94,29 +97,39 @@ def read_gridmerge(text: str) -> Answer:
 
 def read_mrpt(text: str) -> Answer:
     """Of mrpt/grid_match: the mode that MRPT's own ICP finds best. That there is one is MRPT's acceptance."""
-    modes = [tuple(float(word) for word in line.split()[1:]) for line in text.splitlines() if line.startswith("mode ")]
+    modes = [
+        tuple(float(word) for word in line.split()[1:])
+        for line in text.splitlines()
+        if line.startswith("mode ")
+    ]
     if not modes:
         return Answer(None, False, 0.0)
     _, goodness, x, y, theta = max(modes, key=lambda mode: mode[1])
     return Answer((x, y, theta), True, goodness)
 
 
-def match_by_gridmerge(binary: pathlib.Path, fixed: pathlib.Path, moving: pathlib.Path) -> tuple[Answer, float]:
-    text, seconds = run_measured([binary, "match", "--json", "--quiet", "--threads", 1, fixed, moving], (0, 3))
+def match_by_gridmerge(
+    binary: pathlib.Path, fixed: pathlib.Path, moving: pathlib.Path
+) -> tuple[Answer, float]:
+    text, seconds = run_measured(
+        [binary, "match", "--json", "--quiet", "--threads", 1, fixed, moving], (0, 3)
+    )
     return read_gridmerge(text), seconds
 
 
 def match_by_mrpt(binary: pathlib.Path, fixed: pathlib.Path, moving: pathlib.Path) -> tuple[Answer, float]:
     with tempfile.TemporaryDirectory() as folder:
         coarse = [pathlib.Path(folder, f"{name}.yaml") for name in ("fixed", "moving")]
-        for path, there in zip((fixed, moving), coarse):
+        for path, there in zip((fixed, moving), coarse, strict=True):
             map_ = read_map(path)
             write_map(there, coarsened(map_, max(1, round(MRPT_CELL / map_.resolution))))
         text, seconds = run_measured([binary, *coarse, MRPT_OPTIONS])
     return read_mrpt(text), seconds
 
 
-def match_by_features(least_confidence: float, fixed: pathlib.Path, moving: pathlib.Path) -> tuple[Answer, float]:
+def match_by_features(
+    least_confidence: float, fixed: pathlib.Path, moving: pathlib.Path
+) -> tuple[Answer, float]:
     import peer_features  # late: without OpenCV the other peers run
 
     start = time.process_time()
@@ -158,43 +171,102 @@ def sample(rows: list, limit: int | None) -> list:
 
 def read_cases(folder: pathlib.Path, group: str) -> list[Case]:
     """Of the folder's pairs.tsv and negatives.tsv. Tiers are groups of their own where there are several of them."""
+
     def rows(name: str) -> list[dict]:
         with (folder / name).open(newline="") as file:
             return list(csv.DictReader(file, delimiter="\t"))
 
     pairs = rows("pairs.tsv")
     tiers = {row.get("tier") for row in pairs}
-    cases = [Case(f"{group}, tier {row['tier']}" if len(tiers) > 1 else group, folder / row["fixed"], folder / row["moving"],
-                  tuple(float(row[key]) for key in ("x", "y", "theta")), float(row["tolerance"])) for row in pairs]
-    return cases + [Case(f"{group}, unrelated" if len(tiers) > 1 else group, folder / row["fixed"], folder / row["moving"])
-                    for row in rows("negatives.tsv")]
+    cases = [
+        Case(
+            f"{group}, tier {row['tier']}" if len(tiers) > 1 else group,
+            folder / row["fixed"],
+            folder / row["moving"],
+            tuple(float(row[key]) for key in ("x", "y", "theta")),
+            float(row["tolerance"]),
+        )
+        for row in pairs
+    ]
+    return cases + [
+        Case(
+            f"{group}, unrelated" if len(tiers) > 1 else group, folder / row["fixed"], folder / row["moving"]
+        )
+        for row in rows("negatives.tsv")
+    ]
 
 
-def simulate(gridmerge: pathlib.Path, folder: pathlib.Path, kind: str, size: str, overlap: str, seed: int) -> bool:
+def simulate(
+    gridmerge: pathlib.Path, folder: pathlib.Path, kind: str, size: str, overlap: str, seed: int
+) -> bool:
     """Whether there is such a pair: some overlaps cannot be had."""
     if (folder / "negatives.tsv").exists():
         return True
-    command = [gridmerge, "simulate", "-o", folder, "--kind", kind, "--size", size, "--overlap", overlap, "--seed", seed,
-               "--robots", 2, "--drift", 0.3, "--others", 1, "--threads", 1, "--quiet"]
-    process = subprocess.run([str(word) for word in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    command = [
+        gridmerge,
+        "simulate",
+        "-o",
+        folder,
+        "--kind",
+        kind,
+        "--size",
+        size,
+        "--overlap",
+        overlap,
+        "--seed",
+        seed,
+        "--robots",
+        2,
+        "--drift",
+        0.3,
+        "--others",
+        1,
+        "--threads",
+        1,
+        "--quiet",
+    ]
+    process = subprocess.run(
+        [str(word) for word in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
     return process.returncode == 0
 
 
-def simulated_cases(pool: concurrent.futures.Executor, gridmerge: pathlib.Path, output: pathlib.Path,
-                    limit: int | None) -> list[Case]:
+def simulated_cases(
+    pool: concurrent.futures.Executor, gridmerge: pathlib.Path, output: pathlib.Path, limit: int | None
+) -> list[Case]:
     seeds = range(1, min(SEEDS, limit or SEEDS) + 1)
     made = [(overlap, seed, output / f"office_{overlap}_{seed}") for overlap in OVERLAPS for seed in seeds]
-    jobs = [pool.submit(simulate, gridmerge, folder, *OFFICE, overlap, seed) for overlap, seed, folder in made]
-    return [case for (overlap, _, folder), job in zip(made, jobs) if job.result()
-            for case in read_cases(folder, f"simulated office, overlap {overlap}")]
+    jobs = [
+        pool.submit(simulate, gridmerge, folder, *OFFICE, overlap, seed) for overlap, seed, folder in made
+    ]
+    return [
+        case
+        for (overlap, _, folder), job in zip(made, jobs, strict=True)
+        if job.result()
+        for case in read_cases(folder, f"simulated office, overlap {overlap}")
+    ]
 
 
-def training_cases(pool: concurrent.futures.Executor, gridmerge: pathlib.Path, output: pathlib.Path) -> list[Case]:
+def training_cases(
+    pool: concurrent.futures.Executor, gridmerge: pathlib.Path, output: pathlib.Path
+) -> list[Case]:
     """Unrelated pairs of simulated maps that are in no set."""
-    made = [(kind, size, seed, output / f"training_{kind}_{seed}") for kind, size in TRAINING for seed in TRAINING_SEEDS]
-    jobs = [pool.submit(simulate, gridmerge, folder, kind, size, OVERLAPS[0], seed) for kind, size, seed, folder in made]
-    return [case for (*_, folder), job in zip(made, jobs) if job.result()
-            for case in read_cases(folder, "training") if case.truth is None]
+    made = [
+        (kind, size, seed, output / f"training_{kind}_{seed}")
+        for kind, size in TRAINING
+        for seed in TRAINING_SEEDS
+    ]
+    jobs = [
+        pool.submit(simulate, gridmerge, folder, kind, size, OVERLAPS[0], seed)
+        for kind, size, seed, folder in made
+    ]
+    return [
+        case
+        for (*_, folder), job in zip(made, jobs, strict=True)
+        if job.result()
+        for case in read_cases(folder, "training")
+        if case.truth is None
+    ]
 
 
 def real_cases(data: pathlib.Path) -> list[Case]:
@@ -209,25 +281,45 @@ def real_cases(data: pathlib.Path) -> list[Case]:
 
 def limited(cases: list[Case], limit: int | None) -> list[Case]:
     kinds = dict.fromkeys((case.group, case.truth is None) for case in cases)
-    return [case for kind in kinds for case in sample([case for case in cases if (case.group, case.truth is None) == kind], limit)]
+    return [
+        case
+        for kind in kinds
+        for case in sample([case for case in cases if (case.group, case.truth is None) == kind], limit)
+    ]
 
 
 def opencv_peers(pool: concurrent.futures.Executor, training: Callable[[], list[Case]]) -> list[Peer]:
     try:
         import cv2
     except ImportError as error:
-        print(f"feature matching and phase correlation: skipped, Python has no OpenCV (Debian: python3-opencv): {error}")
+        print(
+            f"feature matching and phase correlation: skipped, Python has no OpenCV (Debian: python3-opencv): {error}"
+        )
         return []
     version = f"OpenCV {cv2.__version__}"
-    peers = [Peer(f"AKAZE features, confidence {least:g}", version, f"confidence of at least {least:g}",
-                  functools.partial(in_both_orders, functools.partial(match_by_features, least))) for least in (1.0, 0.5)]
+    peers = [
+        Peer(
+            f"AKAZE features, confidence {least:g}",
+            version,
+            f"confidence of at least {least:g}",
+            functools.partial(in_both_orders, functools.partial(match_by_features, least)),
+        )
+        for least in (1.0, 0.5)
+    ]
     asking = Peer("", version, "", functools.partial(in_both_orders, functools.partial(match_by_phase, 0.0)))
     unrelated = list(pool.map(judge, [(asking, case) for case in training()]))
     # The next number: the highest response of an unrelated pair is refused.
     least = math.nextafter(max(judged.answer.score for judged in unrelated), math.inf)
     rule = f"response above {least:.3f}, the highest of {len(unrelated)} unrelated pairs of a simulated training set"
-    return [*peers, Peer("log-polar phase correlation", version, rule,
-                         functools.partial(in_both_orders, functools.partial(match_by_phase, least)))]
+    return [
+        *peers,
+        Peer(
+            "log-polar phase correlation",
+            version,
+            rule,
+            functools.partial(in_both_orders, functools.partial(match_by_phase, least)),
+        ),
+    ]
 
 
 def mrpt_peers(binary: pathlib.Path | None) -> list[Peer]:
@@ -235,14 +327,25 @@ def mrpt_peers(binary: pathlib.Path | None) -> list[Peer]:
         print("MRPT: skipped, there is no program of benchmark/mrpt (Debian: libmrpt-slam-dev; --mrpt)")
         return []
     version = f"MRPT {(binary.parent / 'version').read_text().strip()}"
-    rule = "a mode that is left by its own tests: enough inliers (ransac_minSetSizeRatio), then ICP (min_ICP_goodness, max_ICP_mahadist)"
-    return [Peer("MRPT grid matching", version, rule,
-                 functools.partial(in_both_orders, functools.partial(match_by_mrpt, binary)))]
+    rule = (
+        "a mode that is left by its own tests: enough inliers (ransac_minSetSizeRatio), "
+        "then ICP (min_ICP_goodness, max_ICP_mahadist)"
+    )
+    return [
+        Peer(
+            "MRPT grid matching",
+            version,
+            rule,
+            functools.partial(in_both_orders, functools.partial(match_by_mrpt, binary)),
+        )
+    ]
 
 
 def gridmerge_peer(binary: pathlib.Path) -> Peer:
     version = subprocess.run([binary, "--version"], capture_output=True, text=True, check=True).stdout.strip()
-    return Peer("gridmerge", version, "probability of at least 0.95", functools.partial(match_by_gridmerge, binary))
+    return Peer(
+        "gridmerge", version, "probability of at least 0.95", functools.partial(match_by_gridmerge, binary)
+    )
 
 
 def summarize(group: str, peer: str, judged: list[Judged]) -> dict:
@@ -250,29 +353,61 @@ def summarize(group: str, peer: str, judged: list[Judged]) -> dict:
     accepted = [one for one in pairs if one.answer.accepted]
     unrelated = [one for one in judged if one.case.truth is None]
     row = {"maps": group, "peer": peer}
-    row |= {"pairs": len(pairs), "best right": sum(one.right for one in pairs),
-            "accepted right": sum(one.right for one in accepted), "accepted wrong": sum(not one.right for one in accepted),
-            "refused": len(pairs) - len(accepted)} if pairs else dict.fromkeys(COUNTS, "–")
-    row["unrelated accepted"] = f"{sum(one.answer.accepted for one in unrelated)} of {len(unrelated)}" if unrelated else "–"
+    row |= (
+        {
+            "pairs": len(pairs),
+            "best right": sum(one.right for one in pairs),
+            "accepted right": sum(one.right for one in accepted),
+            "accepted wrong": sum(not one.right for one in accepted),
+            "refused": len(pairs) - len(accepted),
+        }
+        if pairs
+        else dict.fromkeys(COUNTS, NONE)
+    )
+    row["unrelated accepted"] = (
+        f"{sum(one.answer.accepted for one in unrelated)} of {len(unrelated)}" if unrelated else NONE
+    )
     row["CPU s"] = f"{statistics.median(one.seconds for one in judged):.2f}"
     return row
 
 
 def write_results(output: pathlib.Path, judged: list[Judged], peers: list[Peer]) -> str:
     groups = dict.fromkeys(one.case.group for one in judged)
-    rows = [summarize(group, peer.name, [one for one in judged if one.peer == peer.name and one.case.group == group])
-            for group in groups for peer in peers]
-    report = "# Beside what people use\n" + table(rows) + "\nCPU s: the median of a pair, user and system, reading the maps "
+    rows = [
+        summarize(
+            group, peer.name, [one for one in judged if one.peer == peer.name and one.case.group == group]
+        )
+        for group in groups
+        for peer in peers
+    ]
+    report = (
+        "# Beside what people use\n"
+        + table(rows)
+        + "\nCPU s: the median of a pair, user and system, reading the maps "
+    )
     report += "included; without Python's start.\n\n"
-    report += "\n".join(f"- **{peer.name}** ({peer.version}) accepts by: {peer.acceptance}." for peer in peers) + "\n"
+    report += (
+        "\n".join(f"- **{peer.name}** ({peer.version}) accepts by: {peer.acceptance}." for peer in peers)
+        + "\n"
+    )
     (output / "peers.md").write_text(report)
     write_tsv(output / "peers.tsv", rows)
-    write_tsv(output / "peer_pairs.tsv", [
-        {"maps": one.case.group, "peer": one.peer, "fixed": one.case.fixed, "moving": one.case.moving}
-        | dict(zip(("x", "y", "theta"), one.answer.pose or ("", "", "")))
-        | {"accepted": int(one.answer.accepted), "score": one.answer.score, "error": "" if one.error is None else one.error,
-           "tolerance": one.case.tolerance if one.case.truth else "", "right": int(one.right) if one.case.truth else "",
-           "seconds": f"{one.seconds:.3f}"} for one in judged])
+    write_tsv(
+        output / "peer_pairs.tsv",
+        [
+            {"maps": one.case.group, "peer": one.peer, "fixed": one.case.fixed, "moving": one.case.moving}
+            | dict(zip(("x", "y", "theta"), one.answer.pose or ("", "", ""), strict=True))
+            | {
+                "accepted": int(one.answer.accepted),
+                "score": one.answer.score,
+                "error": "" if one.error is None else one.error,
+                "tolerance": one.case.tolerance if one.case.truth else "",
+                "right": int(one.right) if one.case.truth else "",
+                "seconds": f"{one.seconds:.3f}",
+            }
+            for one in judged
+        ],
+    )
     return report
 
 
@@ -292,7 +427,9 @@ def use_one_thread() -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--gridmerge", type=pathlib.Path, required=True)
     parser.add_argument("--output", type=pathlib.Path, required=True)
     parser.add_argument("--mrpt", type=pathlib.Path, help="the program that benchmark/mrpt builds")
@@ -305,10 +442,15 @@ def main() -> None:
     made.mkdir(parents=True, exist_ok=True)
 
     with concurrent.futures.ProcessPoolExecutor(initializer=use_one_thread) as pool:
-        cases = limited(simulated_cases(pool, arguments.gridmerge, made, arguments.limit) + real_cases(arguments.data),
-                        arguments.limit)
-        peers = [gridmerge_peer(arguments.gridmerge), *mrpt_peers(arguments.mrpt),
-                 *opencv_peers(pool, lambda: training_cases(pool, arguments.gridmerge, made))]
+        cases = limited(
+            simulated_cases(pool, arguments.gridmerge, made, arguments.limit) + real_cases(arguments.data),
+            arguments.limit,
+        )
+        peers = [
+            gridmerge_peer(arguments.gridmerge),
+            *mrpt_peers(arguments.mrpt),
+            *opencv_peers(pool, lambda: training_cases(pool, arguments.gridmerge, made)),
+        ]
         judged = []
         for peer in peers:
             print(f"{peer.name}: {len(cases)} pairs ...", flush=True)

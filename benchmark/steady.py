@@ -24,10 +24,15 @@ from peers import match_by_gridmerge
 from poses import Pose, compose, inverse, read_pose
 
 ACCEPT = 0.95  # gridmerge's own
-NEAR = 0.05    # a verdict this near to the threshold may change with the grain of a redrawn map
+NEAR = 0.05  # a verdict this near to the threshold may change with the grain of a redrawn map
 
 SIMULATED = [  # kind and drift of the teams of three that are simulated
-    ("office", 0.0), ("office", 1.0), ("apartment", 0.0), ("apartment", 1.0), ("warehouse", 0.0), ("curved", 0.3),
+    ("office", 0.0),
+    ("office", 1.0),
+    ("apartment", 0.0),
+    ("apartment", 1.0),
+    ("warehouse", 0.0),
+    ("curved", 0.3),
 ]
 
 
@@ -47,9 +52,9 @@ class Change:
 
     name: str
     flipped: bool
-    flipped_far: bool    # although the probabilities are far from the threshold
-    probability: float   # by which it moved
-    moved: float         # metres, root mean square over the moving map; NaN unless both answers are accepted
+    flipped_far: bool  # although the probabilities are far from the threshold
+    probability: float  # by which it moved
+    moved: float  # metres, root mean square over the moving map; NaN unless both answers are accepted
 
 
 def bounds(map_: Map) -> tuple[slice, slice]:
@@ -61,7 +66,10 @@ def cut(map_: Map, border: int) -> Map:
     """Without the outermost known rows and columns."""
     rows, columns = bounds(map_)
     cells = np.full_like(map_.cells, UNKNOWN)
-    inner = (slice(rows.start + border, rows.stop - border), slice(columns.start + border, columns.stop - border))
+    inner = (
+        slice(rows.start + border, rows.stop - border),
+        slice(columns.start + border, columns.stop - border),
+    )
     cells[inner] = map_.cells[inner]
     return dataclasses.replace(map_, cells=cells)
 
@@ -105,9 +113,15 @@ def variants(fixed: Map, moving: Map) -> collections.abc.Iterator[Variant]:
     yield Variant("turned by 90 degrees without loss", quarter_turned(fixed), moving, lambda pose: pose)
     yield Variant("turned by 90 degrees without loss", fixed, quarter_turned(moving), lambda pose: pose)
     for degrees in (5.0, 37.3, 45.0):
-        yield Variant("redrawn, turned by 5, 37.3, 45 degrees", fixed, redrawn(moving, math.radians(degrees)),
-                      lambda pose: pose)
-    yield Variant("both mirrored", mirrored(fixed), mirrored(moving), lambda pose: (pose[0], -pose[1], -pose[2]))
+        yield Variant(
+            "redrawn, turned by 5, 37.3, 45 degrees",
+            fixed,
+            redrawn(moving, math.radians(degrees)),
+            lambda pose: pose,
+        )
+    yield Variant(
+        "both mirrored", mirrored(fixed), mirrored(moving), lambda pose: (pose[0], -pose[1], -pose[2])
+    )
     yield Variant("swapped", moving, fixed, inverse)
 
 
@@ -121,8 +135,9 @@ class Runner:
 
     def merge(self, maps: list[pathlib.Path], output: pathlib.Path) -> list[dict[int, Pose]]:
         """The poses of each component's members, by the number of the input."""
-        done = subprocess.run([self.gridmerge, "merge", *maps, "-o", output, "--quiet", "--threads", "1"],
-                              capture_output=True)
+        done = subprocess.run(
+            [self.gridmerge, "merge", *maps, "-o", output, "--quiet", "--threads", "1"], capture_output=True
+        )
         if done.returncode not in (0, 3):
             raise RuntimeError(done.stderr.decode())
         components = []
@@ -148,14 +163,21 @@ class Runner:
             after = self.match(folder / "fixed.yaml", folder / "moving.yaml")
             flipped = before.accepted != after.accepted
             near = min(abs(one.score - ACCEPT) for one in (before, after)) <= NEAR
-            moved = known.displacement(variant.back(after.pose), before.pose) if before.accepted and after.accepted else math.nan
-            changes.append(Change(variant.name, flipped, flipped and not near,
-                                  abs(after.score - before.score), moved))
+            moved = (
+                known.displacement(variant.back(after.pose), before.pose)
+                if before.accepted and after.accepted
+                else math.nan
+            )
+            changes.append(
+                Change(variant.name, flipped, flipped and not near, abs(after.score - before.score), moved)
+            )
         return changes
 
     def change_of_itself(self, path: pathlib.Path) -> Change:
         found = self.match(path, path)
-        moved = KnownCells(read_map(path)).displacement(found.pose, (0.0, 0.0, 0.0)) if found.pose else math.nan
+        moved = (
+            KnownCells(read_map(path)).displacement(found.pose, (0.0, 0.0, 0.0)) if found.pose else math.nan
+        )
         return Change("a map with itself", not found.accepted, not found.accepted, 1.0 - found.score, moved)
 
     def changes_of_team(self, number: int, maps: list[pathlib.Path]) -> list[Change]:
@@ -169,9 +191,13 @@ class Runner:
 
         def add(name: str, poses: dict[int, Pose]) -> None:
             lost = [i for i in range(len(maps)) if i not in poses]
-            moved = [KnownCells(read_map(maps[i])).displacement(compose(inverse(poses[0]), poses[i]),
-                                                                compose(inverse(whole[0][0]), whole[0][i]))
-                     for i in range(1, len(maps)) if not lost]
+            moved = [
+                KnownCells(read_map(maps[i])).displacement(
+                    compose(inverse(poses[0]), poses[i]), compose(inverse(whole[0][0]), whole[0][i])
+                )
+                for i in range(1, len(maps))
+                if not lost
+            ]
             changes.append(Change(name, bool(lost), bool(lost), math.nan, max(moved, default=math.nan)))
 
         with_copy = self.merge([*maps, maps[1]], folder / "copy")
@@ -192,13 +218,18 @@ def summary(changes: list[Change]) -> list[str]:
         known = [value for value in values if not math.isnan(value)]
         return f"{np.median(known):.{digits}f}, {max(known):.{digits}f}" if known else ""
 
-    lines = ["| change | answers | verdict changed | of them far from the threshold | probability moved: median, most | "
-             "pose moved [m]: median, most |", "| --- | --- | --- | --- | --- | --- |"]
+    lines = [
+        "| change | answers | verdict changed | of them far from the threshold | probability moved: median, most | "
+        "pose moved [m]: median, most |",
+        "| --- | --- | --- | --- | --- | --- |",
+    ]
     for name in dict.fromkeys(change.name for change in changes):
         of_name = [change for change in changes if change.name == name]
-        lines.append(f"| {name} | {len(of_name)} | {sum(change.flipped for change in of_name)} | "
-                     f"{sum(change.flipped_far for change in of_name)} | "
-                     f"{most([change.probability for change in of_name], 3)} | {most([change.moved for change in of_name], 3)} |")
+        lines.append(
+            f"| {name} | {len(of_name)} | {sum(change.flipped for change in of_name)} | "
+            f"{sum(change.flipped_far for change in of_name)} | "
+            f"{most([change.probability for change in of_name], 3)} | {most([change.moved for change in of_name], 3)} |"
+        )
     return lines
 
 
@@ -213,8 +244,27 @@ def simulated(gridmerge: pathlib.Path, folder: pathlib.Path) -> Domain:
     domain = Domain("simulated", [], [])
     for kind, drift in SIMULATED:
         where = folder / f"{kind}-{drift}"
-        subprocess.run([gridmerge, "simulate", "--kind", kind, "--robots", "3", "--overlap", "0.6", "--drift", str(drift),
-                        "--seed", "5", "-o", where, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(
+            [
+                gridmerge,
+                "simulate",
+                "--kind",
+                kind,
+                "--robots",
+                "3",
+                "--overlap",
+                "0.6",
+                "--drift",
+                str(drift),
+                "--seed",
+                "5",
+                "-o",
+                where,
+                "--quiet",
+            ],
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
         maps = sorted(where.glob("robot_*.yaml"))
         domain.teams.append(maps)
         domain.pairs += [(maps[0], maps[1]), (maps[1], maps[2])]
@@ -234,13 +284,17 @@ def real(data: pathlib.Path, limit: int) -> list[Domain]:
         teams = [sorted(team.glob("*.yaml"))[:3] for team in sorted((data / name / "sets").glob("*"))[:limit]]
         if not teams:  # three maps of each building
             buildings = {path.name.split("_")[0] for pair in pairs for path in pair}
-            teams = [sorted(table.parent.glob(f"{building}_[0-9]*.yaml"))[:3] for building in sorted(buildings)]
+            teams = [
+                sorted(table.parent.glob(f"{building}_[0-9]*.yaml"))[:3] for building in sorted(buildings)
+            ]
         domains.append(Domain(name, pairs, teams))
     return domains
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--gridmerge", type=pathlib.Path, required=True)
     parser.add_argument("--output", type=pathlib.Path, required=True)
     parser.add_argument("--data", type=pathlib.Path)
@@ -260,13 +314,20 @@ def main() -> None:
             runner = Runner(arguments.gridmerge, folder)
             maps = list(dict.fromkeys(path for pair in domain.pairs for path in pair))
             changes = list(pool.map(runner.change_of_itself, maps))
-            for found in pool.map(runner.changes_of_pair, range(len(domain.pairs)), *zip(*domain.pairs, strict=True)):
+            for found in pool.map(
+                runner.changes_of_pair, range(len(domain.pairs)), *zip(*domain.pairs, strict=True)
+            ):
                 changes += found
             for found in pool.map(runner.changes_of_team, range(len(domain.teams)), domain.teams):
                 changes += found
             order = list(dict.fromkeys(change.name for change in changes))
             changes.sort(key=lambda change: order.index(change.name))
-            lines += ["", f"**{domain.name}**, {len(domain.pairs)} pairs, {len(domain.teams)} teams", "", *summary(changes)]
+            lines += [
+                "",
+                f"**{domain.name}**, {len(domain.pairs)} pairs, {len(domain.teams)} teams",
+                "",
+                *summary(changes),
+            ]
     text = "\n".join(lines[1:]) + "\n"
     (arguments.output / "steady.md").write_text(text)
     print(text)

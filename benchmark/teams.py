@@ -32,10 +32,29 @@ def draw_teams(count: int) -> list[tuple[str, list[str]]]:
     for i in range(count):
         kind = KINDS[i % len(KINDS)]
         size = "16x12" if kind == "apartment" else f"{dice.randint(30, 70)}x{dice.randint(20, 40)}"
-        teams.append((kind, [
-            "--kind", kind, "--size", size, "--robots", str(dice.choice([4, 6, 8])), "--overlap",
-            str(dice.choice([0.2, 0.3, 0.4, 0.6])), "--drift", str(dice.choice([0, 0.3, 1, 2])), "--others", str(STRANGERS),
-            "--resolution", dice.choice(["0.05", "0.1"]), "--seed", str(1000 + i)]))
+        teams.append(
+            (
+                kind,
+                [
+                    "--kind",
+                    kind,
+                    "--size",
+                    size,
+                    "--robots",
+                    str(dice.choice([4, 6, 8])),
+                    "--overlap",
+                    str(dice.choice([0.2, 0.3, 0.4, 0.6])),
+                    "--drift",
+                    str(dice.choice([0, 0.3, 1, 2])),
+                    "--others",
+                    str(STRANGERS),
+                    "--resolution",
+                    dice.choice(["0.05", "0.1"]),
+                    "--seed",
+                    str(1000 + i),
+                ],
+            )
+        )
     return teams
 
 
@@ -49,8 +68,10 @@ def make(gridmerge: str, folder: pathlib.Path, options: list[str]) -> bool:
 
 def read_truth(folder: pathlib.Path) -> dict[str, tuple[Pose, float]]:
     with (folder / "sets.tsv").open(newline="") as file:
-        return {row["map"]: ((float(row["x"]), float(row["y"]), float(row["theta"])), float(row["tolerance"]))
-                for row in csv.DictReader(file, delimiter="\t")}
+        return {
+            row["map"]: ((float(row["x"]), float(row["y"]), float(row["theta"])), float(row["tolerance"]))
+            for row in csv.DictReader(file, delimiter="\t")
+        }
 
 
 def right_members(own: dict[str, Pose], truth: dict[str, tuple[Pose, float]]) -> set[str]:
@@ -70,7 +91,9 @@ def right_members(own: dict[str, Pose], truth: dict[str, tuple[Pose, float]]) ->
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("gridmerge")
     parser.add_argument("output", type=pathlib.Path)
     parser.add_argument("--teams", type=int, default=120)
@@ -79,15 +102,23 @@ def main() -> None:
     teams = draw_teams(arguments.teams)
     folders = [arguments.output / str(i) for i in range(len(teams))]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        made = list(pool.map(lambda job: make(arguments.gridmerge, job[0], job[1][1]), zip(folders, teams)))
+        made = list(
+            pool.map(
+                lambda job: make(arguments.gridmerge, job[0], job[1][1]), zip(folders, teams, strict=True)
+            )
+        )
 
-    counts = {kind: dict.fromkeys(("teams", "maps", "right", "wrong", "strangers joined"), 0) for kind in KINDS}
+    counts = {
+        kind: dict.fromkeys(("teams", "maps", "right", "wrong", "strangers joined"), 0) for kind in KINDS
+    }
     judged = []
-    for (kind, _), folder, is_made in zip(teams, folders, made):
+    for (kind, _), folder, is_made in zip(teams, folders, made, strict=True):
         if not is_made:
             continue
         truth = read_truth(folder)
-        maps = [folder / name for name in truth] + [folder / f"elsewhere_{i + 1}.yaml" for i in range(STRANGERS)]
+        maps = [folder / name for name in truth] + [
+            folder / f"elsewhere_{i + 1}.yaml" for i in range(STRANGERS)
+        ]
         command = [arguments.gridmerge, "merge", "-o", folder / "merged", "--quiet", *maps, *merge_options]
         subprocess.run([str(word) for word in command], stdout=subprocess.DEVNULL)
         count = counts[kind]
@@ -95,8 +126,7 @@ def main() -> None:
         count["maps"] += len(truth)
         for component in json.loads((folder / "merged" / "transforms.json").read_text())["components"]:
             members = {pathlib.Path(member["source"]).name: member for member in component["members"]}
-            own = {name: read_pose(member["transform"])
-                   for name, member in members.items() if name in truth}
+            own = {name: read_pose(member["transform"]) for name, member in members.items() if name in truth}
             right = right_members(own, truth) if len(own) > 1 else set()
             count["right"] += len(right)
             count["wrong"] += len(own) - len(right)
@@ -105,7 +135,8 @@ def main() -> None:
 
     counts["all"] = {key: sum(count[key] for count in counts.values()) for key in counts["office"]}
     counts["all but " + " and ".join(ALIKE)] = {
-        key: counts["all"][key] - sum(counts[kind][key] for kind in ALIKE) for key in counts["office"]}
+        key: counts["all"][key] - sum(counts[kind][key] for kind in ALIKE) for key in counts["office"]
+    }
     print("| kind | " + " | ".join(counts["office"]) + " |\n|" + " --- |" * 6)
     for kind, count in counts.items():
         print(f"| {kind} | " + " | ".join(str(value) for value in count.values()) + " |")
@@ -113,8 +144,10 @@ def main() -> None:
     for low, high in ((0.0, 0.9), (0.9, 0.95), (0.95, 0.98), (0.98, 0.99), (0.99, 0.999), (0.999, 1.01)):
         inside = [(p, is_right) for p, is_right in judged if p is not None and low <= p < high]
         if inside:
-            print(f"| {low} to {min(high, 1.0)} | {len(inside)} | {sum(p for p, _ in inside) / len(inside):.3f} "
-                  f"| {sum(is_right for _, is_right in inside) / len(inside):.2f} |")
+            print(
+                f"| {low} to {min(high, 1.0)} | {len(inside)} | {sum(p for p, _ in inside) / len(inside):.3f} "
+                f"| {sum(is_right for _, is_right in inside) / len(inside):.2f} |"
+            )
 
 
 if __name__ == "__main__":

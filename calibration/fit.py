@@ -4,17 +4,18 @@
 
 usage: calibration/fit.py                 the model, as src/match/verdict_model.hpp has it
        calibration/fit.py --folds         every domain left out in turn, as docs/verdict.md has it
-       calibration/fit.py --pack FOLDER   writes calibration/cases.tsv.gz from FOLDER/features (calibration/make_cases.py)
+       calibration/fit.py --pack FOLDER   writes calibration/cases.tsv.gz from FOLDER/features
+                                          (calibration/make_cases.py)
 
 The model is a nested logit. Which of a pair's hypotheses is the best: each has the rank weights . terms, and the share
 exp(rank) of the sum of all. Whether the best one is to be believed: the log-odds bias + weights . terms. A hypothesis's
-probability is its share times that belief. Names and values of the terms come from the engine: the columns "rank: ..." and
-"term: ..." of `gridmerge evaluate --features`. One of the latter, how far a hypothesis stands out, comes from the engine's own
-ranking, so that features have to be written anew when that has changed.
-Fitted by penalised maximum likelihood (projected Newton steps), first the ranking, then the belief; a weight stays within its
-bounds, so that what speaks for a pose never counts against it. Laser, hand-held and simulated maps weigh the same, in each of
-these kinds every domain, and in each domain true pairs as much as unrelated ones. Needs numpy; the same cases give the same
-digits.
+probability is its share times that belief. Names and values of the terms come from the engine: the columns "rank: ..."
+and "term: ..." of `gridmerge evaluate --features`. One of the latter, how far a hypothesis stands out, comes from the
+engine's own ranking, so that features have to be written anew when that has changed.
+Fitted by penalised maximum likelihood (projected Newton steps), first the ranking, then the belief; a weight stays
+within its bounds, so that what speaks for a pose never counts against it. Laser, hand-held and simulated maps weigh the
+same, in each of these kinds every domain, and in each domain true pairs as much as unrelated ones. Needs numpy; the
+same cases give the same digits.
 """
 
 import argparse
@@ -31,8 +32,8 @@ CASES = HERE / "cases.tsv.gz"
 TERM, RANK = "term: ", "rank: "
 STANDS_OUT = "stands out"  # the term that tells the share: the logarithm of its odds
 RIDGE = 1.0  # on weights of terms that are scaled to unit variance
-# Corners fit corners, plain rooms fit plain rooms, and corridors slide: of these the cases hold too few. So weights are this
-# at least, and more is added to one than was fitted.
+# Corners fit corners, plain rooms fit plain rooms, and corridors slide: of these the cases hold too few. So weights are
+# this at least, and more is added to one than was fitted.
 LEAST_WEIGHT = {"tells apart": 1.0, "held": 1.0}
 CAUTION = {"tells apart": 2.0}
 # Hardly a wrong pose has any of it, so the cases alone would give it any weight.
@@ -42,8 +43,19 @@ FEWEST_CASES = 30  # a side with fewer cases weighs less
 NOT_PACKED = {"arena"}  # several poses are equally right there, and the truth names one of them
 KEPT = 8  # hypotheses of a case that are packed, the most probable ones; right ones are kept always
 THRESHOLDS = (0.8, 0.9, 0.95, 0.98)
-REAL = {"aces": "laser", "belgioioso": "laser", "csail": "laser", "edmonton": "laser", "fhw": "laser", "freiburg-101": "laser",
-        "infinite-corridor": "laser", "intel": "laser", "seattle": "laser", "E5": "hand-held", "HIH": "hand-held"}
+REAL = {
+    "aces": "laser",
+    "belgioioso": "laser",
+    "csail": "laser",
+    "edmonton": "laser",
+    "fhw": "laser",
+    "freiburg-101": "laser",
+    "infinite-corridor": "laser",
+    "intel": "laser",
+    "seattle": "laser",
+    "E5": "hand-held",
+    "HIH": "hand-held",
+}
 
 Case = collections.namedtuple("Case", "domain other negative tier terms ranks right")
 Names = collections.namedtuple("Names", "terms ranks")
@@ -55,17 +67,26 @@ def read_cases(path: pathlib.Path) -> tuple[Names, list[Case]]:
     with gzip.open(path, "rt", newline="") as file:
         rows = csv.reader(file, delimiter="\t")
         columns = next(rows)[5:]
-        names = Names(*([name.removeprefix(kind) for name in columns if name.startswith(kind)] for kind in (TERM, RANK)))
+        names = Names(
+            *([name.removeprefix(kind) for name in columns if name.startswith(kind)] for kind in (TERM, RANK))
+        )
         split = 5 + len(names.terms)
         key, part = None, []
         for row in [*rows, None]:
             if row is None or row[0] != key:
                 if part:
                     _, domain, other, tier, _ = part[0][:5]
-                    cases.append(Case(domain, other, part[0][4] == "negative", tier,
-                                      np.array([[float(v) for v in one[5:split]] for one in part]),
-                                      np.array([[float(v) for v in one[split:]] for one in part]),
-                                      np.array([one[4] == "right" for one in part])))
+                    cases.append(
+                        Case(
+                            domain,
+                            other,
+                            part[0][4] == "negative",
+                            tier,
+                            np.array([[float(v) for v in one[5:split]] for one in part]),
+                            np.array([[float(v) for v in one[split:]] for one in part]),
+                            np.array([one[4] == "right" for one in part]),
+                        )
+                    )
                 part = []
             if row is not None:
                 key = row[0]
@@ -85,14 +106,27 @@ def pack(folder: pathlib.Path) -> None:
             for row in csv.DictReader(file, delimiter="\t"):
                 by_pair.setdefault((row["fixed"], row["moving"]), []).append(row)
         for hypotheses in by_pair.values():
-            names = names or [name for kind in (TERM, RANK) for name in hypotheses[0] if name.startswith(kind)]
+            names = names or [
+                name for kind in (TERM, RANK) for name in hypotheses[0] if name.startswith(kind)
+            ]
             number += 1
             for i, row in enumerate(hypotheses):
                 if i < KEPT or row["truth"] == "right":
-                    packed.append([str(number), domain, row.get("other") or domain, row["tier"] or "-", row["truth"],
-                                   *(f"{float(row[name]):.4g}" for name in names)])
+                    packed.append(
+                        [
+                            str(number),
+                            domain,
+                            row.get("other") or domain,
+                            row["tier"] or "-",
+                            row["truth"],
+                            *(f"{float(row[name]):.4g}" for name in names),
+                        ]
+                    )
     with gzip.GzipFile(CASES, "wb", mtime=0) as file:
-        lines = ["\t".join(["case", "domain", "other", "tier", "truth", *names]), *("\t".join(row) for row in packed)]
+        lines = [
+            "\t".join(["case", "domain", "other", "tier", "truth", *names]),
+            *("\t".join(row) for row in packed),
+        ]
         file.write(("\n".join(lines) + "\n").encode())
     print(f"{number} cases, {len(packed)} hypotheses: {CASES}")
 
@@ -132,8 +166,14 @@ def weigh(cases: list[Case]) -> np.ndarray:
     """What each case counts."""
     sides = collections.Counter((case.domain, case.negative) for case in cases)
     domains = collections.Counter(kind_of(domain) for domain in {case.domain for case in cases})
-    return np.array([CASES_A_KIND / domains[kind_of(case.domain)] / max(sides[case.domain, case.negative], FEWEST_CASES)
-                     for case in cases])
+    return np.array(
+        [
+            CASES_A_KIND
+            / domains[kind_of(case.domain)]
+            / max(sides[case.domain, case.negative], FEWEST_CASES)
+            for case in cases
+        ]
+    )
 
 
 def fit_ranks(cases: list[Case]) -> np.ndarray:
@@ -157,7 +197,11 @@ def fit_ranks(cases: list[Case]) -> np.ndarray:
         value = -(weight * np.log(np.maximum(right_sum, 1e-300) / total)).sum() + 0.5 * RIDGE * w @ w
         means = np.zeros((len(cases), x.shape[1]))
         np.add.at(means, owner, x * share[:, None])
-        hessian = x.T @ (x * (weight[owner] * share)[:, None]) - (means * weight[:, None]).T @ means + RIDGE * np.eye(len(w))
+        hessian = (
+            x.T @ (x * (weight[owner] * share)[:, None])
+            - (means * weight[:, None]).T @ means
+            + RIDGE * np.eye(len(w))
+        )
         return value, x.T @ (weight[owner] * (share - of_right)) + RIDGE * w, hessian
 
     return minimise(loss, np.full(x.shape[1], 0.3), np.zeros(x.shape[1]), np.full(x.shape[1], np.inf)) / scale
@@ -173,13 +217,16 @@ def best_of(names: Names, ranks: np.ndarray, case: Case) -> tuple[int, float]:
 def fit(names: Names, cases: list[Case]) -> Model:
     ranks = fit_ranks(cases)
     weight = weigh(cases)
-    best, share = (np.array(part) for part in zip(*(best_of(names, ranks, case) for case in cases)))
-    right = np.array([case.right[i] for case, i in zip(cases, best)])
-    terms = np.array([case.terms[i] for case, i in zip(cases, best)])
+    best, share = (
+        np.array(part) for part in zip(*(best_of(names, ranks, case) for case in cases), strict=True)
+    )
+    right = np.array([case.right[i] for case, i in zip(cases, best, strict=True)])
+    terms = np.array([case.terms[i] for case, i in zip(cases, best, strict=True)])
     scale = terms.std(axis=0) + 1e-12
     x = np.column_stack([np.ones(len(terms)), terms / scale])
-    least = np.array([-np.inf, *(LEAST_WEIGHT.get(name, 0.0) * s for name, s in zip(names.terms, scale))])
-    most = np.array([np.inf, *(MOST_WEIGHT.get(name, np.inf) * s for name, s in zip(names.terms, scale))])
+    scaled = list(zip(names.terms, scale, strict=True))
+    least = np.array([-np.inf, *(LEAST_WEIGHT.get(name, 0.0) * s for name, s in scaled)])
+    most = np.array([np.inf, *(MOST_WEIGHT.get(name, np.inf) * s for name, s in scaled)])
     ridge = np.array([0.0, *([RIDGE] * len(names.terms))])
 
     def loss(w):
@@ -192,7 +239,9 @@ def fit(names: Names, cases: list[Case]) -> Model:
         return value + 0.5 * (ridge * w * w).sum(), x.T @ slope + ridge * w, hessian
 
     w = minimise(loss, np.array([-5.0, *([0.3] * len(names.terms))]), least, most)
-    return Model(float(w[0]), w[1:] / scale + np.array([CAUTION.get(name, 0.0) for name in names.terms]), ranks)
+    return Model(
+        float(w[0]), w[1:] / scale + np.array([CAUTION.get(name, 0.0) for name in names.terms]), ranks
+    )
 
 
 def judge(names: Names, model: Model, cases: list[Case]) -> list[tuple[float, str]]:
@@ -218,15 +267,24 @@ def count(judged, truth, threshold=-1.0) -> int:
 
 
 def row(name: str, judged) -> str:
-    counts = [f"{count(judged, 'wrong', t)} / {count(judged, 'negative', t)} / {count(judged, 'right', t)}" for t in THRESHOLDS]
+    counts = [
+        f"{count(judged, 'wrong', t)} / {count(judged, 'negative', t)} / {count(judged, 'right', t)}"
+        for t in THRESHOLDS
+    ]
     pairs = count(judged, "right") + count(judged, "wrong")
-    return (f"| {name} | {pairs} | {count(judged, 'right')} | {count(judged, 'negative')} | " + " | ".join(counts) +
-            f" | {calibration_error(judged):.3f} |")
+    return (
+        f"| {name} | {pairs} | {count(judged, 'right')} | {count(judged, 'negative')} | "
+        + " | ".join(counts)
+        + f" | {calibration_error(judged):.3f} |"
+    )
 
 
 def folds(names: Names, cases: list[Case]) -> None:
-    print("| left out | pairs | best right | unrelated | " +
-          " | ".join(f"from {t}: wrong / unrelated / right" for t in THRESHOLDS) + " | calibration error |")
+    print(
+        "| left out | pairs | best right | unrelated | "
+        + " | ".join(f"from {t}: wrong / unrelated / right" for t in THRESHOLDS)
+        + " | calibration error |"
+    )
     print("|" + " --- |" * (5 + len(THRESHOLDS)))
     everything, by_group = [], collections.defaultdict(list)
     groups = {domain: REAL.get(domain, domain) for domain in sorted({case.domain for case in cases})}
@@ -241,28 +299,62 @@ def folds(names: Names, cases: list[Case]) -> None:
     print(row("*all folds*", everything))
     for kind in ("laser", "hand-held"):
         seen = [case for case in cases if kind not in (REAL.get(case.domain), REAL.get(case.other))]
-        print(row(f"*all {kind} maps at once*", judge(names, fit(names, seen), [c for c in cases if REAL.get(c.domain) == kind])))
+        print(
+            row(
+                f"*all {kind} maps at once*",
+                judge(names, fit(names, seen), [c for c in cases if REAL.get(c.domain) == kind]),
+            )
+        )
     seen = [case for case in cases if case.domain not in REAL]
-    print(row("*all real maps at once*", judge(names, fit(names, seen), [case for case in cases if case.domain in REAL])))
+    print(
+        row(
+            "*all real maps at once*",
+            judge(names, fit(names, seen), [case for case in cases if case.domain in REAL]),
+        )
+    )
 
 
 def header(names: Names, model: Model) -> str:
     def weights(array: str, of: str, table) -> list[str]:
         rows = [f'    VerdictWeight{{"{name}", {weight:.3f}}},' for name, weight in table]
-        return [f"/// In the order of {of}().", "// clang-format off", f"inline constexpr std::array {array}{{", *rows, "};",
-                "// clang-format on", ""]
+        return [
+            f"/// In the order of {of}().",
+            "// clang-format off",
+            f"inline constexpr std::array {array}{{",
+            *rows,
+            "};",
+            "// clang-format on",
+            "",
+        ]
 
-    lines = ["// SPDX-License-Identifier: Apache-2.0", "// Made by calibration/fit.py; not to be changed by hand.", "#pragma once", "",
-             "#include <array>", "", "namespace gridmerge::internal {", "", "/// A term of verdict_terms() or rank_terms(), and what it weighs.",
-             "struct VerdictWeight {", "  const char* term;", "  double weight;", "};", "",
-             f"inline constexpr double kVerdictBias = {model.bias:.3f};", "",
-             *weights("kVerdictWeights", "verdict_terms", zip(names.terms, model.terms)),
-             *weights("kRankWeights", "rank_terms", zip(names.ranks, model.ranks)), "}  // namespace gridmerge::internal"]
+    lines = [
+        "// SPDX-License-Identifier: Apache-2.0",
+        "// Made by calibration/fit.py; not to be changed by hand.",
+        "#pragma once",
+        "",
+        "#include <array>",
+        "",
+        "namespace gridmerge::internal {",
+        "",
+        "/// A term of verdict_terms() or rank_terms(), and what it weighs.",
+        "struct VerdictWeight {",
+        "  const char* term;",
+        "  double weight;",
+        "};",
+        "",
+        f"inline constexpr double kVerdictBias = {model.bias:.3f};",
+        "",
+        *weights("kVerdictWeights", "verdict_terms", zip(names.terms, model.terms, strict=True)),
+        *weights("kRankWeights", "rank_terms", zip(names.ranks, model.ranks, strict=True)),
+        "}  // namespace gridmerge::internal",
+    ]
     return "\n".join(lines) + "\n"
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--folds", action="store_true")
     parser.add_argument("--pack", type=pathlib.Path, metavar="FOLDER")
     arguments = parser.parse_args()

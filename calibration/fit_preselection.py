@@ -100,12 +100,16 @@ def fit(terms: np.ndarray, joined: np.ndarray, ridge: float = 1.0) -> np.ndarray
                 (z * (p * (1 - p))[:, None]).T @ z + penalty, z.T @ (p - joined) + penalty @ weights
             )
             weights -= step * min(1.0, 3.0 / max(np.abs(step).max(), 1e-12))
-        wrong = [(abs(weight), term) for weight, term in zip(weights, used) if SIGNS[term] * weight < 0]
+        wrong = [
+            (abs(weight), term)
+            for weight, term in zip(weights[:-1], used, strict=True)
+            if SIGNS[term] * weight < 0
+        ]
         if not wrong:
             break
         used.remove(max(wrong)[1])
     result = np.zeros(terms.shape[1] + 1)
-    for weight, term in zip(weights, used):
+    for weight, term in zip(weights[:-1], used, strict=True):
         result[term] = weight / spread[term]
     result[-1] = weights[-1] - sum(result[term] * mean[term] for term in used)
     return result
@@ -179,7 +183,8 @@ def main() -> None:
         for recall in (0.9, 0.95, 0.98, 0.99, 1.0):
             least = np.quantile(log_odds[part[1]], 1 - recall, method="lower")
             print(
-                f"  {100 * recall:.0f} % of the joined reach what {100 * np.mean(log_odds[part[2]] >= least):.2f} % of the unrelated do"
+                f"  {100 * recall:.0f} % of the joined reach what "
+                f"{100 * np.mean(log_odds[part[2]] >= least):.2f} % of the unrelated do"
             )
         keep = part[1] | part[2]
         p = 1 / (1 + np.exp(-log_odds[keep] - shift_of(log_odds[keep], share)))
@@ -195,7 +200,8 @@ def main() -> None:
         ):
             inside = (p >= low) & (p < high)
             print(
-                f"  {low:g} to {min(high, 1):g}: {inside.sum()} pairs, expected {p[inside].sum():.2f}, true {part[1][keep][inside].sum()}"
+                f"  {low:g} to {min(high, 1):g}: {inside.sum()} pairs, "
+                f"expected {p[inside].sum():.2f}, true {part[1][keep][inside].sum()}"
             )
 
 

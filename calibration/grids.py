@@ -22,7 +22,7 @@ Pose = tuple[float, float, float]
 class Grid:
     cells: np.ndarray  # OCCUPIED, FREE or UNKNOWN
     resolution: float  # [m]
-    x: float           # lower-left corner of the lower-left cell [m]
+    x: float  # lower-left corner of the lower-left cell [m]
     y: float
 
     @property
@@ -71,22 +71,30 @@ def write_grid(path: pathlib.Path, grid: Grid) -> None:
     height, width = grid.cells.shape
     image = path.with_suffix(".pgm")
     image.write_bytes(f"P5\n{width} {height}\n255\n".encode() + grid.cells[::-1].tobytes())
-    path.write_text(f"image: {image.name}\nresolution: {grid.resolution}\norigin: [{float(grid.x)!r}, {float(grid.y)!r}, 0.0]\n"
-                    "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n")
+    path.write_text(
+        f"image: {image.name}\nresolution: {grid.resolution}\norigin: [{float(grid.x)!r}, {float(grid.y)!r}, 0.0]\n"
+        "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
 
 
 def cropped(grid: Grid) -> Grid:
     """The part that holds all that is known; the frame stays."""
     rows, columns = np.nonzero(grid.known.any(axis=1))[0], np.nonzero(grid.known.any(axis=0))[0]
-    cells = grid.cells[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1].copy()  # lets go of the rest
-    return Grid(cells, grid.resolution, round(grid.x + columns[0] * grid.resolution, 6),
-                round(grid.y + rows[0] * grid.resolution, 6))
+    cells = grid.cells[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].copy()  # lets go of the rest
+    return Grid(
+        cells,
+        grid.resolution,
+        round(grid.x + columns[0] * grid.resolution, 6),
+        round(grid.y + rows[0] * grid.resolution, 6),
+    )
 
 
 def centres(grid: Grid, mask: np.ndarray) -> np.ndarray:
     """Where the cells of `mask` are [m], one a row."""
     rows, columns = np.nonzero(mask)
-    return np.column_stack([grid.x + (columns + 0.5) * grid.resolution, grid.y + (rows + 0.5) * grid.resolution])
+    return np.column_stack(
+        [grid.x + (columns + 0.5) * grid.resolution, grid.y + (rows + 0.5) * grid.resolution]
+    )
 
 
 def at(grid: Grid, layer: np.ndarray, points: np.ndarray) -> np.ndarray:
@@ -106,7 +114,7 @@ def widened(layer: np.ndarray, radius: int) -> np.ndarray:
     for dy in range(-radius, radius + 1):
         for dx in range(-radius, radius + 1):
             if dx * dx + dy * dy <= radius * radius:
-                result |= padded[radius + dy:radius + dy + height, radius + dx:radius + dx + width]
+                result |= padded[radius + dy : radius + dy + height, radius + dx : radius + dx + width]
     return result
 
 

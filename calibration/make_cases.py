@@ -32,13 +32,28 @@ import os
 import pathlib
 import random
 import subprocess
-import sys
 
-KINDS = ["office", "hall", "warehouse", "apartment", "symmetric", "loop", "curved", "outdoor",
-         "corridor", "arena", "maze", "bare"]
+KINDS = [
+    "office",
+    "hall",
+    "warehouse",
+    "apartment",
+    "symmetric",
+    "loop",
+    "curved",
+    "outdoor",
+    "corridor",
+    "arena",
+    "maze",
+    "bare",
+]
 # Least and most of width and height [m].
-SIZES = {"apartment": ((10, 22), (8, 16)), "corridor": ((35, 120), (10, 25)), "arena": ((8, 25), (8, 25)),
-         "maze": ((8, 30), (8, 25))}
+SIZES = {
+    "apartment": ((10, 22), (8, 16)),
+    "corridor": ((35, 120), (10, 25)),
+    "arena": ((8, 25), (8, 25)),
+    "maze": ((8, 30), (8, 25)),
+}
 SIZE = ((22, 75), (16, 45))
 ROBOTS = 3
 OVERLAPS = [0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.75, 0.9]  # on average over a building's robots
@@ -46,7 +61,8 @@ LARGER = [0.3, 0.5, 0.7, 0.9]  # tried one after the other where the wanted one 
 SAME_KIND, OTHER_KIND = 3, 1  # unrelated pairs for each map
 CASE = ["fixed", "moving", "truth", "kind", "domain", "other"]
 PAIR = ["fixed", "moving", "x", "y", "theta", "tolerance", "tier", "overlap"]
-TEXTS = {"kind", "other", "fixed", "moving", "tier", "hypothesis", "truth", "reason"}  # all other columns are figures
+# All other columns are figures.
+TEXTS = {"kind", "other", "fixed", "moving", "tier", "hypothesis", "truth", "reason"}
 
 Row = dict[str, str]
 
@@ -66,17 +82,23 @@ def write_rows(path: pathlib.Path, columns: list[str], rows: list[Row]) -> None:
 
 # Simulated buildings
 
+
 def draw_options(kind: str, dice: random.Random) -> dict[str, str]:
     """The options of one building."""
     width, height = (dice.uniform(*side) for side in SIZES.get(kind, SIZE))
     options = {
-        "--kind": kind, "--size": f"{width:.1f}x{height:.1f}", "--robots": str(ROBOTS), "--others": "0",
+        "--kind": kind,
+        "--size": f"{width:.1f}x{height:.1f}",
+        "--robots": str(ROBOTS),
+        "--others": "0",
         "--overlap": f"{dice.choice(OVERLAPS)}",
         "--drift": f"{dice.choice([0.0, dice.uniform(0, 0.5), dice.uniform(0.5, 2.0), dice.uniform(1.0, 3.5)]):.2f}",
-        "--clutter": f"{dice.uniform(0, 2):.2f}", "--noise": f"{dice.uniform(0.005, 0.04):.3f}",
+        "--clutter": f"{dice.uniform(0, 2):.2f}",
+        "--noise": f"{dice.uniform(0.005, 0.04):.3f}",
         "--resolution": dice.choice(["0.025", "0.05", "0.05", "0.1", "0.1"]),
         "--range": f"{math.exp(dice.uniform(math.log(3), math.log(30))):.1f}",
-        "--angular-step": dice.choice(["0.25", "0.5", "1", "2", "4"]), "--seed": str(dice.randrange(1 << 32)),
+        "--angular-step": dice.choice(["0.25", "0.5", "1", "2", "4"]),
+        "--seed": str(dice.randrange(1 << 32)),
     }
     if dice.random() < 1 / 3:
         options["--tidy"] = f"{dice.uniform(0.02, 0.1):.2f}"
@@ -93,15 +115,20 @@ def make_building(gridmerge: str, folder: pathlib.Path, options: dict[str, str])
         overlap = float(options["--overlap"])
         for one in [overlap, *(larger for larger in LARGER if larger > overlap)]:
             words = [word for option in (options | {"--overlap": str(one)}).items() for word in option]
-            made = subprocess.run([gridmerge, "simulate", "-o", folder, "--threads", "1", "--quiet", *words],
-                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            made = subprocess.run(
+                [gridmerge, "simulate", "-o", folder, "--threads", "1", "--quiet", *words],
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
             if made.returncode == 0:
                 break
         done.write_text(wanted)
     return (folder / "pairs.tsv").exists()
 
 
-def make_buildings(gridmerge: str, output: pathlib.Path, count: int, seed: int, jobs: int) -> dict[str, dict[str, str]]:
+def make_buildings(
+    gridmerge: str, output: pathlib.Path, count: int, seed: int, jobs: int
+) -> dict[str, dict[str, str]]:
     """All buildings that can be had, as <kind>/<building>, and the resolution of each."""
     wanted = {}
     for kind in KINDS:
@@ -109,7 +136,7 @@ def make_buildings(gridmerge: str, output: pathlib.Path, count: int, seed: int, 
         wanted |= {f"{kind}/{kind}_{i}": draw_options(kind, dice) for i in range(count)}
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         made = list(pool.map(lambda one: make_building(gridmerge, output / one[0], one[1]), wanted.items()))
-    return {name: options for (name, options), there in zip(wanted.items(), made) if there}
+    return {name: options for (name, options), there in zip(wanted.items(), made, strict=True) if there}
 
 
 def kind_of(name: str) -> str:
@@ -118,7 +145,12 @@ def kind_of(name: str) -> str:
 
 def case(row: Row, truth: str, kind: str) -> Row:
     """A line of a table, whose maps are named <kind>/<building>/<robot>."""
-    return row | {"truth": truth, "kind": kind, "domain": kind_of(row["fixed"]), "other": kind_of(row["moving"])}
+    return row | {
+        "truth": truth,
+        "kind": kind,
+        "domain": kind_of(row["fixed"]),
+        "other": kind_of(row["moving"]),
+    }
 
 
 def cases_within(output: pathlib.Path, building: str) -> list[Row]:
@@ -144,13 +176,18 @@ def cases_between(buildings: dict[str, dict[str, str]], dice: random.Random) -> 
             for kind, pool, count in (("same_kind", same, SAME_KIND), ("other_kind", foreign, OTHER_KIND)):
                 for other in dice.sample(pool, min(count, len(pool))):
                     moving = f"{other}/robot_{dice.randint(1, ROBOTS)}.yaml"
-                    cases.append(case({"fixed": f"{building}/robot_{robot}.yaml", "moving": moving}, "negative", kind))
+                    cases.append(
+                        case({"fixed": f"{building}/robot_{robot}.yaml", "moving": moving}, "negative", kind)
+                    )
     return cases
 
 
 def write_cases(folder: pathlib.Path, root: pathlib.Path, cases: list[Row]) -> None:
     """The tables of one domain. Its maps are named relative to `root`, and in the tables to `folder`."""
-    cases = [row | {side: os.path.relpath(root / row[side], folder) for side in ("fixed", "moving")} for row in cases]
+    cases = [
+        row | {side: os.path.relpath(root / row[side], folder) for side in ("fixed", "moving")}
+        for row in cases
+    ]
     write_rows(folder / "pairs.tsv", PAIR, [row for row in cases if row["truth"] == "pair"])
     write_rows(folder / "negatives.tsv", CASE[:2], [row for row in cases if row["truth"] == "negative"])
     write_rows(folder / "cases.tsv", CASE, cases)
@@ -184,12 +221,14 @@ def counts(cases: list[Row]) -> str:
 
 # Real buildings
 
+
 def real_cases(folder: pathlib.Path) -> list[Row]:
     truths = {(row["fixed"], row["moving"]): row for row in read_rows(folder / "pairs.tsv")}
     return [truths.get((row["fixed"], row["moving"]), {}) | row for row in read_rows(folder / "cases.tsv")]
 
 
 # Features
+
 
 def compact(row: Row, known: Row, folder: pathlib.Path, root: pathlib.Path) -> Row:
     """With what is known of the pair before it, maps named relative to `root`, and figures in six digits."""
@@ -198,12 +237,28 @@ def compact(row: Row, known: Row, folder: pathlib.Path, root: pathlib.Path) -> R
     return {"kind": known["kind"], "other": known["other"]} | entries | names
 
 
-def write_features(gridmerge: str, folder: pathlib.Path, root: pathlib.Path, path: pathlib.Path, jobs: int) -> None:
+def write_features(
+    gridmerge: str, folder: pathlib.Path, root: pathlib.Path, path: pathlib.Path, jobs: int
+) -> None:
     """Of the tables in a folder, whose maps are in `root`."""
     found = folder / "features.tsv"
     path.parent.mkdir(parents=True, exist_ok=True)
-    subprocess.run([gridmerge, "evaluate", folder / "pairs.tsv", "--negatives", folder / "negatives.tsv",
-                    "--features", found, "--quiet", "--threads", str(jobs)], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        [
+            gridmerge,
+            "evaluate",
+            folder / "pairs.tsv",
+            "--negatives",
+            folder / "negatives.tsv",
+            "--features",
+            found,
+            "--quiet",
+            "--threads",
+            str(jobs),
+        ],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
     known = {(row["fixed"], row["moving"]): row for row in read_rows(folder / "cases.tsv")}
     rows = [compact(row, known[row["fixed"], row["moving"]], folder, root) for row in read_rows(found)]
     if rows:
@@ -211,7 +266,9 @@ def write_features(gridmerge: str, folder: pathlib.Path, root: pathlib.Path, pat
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("gridmerge")
     parser.add_argument("output", type=pathlib.Path)
     parser.add_argument("--buildings", type=int, default=50, help="of each kind")
@@ -219,7 +276,9 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--unrelated", type=int, default=130, help="unrelated pairs of each domain")
     parser.add_argument("--domains", help="write features of these only")
-    parser.add_argument("--real", type=pathlib.Path, metavar="FOLDER", help="of calibration/make_real_cases.py")
+    parser.add_argument(
+        "--real", type=pathlib.Path, metavar="FOLDER", help="of calibration/make_real_cases.py"
+    )
     parser.add_argument("--keep", action="store_true", help="features that are there are not written again")
     arguments = parser.parse_args()
     gridmerge, output = arguments.gridmerge, arguments.output
@@ -247,6 +306,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    if sys.version_info < (3, 9):
-        sys.exit("make_cases: needs Python 3.9 or newer")
     main()

@@ -35,7 +35,7 @@ from pieces import BENT, GAP, Map, Relation, cut_apart, cut_overlapping, least_a
 LASER_PIECES, BENT_PIECES = 400, 300
 NEGATIVES = {"same_building": 1500, "cross_piece": 3000, "cross": 6000}
 OVERLAPS = (0.05, 0.9)
-LEAST_OVERLAP = 0.03    # of two members of a set
+LEAST_OVERLAP = 0.03  # of two members of a set
 TIERS = (("A", 20.0, 0.8), ("B", 7.5, 0.6), ("C", 0.0, 0.0))  # shared wall [m], share of it that matches
 
 
@@ -57,6 +57,7 @@ class TrueCase(Case):
 
 
 # What is there
+
 
 def read_rows(path: pathlib.Path) -> list[dict[str, str]]:
     with path.open(newline="") as file:
@@ -84,24 +85,41 @@ def read_relations(data: pathlib.Path, maps: dict[str, Map]) -> list[Relation]:
     marks = collections.defaultdict(list)
     for row in read_rows(data / "halmstad/marks.tsv"):
         marks[row["fixed"], row["moving"]].append(
-            tuple(float(row[key]) for key in ("x_fixed", "y_fixed", "x_moving", "y_moving")))
+            tuple(float(row[key]) for key in ("x_fixed", "y_fixed", "x_moving", "y_moving"))
+        )
     relations = []
     for source in ("radish", "halmstad"):
         for row in read_rows(data / source / "pairs.tsv"):
-            relations.append(Relation("pair", maps[f"{source}/{row['fixed']}"], maps[f"{source}/{row['moving']}"],
-                                      pose_of(row), float(row["tolerance"]), row["tier"],
-                                      tuple(marks[row["fixed"], row["moving"]] if source == "halmstad" else ())))
+            relations.append(
+                Relation(
+                    "pair",
+                    maps[f"{source}/{row['fixed']}"],
+                    maps[f"{source}/{row['moving']}"],
+                    pose_of(row),
+                    float(row["tolerance"]),
+                    row["tier"],
+                    tuple(marks[row["fixed"], row["moving"]] if source == "halmstad" else ()),
+                )
+            )
     sets = collections.defaultdict(list)
     for row in read_rows(data / "radish/sets.tsv"):
         sets[row["set"]].append(row)
     for members in sets.values():
         for a, b in itertools.combinations(members, 2):
-            relations.append(Relation("set", maps[f"radish/{a['map']}"], maps[f"radish/{b['map']}"],
-                                      compose(inverse(pose_of(a)), pose_of(b)), float(b["tolerance"])))
+            relations.append(
+                Relation(
+                    "set",
+                    maps[f"radish/{a['map']}"],
+                    maps[f"radish/{b['map']}"],
+                    compose(inverse(pose_of(a)), pose_of(b)),
+                    float(b["tolerance"]),
+                )
+            )
     return relations
 
 
 # True pairs
+
 
 def tier_of(fixed: Grid, moving: Grid, pose: Pose) -> str:
     cells, share = shared_walls(fixed, moving, pose)
@@ -112,8 +130,17 @@ def tier_of(fixed: Grid, moving: Grid, pose: Pose) -> str:
 def true_case(relation: Relation) -> TrueCase:
     fixed, moving = relation.fixed, relation.moving
     tier = relation.tier or tier_of(fixed.grid, moving.grid, relation.pose)
-    return TrueCase(fixed.name, moving.name, relation.kind, relation.domain, relation.domain, relation.pose,
-                    relation.tolerance, tier, overlap(fixed.grid, moving.grid, relation.pose))
+    return TrueCase(
+        fixed.name,
+        moving.name,
+        relation.kind,
+        relation.domain,
+        relation.domain,
+        relation.pose,
+        relation.tolerance,
+        tier,
+        overlap(fixed.grid, moving.grid, relation.pose),
+    )
 
 
 def cut_true_pieces(relations: list[Relation], count: int, seed: str) -> list[Relation]:
@@ -131,6 +158,7 @@ def cut_true_pieces(relations: list[Relation], count: int, seed: str) -> list[Re
 
 # Unrelated pairs
 
+
 def negative(kind: str, a: Map, b: Map) -> Case:
     return Case(a.name, b.name, kind, a.domain, b.domain)
 
@@ -138,10 +166,15 @@ def negative(kind: str, a: Map, b: Map) -> Case:
 def same_building(relations: list[Relation], count: int, seed: str) -> tuple[list[Case], list[Map]]:
     """Of one domain: members of sets that share no place, then pieces; and the pieces' maps."""
     dice, maps = random.Random(seed), []
-    cases = [negative("same_building", relation.fixed, relation.moving) for relation in relations
-             if relation.kind == "set" and places_apart(relation, GAP)]
-    selves = [Relation("self", a, a, (0.0, 0.0, 0.0), 0.5)
-              for a in {relation.fixed.name: relation.fixed for relation in relations}.values()]
+    cases = [
+        negative("same_building", relation.fixed, relation.moving)
+        for relation in relations
+        if relation.kind == "set" and places_apart(relation, GAP)
+    ]
+    selves = [
+        Relation("self", a, a, (0.0, 0.0, 0.0), 0.5)
+        for a in {relation.fixed.name: relation.fixed for relation in relations}.values()
+    ]
     for share in (1.0, 0.5):  # small buildings do not hold two pieces of full size
         for _ in range(2 * count):
             if len(cases) >= count:
@@ -163,7 +196,9 @@ def fair_shares(available: dict, total: int) -> dict:
     return shares
 
 
-def cross_pairs(kind: str, maps: list[Map], pieces: list[Map], total: int, listed: list[Case], seed: str) -> list[Case]:
+def cross_pairs(
+    kind: str, maps: list[Map], pieces: list[Map], total: int, listed: list[Case], seed: str
+) -> list[Case]:
     """Pairs of maps of two buildings, each two buildings about as often. Those that are listed come first. If there are
     pieces, one of the two is one at least."""
     dice, by_domain = random.Random(seed), collections.defaultdict(list)
@@ -172,10 +207,13 @@ def cross_pairs(kind: str, maps: list[Map], pieces: list[Map], total: int, liste
     cut = {one.name for one in pieces}
     fits = {}
     for a, b in itertools.combinations(sorted(by_domain), 2):
-        fits[a, b] = [(p, q) for p in by_domain[a] for q in by_domain[b]
-                      if not cut or p.name in cut or q.name in cut]
+        fits[a, b] = [
+            (p, q) for p in by_domain[a] for q in by_domain[b] if not cut or p.name in cut or q.name in cut
+        ]
     cases = {frozenset((case.fixed, case.moving)): case for case in listed}
-    for domains, count in fair_shares({domains: len(all_of) for domains, all_of in fits.items()}, total).items():
+    for domains, count in fair_shares(
+        {domains: len(all_of) for domains, all_of in fits.items()}, total
+    ).items():
         have = sum({case.domain, case.other} == set(domains) for case in listed)
         for p, q in dice.sample(fits[domains], len(fits[domains])):
             if have >= count:
@@ -198,6 +236,7 @@ def listed_negatives(data: pathlib.Path, maps: dict[str, Map]) -> list[Case]:
 
 # All together
 
+
 def make_cases(data: pathlib.Path, seed: int) -> tuple[list[Map], list[TrueCase], list[Case]]:
     maps = read_maps(data)
     relations = read_relations(data, maps)
@@ -205,12 +244,17 @@ def make_cases(data: pathlib.Path, seed: int) -> tuple[list[Map], list[TrueCase]
     for relation in relations:
         by_domain[relation.domain].append(relation)
 
-    true_cases = [case for case in map(true_case, relations) if case.kind == "pair" or case.overlap >= LEAST_OVERLAP]
+    true_cases = [
+        case for case in map(true_case, relations) if case.kind == "pair" or case.overlap >= LEAST_OVERLAP
+    ]
     pieces, apart_maps, negatives = [], [], []
     listed = listed_negatives(data, maps)
     for domain, its in sorted(by_domain.items()):
-        usable = [relation for relation in its
-                  if overlap(relation.fixed.grid, relation.moving.grid, relation.pose) >= LEAST_OVERLAP]
+        usable = [
+            relation
+            for relation in its
+            if overlap(relation.fixed.grid, relation.moving.grid, relation.pose) >= LEAST_OVERLAP
+        ]
         count = BENT_PIECES // 2 if domain in BENT else math.ceil(LASER_PIECES / (len(by_domain) - len(BENT)))
         cut = cut_true_pieces(usable, count, f"{seed} pieces {domain}")
         true_cases += map(true_case, cut)
@@ -220,11 +264,22 @@ def make_cases(data: pathlib.Path, seed: int) -> tuple[list[Map], list[TrueCase]
         cases, its_maps = same_building(its, wanted, f"{seed} apart {domain}")
         negatives += known + cases
         apart_maps += its_maps
-        print(f"{domain}: {len(cut)} true pairs of pieces, {len(known) + len(cases)} unrelated pairs", flush=True)
+        print(
+            f"{domain}: {len(cut)} true pairs of pieces, {len(known) + len(cases)} unrelated pairs",
+            flush=True,
+        )
     whole = list(maps.values())
-    negatives += cross_pairs("cross", whole, [], NEGATIVES["cross"], [case for case in listed if case.kind == "cross"],
-                             f"{seed} cross")
-    negatives += cross_pairs("cross_piece", whole, pieces, NEGATIVES["cross_piece"], [], f"{seed} cross_piece")
+    negatives += cross_pairs(
+        "cross",
+        whole,
+        [],
+        NEGATIVES["cross"],
+        [case for case in listed if case.kind == "cross"],
+        f"{seed} cross",
+    )
+    negatives += cross_pairs(
+        "cross_piece", whole, pieces, NEGATIVES["cross_piece"], [], f"{seed} cross_piece"
+    )
     return whole + pieces + apart_maps, true_cases, negatives
 
 
@@ -233,16 +288,43 @@ def write_table(path: pathlib.Path, columns: list[str], rows: list[list]) -> Non
     path.write_text("\n".join(lines) + "\n")
 
 
-def write_cases(output: pathlib.Path, maps: list[Map], true_cases: list[TrueCase], negatives: list[Case]) -> None:
+def write_cases(
+    output: pathlib.Path, maps: list[Map], true_cases: list[TrueCase], negatives: list[Case]
+) -> None:
     for one in maps:
         write_grid(output / one.name, one.grid)
-    write_table(output / "pairs.tsv", ["fixed", "moving", "x", "y", "theta", "tolerance", "tier", "overlap"],
-                [[case.fixed, case.moving, *(f"{value:.6f}" for value in (*case.pose, case.tolerance)), case.tier,
-                  f"{case.overlap:.4f}"] for case in true_cases])
-    write_table(output / "negatives.tsv", ["fixed", "moving"], [[case.fixed, case.moving] for case in negatives])
-    write_table(output / "cases.tsv", ["fixed", "moving", "truth", "kind", "domain", "other"],
-                [[case.fixed, case.moving, "pair" if isinstance(case, TrueCase) else "negative", case.kind, case.domain,
-                  case.other] for case in [*true_cases, *negatives]])
+    write_table(
+        output / "pairs.tsv",
+        ["fixed", "moving", "x", "y", "theta", "tolerance", "tier", "overlap"],
+        [
+            [
+                case.fixed,
+                case.moving,
+                *(f"{value:.6f}" for value in (*case.pose, case.tolerance)),
+                case.tier,
+                f"{case.overlap:.4f}",
+            ]
+            for case in true_cases
+        ],
+    )
+    write_table(
+        output / "negatives.tsv", ["fixed", "moving"], [[case.fixed, case.moving] for case in negatives]
+    )
+    write_table(
+        output / "cases.tsv",
+        ["fixed", "moving", "truth", "kind", "domain", "other"],
+        [
+            [
+                case.fixed,
+                case.moving,
+                "pair" if isinstance(case, TrueCase) else "negative",
+                case.kind,
+                case.domain,
+                case.other,
+            ]
+            for case in [*true_cases, *negatives]
+        ],
+    )
 
 
 def summary(true_cases: list[TrueCase], negatives: list[Case]) -> str:
@@ -261,7 +343,9 @@ def summary(true_cases: list[TrueCase], negatives: list[Case]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("output", type=pathlib.Path)
     parser.add_argument("--seed", type=int, default=1)

@@ -8,17 +8,17 @@ import random
 import numpy as np
 from grids import UNKNOWN, Grid, Pose, at, centres, compose, cropped, inverse, transformed
 
-OVERLAP_OFF = 0.04      # a piece's overlap may be this far from the wanted one
-LEAST_WALLS = 0.03      # share of a piece's known cells
-GAP = 3.0               # [m] between what maps know that share no place
-SAMPLES = 6000          # known cells of a map that stand for all while windows are tried
-TRIES = 300             # windows, before another pair of maps is tried
-BENT = ("E5", "HIH")    # domains of maps that are bent
+OVERLAP_OFF = 0.04  # a piece's overlap may be this far from the wanted one
+LEAST_WALLS = 0.03  # share of a piece's known cells
+GAP = 3.0  # [m] between what maps know that share no place
+SAMPLES = 6000  # known cells of a map that stand for all while windows are tried
+TRIES = 300  # windows, before another pair of maps is tried
+BENT = ("E5", "HIH")  # domains of maps that are bent
 
 
 @dataclasses.dataclass(frozen=True)
 class Map:
-    name: str    # relative to the output
+    name: str  # relative to the output
     domain: str
     grid: Grid
 
@@ -26,13 +26,14 @@ class Map:
 @dataclasses.dataclass(frozen=True)
 class Relation:
     """Two maps of one building whose poses are known. Any map is related to itself."""
+
     kind: str
     fixed: Map
     moving: Map
-    pose: Pose             # T_fixed_moving
-    tolerance: float       # [m]
+    pose: Pose  # T_fixed_moving
+    tolerance: float  # [m]
     tier: str = ""
-    marks: tuple = ()      # rows of x, y in the fixed map and x, y in the moving one
+    marks: tuple = ()  # rows of x, y in the fixed map and x, y in the moving one
 
     @property
     def domain(self) -> str:
@@ -42,6 +43,7 @@ class Relation:
 @dataclasses.dataclass(frozen=True)
 class Window:
     """A rectangle whose length is in direction `angle`, or the disc of this diameter."""
+
     x: float
     y: float
     angle: float
@@ -50,7 +52,10 @@ class Window:
     disc: bool
 
     def holds(self, points: np.ndarray) -> np.ndarray:
-        inside = transformed(inverse((self.x, self.y, self.angle)), points) / [0.5 * self.length, 0.5 * self.width]
+        inside = transformed(inverse((self.x, self.y, self.angle)), points) / [
+            0.5 * self.length,
+            0.5 * self.width,
+        ]
         return (inside**2).sum(axis=1) <= 1.0 if self.disc else (np.abs(inside) <= 1.0).all(axis=1)
 
 
@@ -91,7 +96,7 @@ def marks_agree(relation: Relation, fixed: Window, moving: Window) -> bool:
     both = fixed.holds(at_fixed) & moving.holds(at_moving)
     if not both.any():
         return True
-    return float(np.mean(((at_fixed - at_moving)[both]**2).sum(axis=1)))**0.5 <= 0.5 * relation.tolerance
+    return float(np.mean(((at_fixed - at_moving)[both] ** 2).sum(axis=1))) ** 0.5 <= 0.5 * relation.tolerance
 
 
 def turned(window: Window, pose: Pose) -> Window:
@@ -119,7 +124,10 @@ def cut_overlapping(relation: Relation, wanted: float, name: str, dice: random.R
         a = draw_window(in_moving[shared], 1.2 * max(fixed.cells.shape) * fixed.resolution, dice)
         b = draw_window(in_moving, 1.2 * max(moving.cells.shape) * moving.resolution, dice)
         inside_b = b.holds(in_moving)
-        area_a, area_b = share_fixed * np.count_nonzero(a.holds(in_fixed)), share_moving * np.count_nonzero(inside_b)
+        area_a, area_b = (
+            share_fixed * np.count_nonzero(a.holds(in_fixed)),
+            share_moving * np.count_nonzero(inside_b),
+        )
         if min(area_a, area_b) < least:
             continue
         common = share_moving * np.count_nonzero(inside_b & shared & a.holds(in_moving))
@@ -146,15 +154,19 @@ def apart(a: np.ndarray, b: np.ndarray, gap: float) -> bool:
     """Whether no point of the one is within `gap` of a point of the other."""
     a, b = squares_of(a), squares_of(b)
     squares = (a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2.0 * a @ b.T
-    return bool(squares.min() >= (gap + math.sqrt(2.0))**2)
+    return bool(squares.min() >= (gap + math.sqrt(2.0)) ** 2)
 
 
 def gap_of(relation: Relation) -> float:
     """Bent maps may lie as far from the truth as the tolerance says."""
-    return GAP + (relation.tolerance if relation.domain in BENT and relation.fixed is not relation.moving else 0.0)
+    return GAP + (
+        relation.tolerance if relation.domain in BENT and relation.fixed is not relation.moving else 0.0
+    )
 
 
-def draw_facing_windows(points: np.ndarray, gap: float, longest: float, dice: random.Random) -> tuple[Window, Window]:
+def draw_facing_windows(
+    points: np.ndarray, gap: float, longest: float, dice: random.Random
+) -> tuple[Window, Window]:
     """One on each side of a strip of width `gap` through one of the points."""
     x, y = points[dice.randrange(len(points))]
     angle = dice.uniform(0.0, 2.0 * math.pi)
@@ -177,7 +189,10 @@ def cut_apart(relation: Relation, least: float, name: str, dice: random.Random) 
     for _ in range(TRIES // 10):
         # Places are compared by squares of 1 m, so there must be more between them.
         a, b = draw_facing_windows(in_fixed, gap + 3.0, longest, dice)
-        areas = (np.mean(a.holds(in_fixed)) * fixed.known_area, np.mean(b.holds(in_moving)) * moving.known_area)
+        areas = (
+            np.mean(a.holds(in_fixed)) * fixed.known_area,
+            np.mean(b.holds(in_moving)) * moving.known_area,
+        )
         if min(areas) < least:
             continue
         pieces = cut_pair(relation, a, b, least, name)

@@ -10,8 +10,8 @@ Of every pairs.tsv (and negatives.tsv beside it) in DATA or in its folders it sh
     right answers that were refused, and
     with --missed, pairs whose best hypothesis is wrong, and which were refused.
 The two maps lie at the estimated pose, and for wrong answers at the true one too. Below or beside that is what they
-have in common, enlarged. Runs `gridmerge evaluate` into OUTPUT, and `gridmerge match` for the cases shown. --keep takes the
-results of the last run. The pictures show the data, whose licence may not be this project's, so they stay in
+have in common, enlarged. Runs `gridmerge evaluate` into OUTPUT, and `gridmerge match` for the cases shown. --keep takes
+the results of the last run. The pictures show the data, whose licence may not be this project's, so they stay in
 OUTPUT, a build folder. Needs numpy and Pillow.
 """
 
@@ -24,8 +24,20 @@ import pathlib
 import subprocess
 
 import numpy as np
-from overlay import PALETTE, View, all_points, common_points, data_uri, main_direction, picture, scale_bar, view_of
-from grids import Grid, Pose, centres, overlap, read_grid, transformed  # overlay finds it
+from overlay import (
+    PALETTE,
+    View,
+    all_points,
+    common_points,
+    data_uri,
+    main_direction,
+    picture,
+    scale_bar,
+    view_of,
+)
+
+# isort: split
+from grids import Grid, Pose, centres, overlap, read_grid, transformed  # once overlay has told where it is
 
 SECTIONS = {
     "wrong": "Wrong, and accepted",
@@ -42,11 +54,12 @@ class Case:
     folder: pathlib.Path
     fixed: str
     moving: str
-    result: dict                # of evaluate
-    truth: dict[str, str]       # the row of pairs.tsv; empty for unrelated pairs
+    result: dict  # of evaluate
+    truth: dict[str, str]  # the row of pairs.tsv; empty for unrelated pairs
 
 
 # Which cases
+
 
 def read_rows(path: pathlib.Path) -> list[dict[str, str]]:
     with path.open(newline="") as file:
@@ -58,8 +71,16 @@ def evaluate(arguments: argparse.Namespace, folder: pathlib.Path) -> list[dict]:
     name = "_".join(folder.relative_to(arguments.data).parts) or "cases"
     result = arguments.output / f"{name}.json"
     if not (arguments.keep and result.is_file()):
-        command = [arguments.gridmerge, "evaluate", folder / "pairs.tsv", "--json", result, "--quiet",
-                   "--threads", str(arguments.threads)]
+        command = [
+            arguments.gridmerge,
+            "evaluate",
+            folder / "pairs.tsv",
+            "--json",
+            result,
+            "--quiet",
+            "--threads",
+            str(arguments.threads),
+        ]
         if (folder / "negatives.tsv").is_file():
             command += ["--negatives", folder / "negatives.tsv"]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
@@ -91,6 +112,7 @@ def find_cases(arguments: argparse.Namespace) -> tuple[list[Case], int]:
 
 # One case
 
+
 def pose_of(entries: dict) -> Pose:
     return tuple(float(entries[key]) for key in ("x", "y", "theta"))
 
@@ -98,20 +120,30 @@ def pose_of(entries: dict) -> Pose:
 def displacement(moving: Grid, a: Pose, b: Pose) -> float:
     """How far the moving map's known cells are apart at two poses [m], root mean square."""
     cells = centres(moving, moving.known)
-    return float(np.mean(((transformed(a, cells) - transformed(b, cells))**2).sum(axis=1)))**0.5
+    return float(np.mean(((transformed(a, cells) - transformed(b, cells)) ** 2).sum(axis=1))) ** 0.5
 
 
 def match(arguments: argparse.Namespace, case: Case) -> dict:
-    command = [arguments.gridmerge, "match", "--json", "--quiet", "--threads", str(arguments.threads),
-               case.folder / case.fixed, case.folder / case.moving]
+    command = [
+        arguments.gridmerge,
+        "match",
+        "--json",
+        "--quiet",
+        "--threads",
+        str(arguments.threads),
+        case.folder / case.fixed,
+        case.folder / case.moving,
+    ]
     return json.loads(subprocess.run(command, stdout=subprocess.PIPE, text=True).stdout)
 
 
 def figure(caption: str, view: View, fixed: Grid, moving: Grid, pose: Pose) -> str:
     bar = scale_bar(view)
-    return (f'<figure><div class="map"><img src="{data_uri(picture(view, fixed, moving, pose))}" alt="">'
-            f'<span class="bar" style="width:{100 * bar / view.width:.2f}%">{bar:g} m</span></div>'
-            f"<figcaption>{caption}</figcaption></figure>")
+    return (
+        f'<figure><div class="map"><img src="{data_uri(picture(view, fixed, moving, pose))}" alt="">'
+        f'<span class="bar" style="width:{100 * bar / view.width:.2f}%">{bar:g} m</span></div>'
+        f"<figcaption>{caption}</figcaption></figure>"
+    )
 
 
 def figures(case: Case, fixed: Grid, moving: Grid, estimate: Pose, truth: Pose | None) -> str:
@@ -143,7 +175,11 @@ def hypotheses(found: list[dict], moving: Grid, truth: Pose | None, tolerance: f
         probability, score = hypothesis.get("probability"), hypothesis.get("score")
         bar = f'<span style="width:{100 * (probability or 0.0):.1f}%"></span>'
         cells = [shown(probability), "" if score is None else f"{score:.0f}", error]
-        rows.append(f'<tr{mark}><td class="share">{bar}</td>' + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
+        rows.append(
+            f'<tr{mark}><td class="share">{bar}</td>'
+            + "".join(f"<td>{cell}</td>" for cell in cells)
+            + "</tr>"
+        )
     left = len(found) - len(rows)
     more = f'<p class="soft">and {left} more</p>' if left > 0 else ""
     head = "<tr><th></th><th>probability</th><th>score</th><th>error [m]</th></tr>"
@@ -180,15 +216,18 @@ def article(arguments: argparse.Namespace, case: Case) -> str:
     fixed, moving = read_grid(case.folder / case.fixed), read_grid(case.folder / case.moving)
     found = match(arguments, case)
     truth = pose_of(case.truth) if case.truth else None
-    terms = "".join(f"<dt>{name}</dt><dd>{value}</dd>"
-                    for name, value in facts(case, found, fixed, moving, truth).items())
+    terms = "".join(
+        f"<dt>{name}</dt><dd>{value}</dd>" for name, value in facts(case, found, fixed, moving, truth).items()
+    )
     tolerance = case.result["tolerance"] or 0.0
     drawn = figures(case, fixed, moving, pose_of(found["transform"]), truth)
     found_table = hypotheses(found.get("hypotheses", []), moving, truth, tolerance)
-    return (f'<article><h3><span class="fixed">{html.escape(case.fixed)}</span> '
-            f'<span class="moving">{html.escape(case.moving)}</span></h3>'
-            f'<div class="case"><div class="facts"><dl>{terms}</dl>{found_table}</div>'
-            f'<div class="maps">{drawn}</div></div></article>')
+    return (
+        f'<article><h3><span class="fixed">{html.escape(case.fixed)}</span> '
+        f'<span class="moving">{html.escape(case.moving)}</span></h3>'
+        f'<div class="case"><div class="facts"><dl>{terms}</dl>{found_table}</div>'
+        f'<div class="maps">{drawn}</div></div></article>'
+    )
 
 
 # The page
@@ -222,8 +261,14 @@ SCRIPT = """
 for (const map of document.querySelectorAll('.map'))
   map.addEventListener('click', () => map.closest('.case').classList.toggle('large'));
 """
-LEGEND = [(4, "wall of the fixed map"), (5, "wall of the moving map"), (6, "walls that meet, within 0.2 m"),
-          (1, "known to the fixed map"), (2, "known to the moving map"), (3, "known to both")]
+LEGEND = [
+    (4, "wall of the fixed map"),
+    (5, "wall of the moving map"),
+    (6, "walls that meet, within 0.2 m"),
+    (1, "known to the fixed map"),
+    (2, "known to the moving map"),
+    (3, "known to both"),
+]
 
 
 def page(sections: dict[str, list[str]], counts: dict[str, int], total: int, data: pathlib.Path) -> str:
@@ -234,19 +279,26 @@ def page(sections: dict[str, list[str]], counts: dict[str, int], total: int, dat
         left = counts[key] - len(articles)
         more = f'<p class="soft">{left} more are not shown.</p>' if left else ""
         body += f'<h2 id="{key}">{SECTIONS[key]}: {counts[key]}</h2>{"".join(articles)}{more}'
-    return ('<!doctype html><html lang="en"><meta charset="utf-8"><title>Errors of the verdict</title>'
-            f"<style>{STYLE}</style><h1>Errors of the verdict</h1><p>{total} cases of {html.escape(str(data))}. "
-            f'The most probable come first. A click on a map enlarges it; a hypothesis within the tolerance is green.</p><nav>{links}</nav>'
-            f'<p class="legend">{legend}</p>{body}<script>{SCRIPT}</script></html>\n')
+    return (
+        '<!doctype html><html lang="en"><meta charset="utf-8"><title>Errors of the verdict</title>'
+        f"<style>{STYLE}</style><h1>Errors of the verdict</h1><p>{total} cases of {html.escape(str(data))}. "
+        "The most probable come first. A click on a map enlarges it; a hypothesis within the tolerance is green.</p>"
+        f"<nav>{links}</nav>"
+        f'<p class="legend">{legend}</p>{body}<script>{SCRIPT}</script></html>\n'
+    )
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--gridmerge", type=pathlib.Path, required=True)
     parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared/data"))
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("build/errors"))
     parser.add_argument("--keep", action="store_true", help="take the last run's results of evaluate")
-    parser.add_argument("--missed", action="store_true", help="show refused pairs whose best hypothesis is wrong, too")
+    parser.add_argument(
+        "--missed", action="store_true", help="show refused pairs whose best hypothesis is wrong, too"
+    )
     parser.add_argument("--most", type=int, default=150, help="cases of each kind")
     parser.add_argument("--threads", type=int, default=0)
     arguments = parser.parse_args()
@@ -256,7 +308,7 @@ def main() -> None:
     counts = {key: sum(case.section == key for case in cases) for key in SECTIONS}
     sections = {}
     for key in SECTIONS if arguments.missed else list(SECTIONS)[:-1]:
-        drawn = [case for case in cases if case.section == key][:arguments.most]
+        drawn = [case for case in cases if case.section == key][: arguments.most]
         sections[key] = [article(arguments, case) for case in drawn]
     path = arguments.output / "index.html"
     path.write_text(page(sections, counts, total, arguments.data))

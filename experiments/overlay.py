@@ -12,11 +12,11 @@ import numpy as np
 from PIL import Image
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "calibration"))
-from grids import WALL_NEAR, Grid, Pose, at, centres, inverse, transformed, widened  # noqa: E402
+from grids import WALL_NEAR, Grid, Pose, at, centres, inverse, transformed, widened
 
-LONGEST = 1100       # pixels of a picture's longer side
-MARGIN = 1.0         # [m] around the maps
-LEAST_SIDE = 12.0    # [m]
+LONGEST = 1100  # pixels of a picture's longer side
+MARGIN = 1.0  # [m] around the maps
+LEAST_SIDE = 12.0  # [m]
 # Neither knows, the fixed map knows, the moving one, both; walls of the fixed, of the moving, and where they meet.
 PALETTE = ["#ffffff", "#e3eefb", "#fdeedd", "#dcdce4", "#1f63c4", "#e2570b", "#1d1d22"]
 
@@ -24,6 +24,7 @@ PALETTE = ["#ffffff", "#e3eefb", "#fdeedd", "#dcdce4", "#1f63c4", "#e2570b", "#1
 @dataclasses.dataclass(frozen=True)
 class View:
     """A picture's place in the fixed map's frame: its middle, how it is turned, and its sides [m]."""
+
     x: float
     y: float
     angle: float
@@ -38,21 +39,27 @@ class View:
     def pixels(self, points: np.ndarray) -> np.ndarray:
         """Columns and rows; rows grow downwards."""
         local = transformed(inverse((self.x, self.y, self.angle)), points)
-        return np.floor((local * [1, -1] + [0.5 * self.width, 0.5 * self.height]) * self.scale).astype(np.int64)
+        return np.floor((local * [1, -1] + [0.5 * self.width, 0.5 * self.height]) * self.scale).astype(
+            np.int64
+        )
 
     def points(self) -> np.ndarray:
         """The pixels' middles, row by row."""
         columns, rows = self.size
-        x, y = np.meshgrid((np.arange(columns) + 0.5) / self.scale - 0.5 * self.width,
-                           0.5 * self.height - (np.arange(rows) + 0.5) / self.scale)
+        x, y = np.meshgrid(
+            (np.arange(columns) + 0.5) / self.scale - 0.5 * self.width,
+            0.5 * self.height - (np.arange(rows) + 0.5) / self.scale,
+        )
         return transformed((self.x, self.y, self.angle), np.column_stack([x.ravel(), y.ravel()]))
 
 
 def main_direction(walls: np.ndarray, points: np.ndarray) -> float:
     """In which most walls run, to a degree, and in which the points reach farther: so pictures are upright and wide."""
+
     def straightness(angle: float) -> float:
         local = np.floor(transformed((0.0, 0.0, -angle), walls) / 0.2).astype(np.int64)
-        return float(sum((np.bincount(along - along.min()).astype(float)**2).sum() for along in local.T))
+        return float(sum((np.bincount(along - along.min()).astype(float) ** 2).sum() for along in local.T))
+
     angle = max((math.radians(degrees) for degrees in range(90)), key=straightness)
     width, height = np.ptp(transformed((0.0, 0.0, -angle), points), axis=0)
     return angle if width >= height else angle + math.pi / 2
@@ -79,14 +86,20 @@ def layer_in(view: View, grid: Grid, layer: np.ndarray, pose: Pose, points: np.n
 
 def picture(view: View, fixed: Grid, moving: Grid, T_fixed_moving: Pose) -> Image.Image:
     points, here = view.points(), (0.0, 0.0, 0.0)
-    known = [layer_in(view, grid, grid.known, pose, points) for grid, pose in ((fixed, here), (moving, T_fixed_moving))]
-    walls = [layer_in(view, grid, grid.walls, pose, points) for grid, pose in ((fixed, here), (moving, T_fixed_moving))]
+    known = [
+        layer_in(view, grid, grid.known, pose, points)
+        for grid, pose in ((fixed, here), (moving, T_fixed_moving))
+    ]
+    walls = [
+        layer_in(view, grid, grid.walls, pose, points)
+        for grid, pose in ((fixed, here), (moving, T_fixed_moving))
+    ]
     colours = known[0] + 2 * known[1].astype(np.uint8)
     near = max(1, round(WALL_NEAR * view.scale))
     met = (walls[0] & widened(walls[1], near)) | (walls[1] & widened(walls[0], near))
     colours[walls[0]], colours[walls[1]], colours[met] = 4, 5, 6
     image = Image.fromarray(colours.astype(np.uint8), mode="P")
-    image.putpalette([int(colour[i:i + 2], 16) for colour in PALETTE for i in (1, 3, 5)])
+    image.putpalette([int(colour[i : i + 2], 16) for colour in PALETTE for i in (1, 3, 5)])
     return image
 
 
@@ -96,7 +109,9 @@ def common_points(fixed: Grid, moving: Grid, T_fixed_moving: Pose) -> np.ndarray
 
 
 def all_points(fixed: Grid, moving: Grid, T_fixed_moving: Pose) -> np.ndarray:
-    return np.vstack([centres(fixed, fixed.known), transformed(T_fixed_moving, centres(moving, moving.known))])
+    return np.vstack(
+        [centres(fixed, fixed.known), transformed(T_fixed_moving, centres(moving, moving.known))]
+    )
 
 
 def scale_bar(view: View) -> float:

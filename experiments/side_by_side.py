@@ -4,9 +4,9 @@
 
 usage: experiments/side_by_side.py --gridmerge BINARY --output DIR [--data DIR]
 
-Prints the tables of docs/simulator.md and writes DIR/side_by_side.png: real maps above, simulated ones below. Without real
-maps it does the simulated half alone. The picture shows the real maps, whose licence is not this project's; so it stays in
-DIR, a build folder. Needs numpy and matplotlib, and some two minutes.
+Prints the tables of docs/simulator.md and writes DIR/side_by_side.png: real maps above, simulated ones below. Without
+real maps it does the simulated half alone. The picture shows the real maps, whose licence is not this project's; so it
+stays in DIR, a build folder. Needs numpy and matplotlib, and some two minutes.
 """
 
 import argparse
@@ -22,9 +22,9 @@ import sys
 import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.image  # noqa: E402
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
+import matplotlib.image
+import matplotlib.pyplot as plt
+import numpy as np
 
 OCCUPIED, FREE, UNKNOWN = 0, 254, 205
 SEEDS = range(1, 11)
@@ -37,20 +37,38 @@ LASER_KINDS = ("office", "loop", "curved", "hall")
 def hand_held(seed: int) -> dict:
     """A depth camera carried through an office floor: sees narrowly and not far."""
     dice = random.Random(seed)
-    return {"--kind": "office", "--size": "60x30", "--overlap": "0.6", "--drift": "1", "--clutter": "0.3",
-            "--range": f"{dice.uniform(4, 5):.2f}", "--field-of-view": f"{dice.uniform(60, 120):.0f}"}
+    return {
+        "--kind": "office",
+        "--size": "60x30",
+        "--overlap": "0.6",
+        "--drift": "1",
+        "--clutter": "0.3",
+        "--range": f"{dice.uniform(4, 5):.2f}",
+        "--field-of-view": f"{dice.uniform(60, 120):.0f}",
+    }
 
 
 def laser(seed: int) -> dict:
     """A robot with a laser of 180 beams, whose log was put right afterwards: sees far, and sparsely there."""
     dice = random.Random(seed)
-    return {"--kind": LASER_KINDS[seed % len(LASER_KINDS)], "--size": "60x40", "--resolution": "0.1", "--longest-way": "40",
-            "--clutter": "0.5", "--angular-step": "1", "--drift": f"{dice.uniform(0, 0.2):.2f}",
-            "--range": f"{dice.uniform(15, 30):.1f}", "--field-of-view": "180"}
+    return {
+        "--kind": LASER_KINDS[seed % len(LASER_KINDS)],
+        "--size": "60x40",
+        "--resolution": "0.1",
+        "--longest-way": "40",
+        "--clutter": "0.5",
+        "--angular-step": "1",
+        "--drift": f"{dice.uniform(0, 0.2):.2f}",
+        "--range": f"{dice.uniform(15, 30):.1f}",
+        "--field-of-view": "180",
+    }
 
 
 # Each group: its name, metres a cell, the real maps, and the options of the simulated ones.
-GROUPS = [("hand-held", 0.05, "halmstad/E5_[0-9]*.png", hand_held), ("laser", 0.1, "radish/pairs/*/map?.pgm", laser)]
+GROUPS = [
+    ("hand-held", 0.05, "halmstad/E5_[0-9]*.png", hand_held),
+    ("laser", 0.1, "radish/pairs/*/map?.pgm", laser),
+]
 
 
 def read_cells(path: pathlib.Path) -> np.ndarray:
@@ -58,21 +76,40 @@ def read_cells(path: pathlib.Path) -> np.ndarray:
         return np.rint(matplotlib.image.imread(path) * 255).astype(np.uint8)
     data = path.read_bytes()
     _, width, height, _ = data.split(None, 4)[:4]
-    return np.frombuffer(data[-int(width) * int(height):], np.uint8).reshape(int(height), int(width))
+    return np.frombuffer(data[-int(width) * int(height) :], np.uint8).reshape(int(height), int(width))
 
 
 def read_map(path: pathlib.Path) -> np.ndarray:
     """The cells that hold anything known, and nothing around them."""
     cells = read_cells(path)
     rows, columns = np.nonzero(cells != UNKNOWN)
-    return cells[rows.min():rows.max() + 1, columns.min():columns.max() + 1]
+    return cells[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
 
 
 def simulate(gridmerge: pathlib.Path, folder: pathlib.Path, options: dict, seed: int) -> list[float]:
     """Two robots' maps in `folder`; by how much each is bent [m]."""
     words = [word for option in options.items() for word in option]
-    result = subprocess.run([gridmerge, "simulate", "--robots", "2", "--others", "0", "--seed", str(seed), "--threads", "1",
-                             "--quiet", "-o", folder, *words], check=True, stdout=subprocess.PIPE, text=True)
+    result = subprocess.run(
+        [
+            gridmerge,
+            "simulate",
+            "--robots",
+            "2",
+            "--others",
+            "0",
+            "--seed",
+            str(seed),
+            "--threads",
+            "1",
+            "--quiet",
+            "-o",
+            folder,
+            *words,
+        ],
+        check=True,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
     return [float(bend) for bend in re.findall(r"bent by ([0-9.]+) m", result.stdout)]
 
 
@@ -97,7 +134,7 @@ def specks(occupied: np.ndarray) -> tuple[np.ndarray, int]:
             left -= near
             component += near
         if len(component) < SPECK:
-            small[tuple(zip(*component))] = True
+            small[tuple(zip(*component, strict=True))] = True
             count += 1
     return small, count
 
@@ -159,13 +196,19 @@ def character_table(columns: dict[str, list[dict[str, float]]]) -> str:
     return table(rows)
 
 
-def meetings(gridmerge: pathlib.Path, pairs: list[pathlib.Path], output: pathlib.Path) -> tuple[list[float], list[float]]:
-    """Shares of the walls that meet rigidly, and patch by patch, of the pairs whose best hypothesis is the true pose."""
+def meetings(
+    gridmerge: pathlib.Path, pairs: list[pathlib.Path], output: pathlib.Path
+) -> tuple[list[float], list[float]]:
+    """Shares of the walls that meet rigidly, and patch by patch, of the pairs whose best hypothesis
+    is the true pose."""
     rigid, local = [], []
     for path in pairs:
         features = output / "features.tsv"
-        subprocess.run([gridmerge, "evaluate", path, "--features", features, "--threads", "1", "--quiet"], check=True,
-                       stdout=subprocess.DEVNULL)
+        subprocess.run(
+            [gridmerge, "evaluate", path, "--features", features, "--threads", "1", "--quiet"],
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
         with features.open(newline="") as file:
             for row in csv.DictReader(file, delimiter="\t"):
                 if row["truth"] == "right":
@@ -184,8 +227,16 @@ def largest_residuals(pairs: list[pathlib.Path]) -> list[float]:
 
 
 def bending_table(arguments: argparse.Namespace) -> str:
-    rows = [["maps", "one map, bent by [m]", "two maps, left by the best rigid fit, at most [m]", "best right",
-             "walls that meet rigidly [%]", "patch by patch [%]"]]
+    rows = [
+        [
+            "maps",
+            "one map, bent by [m]",
+            "two maps, left by the best rigid fit, at most [m]",
+            "best right",
+            "walls that meet rigidly [%]",
+            "patch by patch [%]",
+        ]
+    ]
 
     def add(name: str, bends: str, residuals: str, pairs: list[pathlib.Path]) -> None:
         rigid, local = meetings(arguments.gridmerge, pairs, arguments.output)
@@ -194,7 +245,7 @@ def bending_table(arguments: argparse.Namespace) -> str:
 
     for drift in DRIFTS:
         bends, folders = [], [arguments.output / f"drift_{drift}_{seed}" for seed in SEEDS]
-        for seed, folder in zip(SEEDS, folders):
+        for seed, folder in zip(SEEDS, folders, strict=True):
             bends += simulate(arguments.gridmerge, folder, hand_held(seed) | {"--drift": drift}, seed)
         pairs = [folder / "pairs.tsv" for folder in folders]
         add(f"`--drift {drift}`", spread(bends), spread(largest_residuals(pairs)), pairs)
@@ -208,11 +259,13 @@ def bending_table(arguments: argparse.Namespace) -> str:
 def draw(picture: list[list[tuple[str, np.ndarray]]], path: pathlib.Path) -> None:
     """One row of maps above the other."""
     columns = max(len(row) for row in picture)
-    figure, axes = plt.subplots(len(picture), columns, figsize=(3.4 * columns, 3.4 * len(picture)), squeeze=False)
+    figure, axes = plt.subplots(
+        len(picture), columns, figsize=(3.4 * columns, 3.4 * len(picture)), squeeze=False
+    )
     for axis in axes.flat:
         axis.axis("off")
-    for row, maps in zip(axes, picture):
-        for axis, (name, cells) in zip(row, maps):
+    for row, maps in zip(axes, picture, strict=True):
+        for axis, (name, cells) in zip(row, maps, strict=False):  # not every row is full
             axis.imshow(cells, cmap="gray", vmin=0, vmax=255, interpolation="antialiased")
             axis.set_title(name, fontsize=8)
     figure.tight_layout()
@@ -221,7 +274,9 @@ def draw(picture: list[list[tuple[str, np.ndarray]]], path: pathlib.Path) -> Non
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--gridmerge", type=pathlib.Path, required=True)
     parser.add_argument("--output", type=pathlib.Path, required=True)
     parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared/data"))
@@ -234,7 +289,7 @@ def main() -> None:
         if not real:
             print(f"No real maps at {arguments.data / pattern}: only simulated ones.", file=sys.stderr)
         folders = [arguments.output / f"{name}_{seed}" for seed in SEEDS]
-        for seed, folder in zip(SEEDS, folders):
+        for seed, folder in zip(SEEDS, folders, strict=True):
             simulate(arguments.gridmerge, folder, options(seed), seed)
         groups = [(f"{name}, real", real), (f"{name}, simulated", robots(folders))]
         if options is hand_held:
@@ -245,7 +300,7 @@ def main() -> None:
             maps = [read_map(path) for path in paths]
             columns[label] = [character(cells, resolution) for cells in maps]
             if row < len(picture):
-                picture[row] += [(label, cells) for cells in maps[::-(-len(maps) // SHOWN)]]
+                picture[row] += [(label, cells) for cells in maps[:: -(-len(maps) // SHOWN)]]
     print(character_table(columns), end="\n\n")
     print(bending_table(arguments), end="\n\n")
     draw([row for row in picture if row], arguments.output / "side_by_side.png")

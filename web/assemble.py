@@ -5,6 +5,7 @@
 The page comes in three pieces: up to the value of connect-src, from there to the data, and what follows the data. The
 program that serves or saves the page fills the gaps.
 """
+
 import argparse
 import base64
 import hashlib
@@ -23,8 +24,14 @@ class PageError(Exception):
 def inline(path, closing_tag):
     """The file's text, as it may stand in an element that is closed by `closing_tag`."""
     text = path.read_text(encoding="utf-8").strip("\n")
-    # What a browser would end the element at, or hash otherwise than it is written: it reads a CR as LF, a NUL as U+FFFD.
-    for bad, what in ((closing_tag, closing_tag), ("<!--", "<!--"), ("\r", "a carriage return"), ("\0", "a NUL")):
+    # What a browser would end the element at, or hash otherwise than it is written: it reads a CR as LF,
+    # a NUL as U+FFFD.
+    for bad, what in (
+        (closing_tag, closing_tag),
+        ("<!--", "<!--"),
+        ("\r", "a carriage return"),
+        ("\0", "a NUL"),
+    ):
         if bad in text.lower():
             raise PageError(f"{path}: holds {what}, which an inline element may not")
     return text
@@ -35,8 +42,10 @@ def source_hash(text):
 
 
 def policy(script, style):
-    return (f"default-src 'none'; script-src {source_hash(script)}; style-src {source_hash(style)}; "
-            f"img-src data: blob:; connect-src {CONNECT}; base-uri 'none'; form-action 'none'")
+    return (
+        f"default-src 'none'; script-src {source_hash(script)}; style-src {source_hash(style)}; "
+        f"img-src data: blob:; connect-src {CONNECT}; base-uri 'none'; form-action 'none'"
+    )
 
 
 def assemble(template, script, style):
@@ -64,16 +73,25 @@ def cut(page):
 
 def as_source(pieces):
     """C++ that defines each piece. As numbers: no compiler limits their count as it does a literal's length."""
-    lines = ["// Made by web/assemble.py; not to be changed by hand.", '#include "report/page_template.hpp"', "",
-             "namespace gridmerge::internal {", "", "namespace {", ""]
-    for name, text in zip(PIECES, pieces):
+    lines = [
+        "// Made by web/assemble.py; not to be changed by hand.",
+        '#include "report/page_template.hpp"',
+        "",
+        "namespace gridmerge::internal {",
+        "",
+        "namespace {",
+        "",
+    ]
+    for name, text in zip(PIECES, pieces):  # noqa: B905 - builds may run this with a Python older than 3.10
         data = text.encode()
         lines.append(f"constexpr unsigned char {name}Bytes[] = {{")
-        lines += ["  " + ",".join(map(str, data[i:i + 40])) + "," for i in range(0, len(data), 40)]
+        lines += ["  " + ",".join(map(str, data[i : i + 40])) + "," for i in range(0, len(data), 40)]
         lines += ["};", ""]
     lines += ["}  // namespace", ""]
     for name in PIECES:
-        lines.append(f"const std::string_view {name}(reinterpret_cast<const char*>({name}Bytes), sizeof({name}Bytes));")
+        lines.append(
+            f"const std::string_view {name}(reinterpret_cast<const char*>({name}Bytes), sizeof({name}Bytes));"
+        )
     return "\n".join([*lines, "", "}  // namespace gridmerge::internal", ""])
 
 
@@ -85,8 +103,11 @@ def main():
     parser.add_argument("--output", type=pathlib.Path, required=True, help="the C++ source")
     arguments = parser.parse_args()
     try:
-        page = assemble(arguments.template.read_text(encoding="utf-8"), inline(arguments.script, "</script"),
-                        inline(arguments.style, "</style"))
+        page = assemble(
+            arguments.template.read_text(encoding="utf-8"),
+            inline(arguments.script, "</script"),
+            inline(arguments.style, "</style"),
+        )
         arguments.output.write_text(as_source(cut(page)), encoding="utf-8")
     except (PageError, OSError, UnicodeDecodeError) as error:
         sys.exit(f"assemble.py: {error}")

@@ -23,9 +23,9 @@ def main() -> int:
 
     with pathlib.Path(sys.argv[1]).open(newline="") as file:
         rows = list(csv.reader(file, delimiter="\t"))
-    names, columns = rows[0], list(zip(*[[float(value) for value in row] for row in rows[1:]]))
+    names, columns = rows[0], list(zip(*[[float(value) for value in row] for row in rows[1:]], strict=True))
     figure, axes = pyplot.subplots(len(names) - 1, 1, sharex=True, figsize=(7, 8), constrained_layout=True)
-    for axis, name, values in zip(axes, names[1:], columns[1:]):
+    for axis, name, values in zip(axes, names[1:], columns[1:], strict=True):
         axis.plot(columns[0], values, color="#005a9c", linewidth=1)
         axis.axvline(0.0, color="#cc2020", linewidth=0.8)
         axis.set_ylabel(name, fontsize=8)

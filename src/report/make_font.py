@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws font.png, the letters of the pictures, in DejaVu Sans.
 
-The font is free (Bitstream Vera's licence; changes are in the public domain) and comes with Debian's fonts-dejavu-core; drawing it takes
-python3-pil too. Neither is needed to build or to run gridmerge.
+The font is free (Bitstream Vera's licence; changes are in the public domain) and comes with Debian's fonts-dejavu-core;
+drawing it takes python3-pil too. Neither is needed to build or to run gridmerge.
 
 A cell for each character of font_characters.hpp, 32 in a row. Its first row of pixels is white as far as the character
 advances; below, gray is how much the letter covers. The sizes are those of font.cpp.
 """
+
 import pathlib
 import re
 
@@ -17,7 +18,8 @@ FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
 EM = 60
 COLUMNS, CELL_WIDTH, CELL_HEIGHT = 32, 84, 76
 LEFT, TOP = 8, 4  # where a letter's box begins in its cell
-GRAYS = 17  # one of so many steps between two levels of gray: a third of the bytes, and no difference to the eye
+# One of so many steps between two levels of gray: a third of the bytes, and no difference to the eye.
+GRAYS = 17
 
 
 def characters(header):

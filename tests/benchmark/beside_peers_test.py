@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """benchmark/speed/beside_peers.py: its ratios, the same pairs for all matchers, and what it does without OpenCV.
 usage: beside_peers_test.py GRIDMERGE [CLASS], in the project's folder"""
+
 import csv
 import importlib.util
 import os
@@ -12,7 +13,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, "benchmark/speed")
-import beside_peers  # noqa: E402
+import beside_peers
 
 GRIDMERGE = pathlib.Path(sys.argv.pop(1))
 HAS_OPENCV = importlib.util.find_spec("cv2") is not None
@@ -23,13 +24,31 @@ class Speed(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.output = pathlib.Path(folder.name)
-        command = [sys.executable, "benchmark/speed/beside_peers.py", "--gridmerge", GRIDMERGE, "--output", self.output,
-                   "--data", self.output / "none", *arguments]
-        return subprocess.run([str(word) for word in command], env=os.environ | environment, check=True,
-                              stdout=subprocess.PIPE, text=True).stdout
+        command = [
+            sys.executable,
+            "benchmark/speed/beside_peers.py",
+            "--gridmerge",
+            GRIDMERGE,
+            "--output",
+            self.output,
+            "--data",
+            self.output / "none",
+            *arguments,
+        ]
+        return subprocess.run(
+            [str(word) for word in command],
+            env=os.environ | environment,
+            check=True,
+            stdout=subprocess.PIPE,
+            text=True,
+        ).stdout
 
     def test_a_ratio_is_of_each_pair_and_not_of_the_sums(self):
-        rows = [{"gridmerge": 1.0, "AKAZE": 2.0}, {"gridmerge": 9.0, "AKAZE": 3.0}, {"gridmerge": 2.0, "AKAZE": 2.0}]
+        rows = [
+            {"gridmerge": 1.0, "AKAZE": 2.0},
+            {"gridmerge": 9.0, "AKAZE": 3.0},
+            {"gridmerge": 2.0, "AKAZE": 2.0},
+        ]
         self.assertEqual(beside_peers.ratio(rows, "AKAZE"), "1.00 (0.75 to 2.00)")
         self.assertEqual(beside_peers.ratio(rows[:1], "AKAZE"), "0.50 (0.50 to 0.50)")
 

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """benchmark/peers.py treats every peer alike: it reads their answers as they are meant, all of them find a pose that is
-known, and errors are those of `gridmerge evaluate`. usage: peers_test.py GRIDMERGE MRPT [CLASS], in the project's folder"""
+known, and errors are those of `gridmerge evaluate`. usage: peers_test.py GRIDMERGE MRPT [CLASS],
+in the project's folder"""
+
 import importlib.util
 import json
 import math
@@ -12,14 +14,26 @@ import tempfile
 import unittest
 
 sys.path.insert(0, "benchmark")
-import numpy as np  # noqa: E402
-import peers  # noqa: E402
-from peer_maps import FREE, OCCUPIED, UNKNOWN, Answer, KnownCells, Map, coarsened, read_map, transformed, write_map  # noqa: E402
-from poses import compose, inverse  # noqa: E402
+import numpy as np
+import peers
+from peer_maps import (
+    FREE,
+    OCCUPIED,
+    UNKNOWN,
+    Answer,
+    KnownCells,
+    Map,
+    coarsened,
+    read_map,
+    transformed,
+    write_map,
+)
+from poses import compose, inverse
 
 GRIDMERGE = pathlib.Path(sys.argv.pop(1))
 MRPT = pathlib.Path(sys.argv.pop(1))
 EXAMPLE = pathlib.Path("examples/three_robots")
+ONE_DEGREE = math.radians(1.0)
 HAS_OPENCV = importlib.util.find_spec("cv2") is not None
 
 
@@ -42,8 +56,14 @@ def moved(map_, pose):
 
 class Reading(unittest.TestCase):
     def test_of_gridmerge(self):
-        text = json.dumps({"verdict": "accepted", "probability": 0.97, "hypotheses": [{}],
-                           "transform": {"x": 1.0, "y": -2.0, "theta": 0.5}})
+        text = json.dumps(
+            {
+                "verdict": "accepted",
+                "probability": 0.97,
+                "hypotheses": [{}],
+                "transform": {"x": 1.0, "y": -2.0, "theta": 0.5},
+            }
+        )
         self.assertEqual(peers.read_gridmerge(text), Answer((1.0, -2.0, 0.5), True, 0.97))
         refused = json.loads(text) | {"verdict": "refused"}
         self.assertEqual(peers.read_gridmerge(json.dumps(refused)), Answer((1.0, -2.0, 0.5), False, 0.97))
@@ -62,7 +82,9 @@ class Reading(unittest.TestCase):
         self.assertEqual(peers.run_measured(["sh", "-c", "echo here; exit 3"], (0, 3))[0], "here\n")
 
     def test_counts_the_cpu_of_the_whole_process(self):
-        _, seconds = peers.run_measured([sys.executable, "-c", "import time\nwhile time.process_time() < 0.3: pass"])
+        _, seconds = peers.run_measured(
+            [sys.executable, "-c", "import time\nwhile time.process_time() < 0.3: pass"]
+        )
         self.assertGreaterEqual(seconds, 0.3)
 
 
@@ -77,10 +99,15 @@ class Judging(unittest.TestCase):
         write_map(turned, Map(read_map(EXAMPLE / "robot_2.yaml").cells, 0.05, (3.0, -7.0, 0.8)))
         truths = [(1.5, -2.25, 0.7), (-30.0, 4.0, -3.1), (0.0, 0.0, 0.0)]
         table = self.folder / "pairs.tsv"
-        lines = [f"{(EXAMPLE / 'robot_1.yaml').resolve()}\t{turned}\t{x}\t{y}\t{theta}\t1" for x, y, theta in truths]
+        lines = [
+            f"{(EXAMPLE / 'robot_1.yaml').resolve()}\t{turned}\t{x}\t{y}\t{theta}\t1"
+            for x, y, theta in truths
+        ]
         table.write_text("fixed\tmoving\tx\ty\ttheta\ttolerance\n" + "\n".join(lines) + "\n")
         result = self.folder / "result.json"
-        subprocess.run([GRIDMERGE, "evaluate", table, "--json", result, "--quiet"], check=True, stdout=subprocess.PIPE)
+        subprocess.run(
+            [GRIDMERGE, "evaluate", table, "--json", result, "--quiet"], check=True, stdout=subprocess.PIPE
+        )
         answer, _ = peers.match_by_gridmerge(GRIDMERGE, EXAMPLE / "robot_1.yaml", turned)
         known = KnownCells(read_map(turned))
         for truth, case in zip(truths, json.loads(result.read_text())["cases"], strict=True):
@@ -91,24 +118,49 @@ class Judging(unittest.TestCase):
         judged = [peers.judge((peers.gridmerge_peer(GRIDMERGE), case)) for case in cases]
         row = peers.summarize("example", "gridmerge", judged)
         result = self.folder / "result.json"
-        subprocess.run([GRIDMERGE, "evaluate", EXAMPLE / "pairs.tsv", "--negatives", EXAMPLE / "negatives.tsv", "--json", result,
-                        "--quiet"], check=True, stdout=subprocess.PIPE)
+        subprocess.run(
+            [
+                GRIDMERGE,
+                "evaluate",
+                EXAMPLE / "pairs.tsv",
+                "--negatives",
+                EXAMPLE / "negatives.tsv",
+                "--json",
+                result,
+                "--quiet",
+            ],
+            check=True,
+            stdout=subprocess.PIPE,
+        )
         counts = json.loads(result.read_text())
-        for name, key in (("pairs", "total"), ("best right", "best_correct"), ("accepted right", "accepted_correct"),
-                          ("accepted wrong", "accepted_wrong"), ("refused", "refused")):
+        for name, key in (
+            ("pairs", "total"),
+            ("best right", "best_correct"),
+            ("accepted right", "accepted_correct"),
+            ("accepted wrong", "accepted_wrong"),
+            ("refused", "refused"),
+        ):
             self.assertEqual(row[name], counts["pairs"][key], name)
-        self.assertEqual(row["unrelated accepted"], f"{counts['negatives']['accepted']} of {counts['negatives']['total']}")
+        self.assertEqual(
+            row["unrelated accepted"], f"{counts['negatives']['accepted']} of {counts['negatives']['total']}"
+        )
 
     def test_needs_a_pose_within_the_tolerance(self):
         case = peers.Case("", pathlib.Path(), pathlib.Path(), (0.0, 0.0, 0.0), 0.5)
+
         def judged(error):
             return peers.Judged("", case, Answer((0.0, 0.0, 0.0), True, 1.0), 0.0, error)
+
         self.assertEqual([judged(error).right for error in (0.5, 0.51, None)], [True, False, False])
 
     def test_asks_in_both_orders_and_turns_the_second_answer_round(self):
         pose = (3.0, -1.0, 2.0)
+
         def match(fixed, moving):
-            return (Answer(None, False, 0.0), 1.0) if fixed == "a" else (Answer(inverse(pose), True, 0.9), 3.0)
+            return (
+                (Answer(None, False, 0.0), 1.0) if fixed == "a" else (Answer(inverse(pose), True, 0.9), 3.0)
+            )
+
         answer, seconds = peers.in_both_orders(match, "a", "b")
         np.testing.assert_allclose(answer.pose, pose, atol=1e-12)
         self.assertTrue(answer.accepted)
@@ -119,7 +171,9 @@ class Judging(unittest.TestCase):
         self.assertEqual(peers.sample(list(range(3)), 5), [0, 1, 2])
 
     def test_reads_the_three_kinds_of_cells(self):
-        map_ = Map(np.array([[UNKNOWN, FREE], [OCCUPIED, OCCUPIED], [FREE, UNKNOWN]], np.uint8), 0.1, (1.0, 2.0, 0.3))
+        map_ = Map(
+            np.array([[UNKNOWN, FREE], [OCCUPIED, OCCUPIED], [FREE, UNKNOWN]], np.uint8), 0.1, (1.0, 2.0, 0.3)
+        )
         write_map(self.folder / "map.yaml", map_)
         again = read_map(self.folder / "map.yaml")
         np.testing.assert_array_equal(again.cells, map_.cells)
@@ -132,7 +186,7 @@ class Finding:
 
     POSES = ((4.0, -2.5, 0.6), (-12.0, 7.25, 2.2), (1.0, 30.0, -1.3), (0.5, 0.5, -2.9))
 
-    def check(self, match, poses, shift=0.1, turn=math.radians(1.0)):
+    def check(self, match, poses, shift=0.1, turn=ONE_DEGREE):
         fixed = EXAMPLE / "robot_1.yaml"
         with tempfile.TemporaryDirectory() as folder:
             moving = pathlib.Path(folder, "moved.yaml")
@@ -153,7 +207,9 @@ class Finding:
             origin = (-3.0, 5.0, 1.1)
             write_map(moving, Map(map_.cells, map_.resolution, origin))
             pose = compose(map_.origin, inverse(origin))
-            self.check_pose(match(EXAMPLE / "robot_1.yaml", moving)[0], pose, 0.1, math.radians(1.0), read_map(moving))
+            self.check_pose(
+                match(EXAMPLE / "robot_1.yaml", moving)[0], pose, 0.1, ONE_DEGREE, read_map(moving)
+            )
 
 
 class Gridmerge(Finding, unittest.TestCase):

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The page that gridmerge writes allows just the script and the style that are in it; and web/assemble.py refuses what it
-cannot put into a page. usage: page_policy_test.py GRIDMERGE, in the project's folder"""
+"""The page that gridmerge writes allows just the script and the style that are in it; and web/assemble.py refuses what
+it cannot put into a page. usage: page_policy_test.py GRIDMERGE, in the project's folder"""
+
 import base64
 import hashlib
 import pathlib
@@ -12,7 +13,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, "web")
-import assemble  # noqa: E402
+import assemble
 
 GRIDMERGE = sys.argv.pop(1)
 TEMPLATE = "<head><!--CSP--><!--STYLE--></head><body><!--DATA--><!--SCRIPT--></body>"
@@ -26,7 +27,9 @@ class Policy(unittest.TestCase):
     def test_allows_what_is_in_the_page(self):
         with tempfile.TemporaryDirectory() as folder:
             maps = [f"examples/three_robots/robot_{i}.yaml" for i in (1, 2)]
-            subprocess.run([GRIDMERGE, "merge", *maps, "-o", folder, "--quiet"], check=True, stdout=subprocess.PIPE)
+            subprocess.run(
+                [GRIDMERGE, "merge", *maps, "-o", folder, "--quiet"], check=True, stdout=subprocess.PIPE
+            )
             page = pathlib.Path(folder, "report.html").read_bytes()
         policies = re.findall(rb'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', page)
         self.assertEqual(len(policies), 1)
@@ -35,9 +38,18 @@ class Policy(unittest.TestCase):
         styles = re.findall(rb"<style>(.*?)</style>", page, re.DOTALL)
         self.assertEqual((len(scripts), len(styles)), (1, 1))
         self.assertEqual(page.count(b"<script"), 2, "the script and the data")
-        self.assertEqual(rules, {
-            "default-src": "'none'", "script-src": sha256(scripts[0]), "style-src": sha256(styles[0]),
-            "img-src": "data: blob:", "connect-src": "'none'", "base-uri": "'none'", "form-action": "'none'"})
+        self.assertEqual(
+            rules,
+            {
+                "default-src": "'none'",
+                "script-src": sha256(scripts[0]),
+                "style-src": sha256(styles[0]),
+                "img-src": "data: blob:",
+                "connect-src": "'none'",
+                "base-uri": "'none'",
+                "form-action": "'none'",
+            },
+        )
 
 
 class Assembling(unittest.TestCase):
@@ -66,10 +78,12 @@ class Assembling(unittest.TestCase):
                 assemble.assemble(template, "", "")
 
     def test_the_source_holds_every_byte(self):
-        pieces = ("<p title=\"\\\">\n", "ü" * 50, "?")
+        pieces = ('<p title="\\">\n', "ü" * 50, "?")
         source = assemble.as_source(pieces)
-        held = [bytes(map(int, filter(None, re.sub(r"\s", "", body).split(","))))
-                for body in re.findall(r"Bytes\[\] = \{(.*?)\};", source, re.DOTALL)]
+        held = [
+            bytes(map(int, filter(None, re.sub(r"\s", "", body).split(","))))
+            for body in re.findall(r"Bytes\[\] = \{(.*?)\};", source, re.DOTALL)
+        ]
         self.assertEqual(held, [piece.encode() for piece in pieces])
 
 
