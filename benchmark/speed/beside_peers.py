@@ -44,8 +44,9 @@ def summarize(maps: str, rows: list[Row]) -> dict:
 def measure(gridmerge: pathlib.Path, data: pathlib.Path, output: pathlib.Path, limit: int) -> str:
     """The table. Throws ImportError where a package is missing."""
     import cv2
+    import peer_cases
     import peers
-    from benchmark import table
+    from tables import table
 
     cv2.setNumThreads(1)
     matchers = {
@@ -53,10 +54,10 @@ def measure(gridmerge: pathlib.Path, data: pathlib.Path, output: pathlib.Path, l
         PEERS[0]: functools.partial(peers.match_by_features, 1.0),
         PEERS[1]: functools.partial(peers.match_by_phase, 0.0),
     }
-    cases = peers.real_cases(data)
+    cases = peer_cases.real_cases(data)
     if not cases:
         print(f"No real maps at {data}: measuring the bundled example, {EXAMPLE}, instead.")
-        cases = peers.read_cases(EXAMPLE, "example")
+        cases = peer_cases.read_cases(EXAMPLE, "example")
     groups: dict[str, list] = {}
     for case in cases:
         groups.setdefault(
@@ -69,7 +70,7 @@ def measure(gridmerge: pathlib.Path, data: pathlib.Path, output: pathlib.Path, l
     measured = [
         (group, case, {name: match(case.fixed, case.moving)[1] for name, match in matchers.items()})
         for group, members in groups.items()
-        for case in peers.sample(members, limit)
+        for case in peer_cases.sample(members, limit)
     ]
     peers.write_tsv(
         output / "peer_seconds.tsv",

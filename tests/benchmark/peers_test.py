@@ -15,6 +15,7 @@ import unittest
 
 sys.path.insert(0, "benchmark")
 import numpy as np
+import peer_cases
 import peers
 from peer_maps import (
     FREE,
@@ -114,7 +115,7 @@ class Judging(unittest.TestCase):
             self.assertAlmostEqual(known.displacement(answer.pose, truth), case["error"], delta=1e-6)
 
     def test_counts_as_evaluate_does(self):
-        cases = peers.read_cases(EXAMPLE.resolve(), "example")
+        cases = peer_cases.read_cases(EXAMPLE.resolve(), "example")
         judged = [peers.judge((peers.gridmerge_peer(GRIDMERGE), case)) for case in cases]
         row = peers.summarize("example", "gridmerge", judged)
         result = self.folder / "result.json"
@@ -146,7 +147,7 @@ class Judging(unittest.TestCase):
         )
 
     def test_needs_a_pose_within_the_tolerance(self):
-        case = peers.Case("", pathlib.Path(), pathlib.Path(), (0.0, 0.0, 0.0), 0.5)
+        case = peer_cases.Case("", pathlib.Path(), pathlib.Path(), (0.0, 0.0, 0.0), 0.5)
 
         def judged(error):
             return peers.Judged("", case, Answer((0.0, 0.0, 0.0), True, 1.0), 0.0, error)
@@ -167,8 +168,8 @@ class Judging(unittest.TestCase):
         self.assertEqual(seconds, 2.0)
 
     def test_samples_evenly(self):
-        self.assertEqual(peers.sample(list(range(10)), 5), [0, 2, 4, 6, 8])
-        self.assertEqual(peers.sample(list(range(3)), 5), [0, 1, 2])
+        self.assertEqual(peer_cases.sample(list(range(10)), 5), [0, 2, 4, 6, 8])
+        self.assertEqual(peer_cases.sample(list(range(3)), 5), [0, 1, 2])
 
     def test_reads_the_three_kinds_of_cells(self):
         map_ = Map(
