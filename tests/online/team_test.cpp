@@ -206,6 +206,29 @@ TEST(Team, ForgetsRobots) {
   EXPECT_EQ(team.answer()->robots.size(), 1u);
 }
 
+TEST(Team, HoldsAKnownPoseFromWhenItIsToldUntilItIsTakenBack) {
+  const Explorers explorers;
+  TeamOptions options;
+  options.quiet = 10ms;
+  Team team(options);
+  const SE2 told{100.0, 50.0, 1.0};
+  const auto bert = [&] { return team.answer()->robots.at(1); };
+  team.hear("anna", explorers.map(0, 5));
+  team.hear("bert", explorers.map(1, 5));
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  ASSERT_EQ(bert().name, "bert");
+  EXPECT_NE(bert().T_world_map, told);
+  EXPECT_FALSE(team.take_events().empty());
+  EXPECT_TRUE(team.take_events().empty()) << "each is taken once";
+  team.set_known_pose("bert", KnownPose{told, 0.0, 0.0, true});
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  EXPECT_EQ(bert().T_world_map, told);
+  EXPECT_EQ(team.answer()->components.at(0).anchor, "");
+  team.set_known_pose("bert", std::nullopt);
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  EXPECT_EQ(team.answer()->components.at(0).anchor, "anna");
+}
+
 TEST(Team, SaysNothingOfWhereAForgottenMapLay) {
   const Explorers explorers;
   TeamOptions options;
