@@ -287,8 +287,14 @@ TEST(Match, RefusesInvalidInput) {
   options.threads = -1;
   EXPECT_THROW(match(map, map, options), std::invalid_argument);
   options = {};
-  options.accept_probability = std::nan("");
-  EXPECT_THROW(match(map, map, options), std::invalid_argument);
+  for (const double probability : {std::nan(""), -0.001, 1.001}) {
+    options.accept_probability = probability;
+    EXPECT_THROW(match(map, map, options), std::invalid_argument);
+  }
+  for (const double probability : {0.0, 1.0}) {
+    options.accept_probability = probability;
+    EXPECT_NO_THROW(validate(options));
+  }
 }
 
 /// What a robot sees of a plain room from `reach` metres around one of its corners, the room turned so that

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "gridmerge/grid/resample.hpp"
 #include "support/building.hpp"
@@ -65,8 +66,31 @@ TEST(MatchByRandomWalk, AHandfulOfCellsIsNotEnough) {
   const MatchResult found = match_by_random_walk(building(), corner, options);
   EXPECT_GE(found.acceptance_index, 0.95);
   EXPECT_EQ(found.verdict, Verdict::refused);
-  options.least_common_cells = 5;
+  const auto common = found.agreement + found.disagreement;
+  options.least_common_cells = common;
   EXPECT_EQ(match_by_random_walk(building(), corner, options).verdict, Verdict::accepted);
+  options.least_common_cells = common + 1;
+  EXPECT_EQ(match_by_random_walk(building(), corner, options).reason, Reason::too_little_overlap);
+}
+
+TEST(MatchByRandomWalk, TheFirstWalkHasTheSeedItselfAndTheOthersSeedsOfTheirOwn) {
+  const OccupancyGrid other = downsample(test::draw_building(4), 2);
+  RandomWalkMatchOptions options = quick();
+  options.walk.patience = 60;
+  options.walk.seed = 7;
+  options.start_pose = SE2{1.0, -0.5, 0.3};
+  options.restarts = 3;
+  std::vector<SE2> ends;
+  options.on_walk = [&](int, double, const RandomWalkResult& walk) { ends.push_back(walk.T_fixed_moving); };
+  match_by_random_walk(building(), other, options);
+  ASSERT_EQ(ends.size(), 3U);
+  RandomWalkOptions alone = options.walk;
+  alone.c_lock = options.c_locks.front();
+  EXPECT_EQ(ends[0], random_walk(building(), other, *options.start_pose, alone).T_fixed_moving);
+  options.walk.seed = 8;
+  match_by_random_walk(building(), other, options);
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(ends[i], ends[j]) << i << " " << j;
 }
 
 TEST(MatchByRandomWalk, ListsDistinctHypothesesAndNoMoreThanAskedFor) {
