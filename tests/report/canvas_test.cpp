@@ -9,12 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "report/font_characters.hpp"
 #include "report/style.hpp"
+#include "report/utf8.hpp"
 
 namespace gridmerge {
 
 using namespace internal;
 namespace {
+
+using test::utf8;
 
 constexpr Colour kPaper{1, 2, 3}, kRed{200, 0, 0}, kBlue{0, 0, 200};
 
@@ -99,6 +103,45 @@ TEST(Canvas, OfATextAsMuchIsWrittenAsLiesInIt) {
       for (int x = 0; x < width; ++x)
         ASSERT_EQ(at(part, x, y), at(whole, x + left, y + top)) << x << ' ' << y;
     }
+  }
+}
+
+/// Each pixel by what the font says of it alone.
+TEST(Canvas, WritesEachPixelByHowMuchOfItIsCovered) {
+  constexpr int kLeft = 7, kTop = 3;
+  for (const TextSize size : {TextSize::large, TextSize::small, TextSize::tiny}) {
+    for (const CharacterRange& range : kFontCharacters) {
+      for (char32_t character = range.first; character <= range.last; ++character) {
+        const std::string text = utf8(character);
+        const TextCoverage coverage = draw_text(text, size);
+        Canvas canvas(kLeft + coverage.width + 4, kTop + coverage.height + 2, kPaper);
+        canvas.write(kLeft, kTop, size, text, kRed);
+        int wrong = 0;
+        for (int y = 0; y < canvas.height(); ++y) {
+          for (int x = 0; x < canvas.width(); ++x) {
+            const int column = x - kLeft - coverage.left, row = y - kTop;
+            int covered = 0;
+            if (column >= 0 && column < coverage.width && row >= 0 && row < coverage.height)
+              covered = static_cast<unsigned char>(
+                  coverage.values[static_cast<std::size_t>(row * coverage.width + column)]);
+            wrong += at(canvas, x, y) == mix(kPaper, kRed, covered / 255.0) ? 0 : 1;
+          }
+        }
+        ASSERT_EQ(wrong, 0) << text << ' ' << static_cast<int>(size);
+      }
+    }
+  }
+}
+
+TEST(Canvas, OfNoHeightOrWidthIsEmpty) {
+  for (const auto& [width, height] : {std::pair(0, 3), {3, 0}, {0, 0}}) {
+    Canvas canvas(width, height, kPaper);
+    canvas.fill(0, 0, 2, 2, kRed);
+    canvas.write(0, 0, TextSize::tiny, "M", kRed);
+    EXPECT_TRUE(canvas.image().samples.empty());
+    Canvas other(2, 2, kPaper);
+    other.draw(0, 0, canvas);
+    EXPECT_EQ(drawn(other), (Rows{"..", ".."}));
   }
 }
 

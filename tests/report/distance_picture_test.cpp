@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdlib>
+#include <string>
 #include <utility>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 #include "io/png.hpp"
+#include "report/canvas.hpp"
 
 namespace gridmerge {
 
@@ -95,6 +99,46 @@ TEST(DistancePicture, CellsOfASmallMapHaveALineAround) {
     EXPECT_EQ(gray_at(image, x, 24), 128);
     EXPECT_EQ(gray_at(image, x, 1) == 128, x % 24 == 0) << x;
   }
+}
+
+/// A number in the middle of its cell, as letters are drawn elsewhere.
+void write_in_cell(Canvas& canvas, int column, int row, const std::string& number, Colour ink) {
+  const int left = (24 - text_width(number, TextSize::tiny)) / 2;
+  canvas.write(24 * column + left, 24 * row + 4, TextSize::tiny, number, ink);
+}
+
+TEST(DistancePicture, NumbersStandInTheMiddleAndAreReadable) {
+  constexpr Colour kBlack{0, 0, 0}, kWhite{255, 255, 255}, kLine{128, 128, 128};
+  // The shades of 125 and 126 of 250 and 251 are 127 and 128: white letters up to there, then black ones.
+  for (const auto& [middle, most, shade] : {std::array<int, 3>{125, 250, 127}, {126, 251, 128}}) {
+    DistanceMap map;
+    map.width = map.height = 2;
+    map.distances = {0, static_cast<std::uint16_t>(middle), static_cast<std::uint16_t>(most), kNoDistance};
+    const auto gray = static_cast<std::uint8_t>(shade);
+    Canvas expected(2 * 24 + 1, 2 * 24 + 1, kLine);
+    expected.fill(1, 25, 23, 23, kBlack);  // the first row is the lower one
+    expected.fill(25, 25, 23, 23, {gray, gray, gray});
+    expected.fill(1, 1, 23, 23, kWhite);
+    expected.fill(25, 1, 23, 23, kWhite);
+    write_in_cell(expected, 0, 1, "0", kWhite);
+    write_in_cell(expected, 1, 1, std::to_string(middle), shade < 128 ? kWhite : kBlack);
+    write_in_cell(expected, 0, 0, std::to_string(most), kBlack);
+    write_in_cell(expected, 1, 0, "inf", kBlack);
+    const PngImage image = decode_png(distance_map_png(map));
+    EXPECT_TRUE(image.samples == expected.image().samples) << middle;
+  }
+}
+
+TEST(DistancePicture, WhereAllIsNearNothingIsDividedByZero) {
+  DistanceMap map;
+  map.width = 41;
+  map.height = 1;
+  map.distances.assign(41, 0);
+  map.distances[40] = kNoDistance;
+  const PngImage image = decode_png(distance_map_png(map));
+  EXPECT_EQ(gray_at(image, 0, 0), 0);
+  EXPECT_EQ(gray_at(image, 39, 0), 0);
+  EXPECT_EQ(gray_at(image, 40, 0), 255);
 }
 
 }  // namespace
