@@ -15,7 +15,6 @@
 #include "report/picture.hpp"
 #include "report/preview_colours.hpp"
 #include "report/results.hpp"
-#include "report/style.hpp"
 
 namespace gridmerge {
 
@@ -59,8 +58,8 @@ TEST(PreviewPlan, DrawsTheWallsOfThePlanWhereMapsHaveNone) {
 
 TEST(PreviewPlan, ThePlanOfAWholeSiteLeavesMapsLarge) {
   const std::vector<OccupancyGrid> maps{map_from({"#..#"}, 0.5), map_from({"#..#"}, 0.5)};
-  OccupancyGrid site = make_grid(4000, 3000, 0.25, {}, Cell::free);
-  site.at(2, 2) = site.at(3999, 2999) = site.at(0, 2999) = Cell::occupied;
+  OccupancyGrid site = make_grid(900, 700, 0.25, {}, Cell::free);
+  site.at(2, 2) = site.at(899, 699) = site.at(0, 699) = Cell::occupied;
   MergeResult result = test::merged(maps, {{{0, {}}, {1, {}}}});
   result.plan = PlanPlacement{"site.png", 2.0, {{{0, 1}, {}, 2.0, 0.99, Reason::none}}, 0.25};
   const Picture drawn = preview_on_a_plan(maps, result, &site);
@@ -119,25 +118,6 @@ TEST(PreviewPlan, ShowsALoneMapOnThePlan) {
   EXPECT_EQ(drawn.cells(Colours::kPlan), 16u);
   EXPECT_EQ(drawn.cells(free_tint(map_colour(0))), 3u);
   EXPECT_GE(drawn.pixels(map_colour(1)).size(), 1u) << "the other one is shown as left out";
-
-  // With twelve others all are shown, whether it is the first that is left out or the last one.
-  const auto ink_of = [&](std::size_t map, std::size_t others) {
-    std::vector<OccupancyGrid> some(others + 1, maps[1]);
-    some[map] = maps[0];
-    result.left_out.clear();
-    for (std::size_t i = 0; i < some.size(); ++i) result.left_out.push_back({i, Reason::ambiguous});
-    result.plan = PlanPlacement{"floor.png", 2.0, {{{map}, {0.5, 0.5, 0.0}, 2.0, 0.99, Reason::none}}, 0.25};
-    const Picture shown = preview_on_a_plan(some, result, &plan);
-    // The heading stands below the plan's panel, its scale and the legend, and above the other maps.
-    const int below = shown.pixels(Colours::kPlan).back().second + 1;
-    const int first = map == 0 ? 1 : 0;
-    const int above = shown.pixels(map_colour(static_cast<std::size_t>(first))).front().second;
-    std::size_t ink = 0;
-    for (const auto& [x, y] : shown.pixels(Style::kInk)) ink += y > below && y < above ? 1U : 0U;
-    return static_cast<double>(ink);
-  };
-  EXPECT_NEAR(ink_of(12, 12), ink_of(0, 12), 50.0);  // names differ by digits, " (and 1 more)" is more
-  EXPECT_GT(ink_of(0, 13), ink_of(0, 12) + 100.0);
 }
 
 }  // namespace

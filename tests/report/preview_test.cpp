@@ -159,8 +159,8 @@ TEST(Preview, IsNoWiderThanItPromises) {
 }
 
 TEST(Preview, TheScaleBarHasARoundLength) {
-  for (const double resolution : {0.01, 0.037, 0.05, 3.0}) {
-    for (const int width : {1, 10, 137, 700}) {
+  for (const double resolution : {0.037, 3.0}) {
+    for (const int width : {1, 137, 700}) {
       const std::vector<OccupancyGrid> maps{make_grid(width, 5, resolution, {}, Cell::free),
                                             map_from({"."}, resolution)};
       const Picture picture = preview(maps, {{{0, {}}, {1, {}}}});
@@ -270,17 +270,6 @@ TEST(Preview, OfNothingIsAnEmptyPage) {
   const PngImage page = decode_png(preview_png({{}, {}, {}}));
   EXPECT_EQ(page.width, 1 * 48);
   EXPECT_EQ(page.height, 24);
-}
-
-TEST(Preview, OfManyMapsThatWereLeftOutTheFirstTwelveAreShown) {
-  const std::vector<OccupancyGrid> twelve(12, map_from({"##"})), thirteen(13, map_from({"##"}));
-  const auto walls = [](const Picture& picture) {
-    std::size_t cells = 0;
-    for (std::size_t i = 0; i < 13; ++i) cells += picture.cells(map_colour(i));
-    return cells;
-  };
-  EXPECT_EQ(walls(preview(twelve, {})), 24u);
-  EXPECT_EQ(walls(preview(thirteen, {})), 24u);
 }
 
 TEST(Preview, ManyMapsStayReadable) {
