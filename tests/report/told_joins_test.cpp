@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "gridmerge/io/file_error.hpp"
 #include "gridmerge/report/merge_record.hpp"
@@ -204,6 +208,119 @@ TEST(ToldJoins, MayHaveColumnsThatNobodyKnowsYet) {
   for (Json& row : wider["refused"]["rows"]) row.insert(row.begin(), 0.5);
   const MergeRecord read = parse(wider.dump()), usual = parse(good.dump());
   EXPECT_EQ(transforms_json(read.names, read.result), transforms_json(usual.names, usual.result));
+}
+
+/// Refused joins of many maps, of a probability each.
+MergeResult refused_joins(const std::vector<double>& probabilities) {
+  MergeResult result;
+  for (const double probability : probabilities) {
+    Join join;
+    join.fixed = result.joins.size();
+    join.moving = join.fixed + 1;
+    join.probability = probability;
+    join.match.reason = Reason::ambiguous;
+    result.joins.push_back(join);
+  }
+  return result;
+}
+
+TEST(ToldJoins, AreToldInFullUpToTheComparisonsOfFiftyMaps) {
+  MergeResult result = refused_joins({0.5, 0.25, 0.001});
+  result.refused_more = {{Reason::several, kMostToldInFull - 3}};
+  const ToldJoins all = tell_joins(result);
+  EXPECT_TRUE(all.in_full);
+  EXPECT_EQ(all.objects, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_TRUE(all.rows.empty());
+  EXPECT_EQ(all.counts, (std::vector<RefusedCount>{{Reason::several, kMostToldInFull - 3}}));
+  result.refused_more[0].count += 1;
+  const ToldJoins some = tell_joins(result);
+  EXPECT_FALSE(some.in_full);
+  EXPECT_TRUE(some.objects.empty());
+  EXPECT_EQ(some.rows, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(some.counts,
+            (std::vector<RefusedCount>{{Reason::ambiguous, 3}, {Reason::several, kMostToldInFull - 2}}));
+}
+
+TEST(ToldJoins, AreCountedByReasonInItsOrder) {
+  MergeResult result = refused_joins({0.01, 0.0099});
+  result.refused_more = {{Reason::over_budget, 1500},
+                         {Reason::contradiction, 0},
+                         {Reason::ambiguous, 4},
+                         {Reason::nothing_to_compare, 2},
+                         {Reason::ambiguous, 5}};
+  result.joins[0].match.reason = Reason::too_little_overlap;
+  const ToldJoins told = tell_joins(result);
+  EXPECT_EQ(told.counts, (std::vector<RefusedCount>{{Reason::nothing_to_compare, 2},
+                                                    {Reason::ambiguous, 10},
+                                                    {Reason::too_little_overlap, 1},
+                                                    {Reason::over_budget, 1500}}));
+  EXPECT_EQ(told.rows, std::vector<std::size_t>{0}) << "of 0.01 or more";
+}
+
+TEST(ToldJoins, OfEquallyProbableOnesTheFirstHaveRows) {
+  std::vector<double> probabilities(kMostRows + 3, 0.5);
+  probabilities[1] = 0.25;
+  probabilities[2] = 0.75;
+  probabilities.back() = 0.75;
+  const ToldJoins told = tell_joins(refused_joins(probabilities));
+  std::vector<std::size_t> expected;
+  for (std::size_t i = 0; i < kMostRows; ++i) {
+    if (i != 1) expected.push_back(i);
+  }
+  expected.push_back(kMostRows + 2);
+  EXPECT_EQ(told.rows, expected);
+  // As many as have room, and one more, which is the least probable.
+  std::vector<double> exact(kMostRows, 0.5);
+  EXPECT_EQ(tell_joins(refused_joins(exact)).rows.size(), kMostRows);
+  exact.insert(exact.begin(), 0.01);
+  const std::vector<std::size_t> rows = tell_joins(refused_joins(exact)).rows;
+  ASSERT_EQ(rows.size(), kMostRows);
+  EXPECT_EQ(rows.front(), 1u);
+}
+
+TEST(ToldJoins, OnesOfOpenWaysAreThoseOfTheSameTwoMapsInTheirOrder) {
+  MergeResult result = refused_joins(std::vector<double>(kMostToldInFull + 1, 0.5));
+  result.open_ways = {{7, 8, {}, 0.5}, {5, 4, {}, 0.5}, {2, 4, {}, 0.5}};
+  result.joins[9].outcome = JoinOutcome::rejected;
+  result.joins[3].outcome = JoinOutcome::known;
+  const ToldJoins told = tell_joins(result);
+  EXPECT_EQ(told.objects, (std::vector<std::size_t>{3, 7, 9}));
+  EXPECT_EQ(told.rows.size(), result.joins.size() - 3);
+}
+
+TEST(ToldJoins, OfManyLikelyHypothesesThreeAreTold) {
+  Join join;
+  for (const double probability : {0.4, 0.01, 0.0099, 0.02, 0.03}) {
+    Hypothesis one;
+    one.T_fixed_moving.x = static_cast<double>(join.match.hypotheses.size());
+    one.probability = probability;
+    join.match.hypotheses.push_back(one);
+  }
+  std::vector<double> told;
+  for (const Hypothesis& one : told_hypotheses(join, true)) told.push_back(one.T_fixed_moving.x);
+  EXPECT_EQ(told, (std::vector<double>{0, 1, 3}));
+}
+
+TEST(Deviations, AreThoseOfTheHypothesisThatTheJoinHas) {
+  Join join;
+  EXPECT_EQ(deviation_of(join), std::nullopt);
+  for (const double x : {1.0, 2.0, 2.0}) {
+    Hypothesis one;
+    one.T_fixed_moving.x = x;
+    one.figures.sigma = 10.0 * x;
+    join.match.hypotheses.push_back(one);
+  }
+  EXPECT_EQ(deviation_of(join), std::nullopt);  // none lies so
+  join.T_fixed_moving.x = 2.0;
+  EXPECT_EQ(deviation_of(join), 2.0 * 20.0);  // walls are known half as well as that
+  join.match.hypotheses[1].figures.sigma = 0.0;
+  join.match.hypotheses[2].figures.sigma = 0.25;
+  EXPECT_EQ(deviation_of(join), 0.5);
+  join.match.hypotheses[2].figures.sigma = 0.0;
+  EXPECT_EQ(deviation_of(join), std::nullopt);
+  set_deviation(join, 3.0);
+  EXPECT_EQ(deviation_of(join), 3.0);
+  EXPECT_EQ(join.match.hypotheses[0].figures.sigma, 10.0);
 }
 
 }  // namespace
