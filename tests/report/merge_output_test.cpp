@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "gridmerge/io/map_file.hpp"
 #include "gridmerge/report/merge_record.hpp"
@@ -230,6 +232,53 @@ TEST(MergeOutput, ForeseesTheSizeOfTheMergedMap) {
       contains(message_of<FileError>([&] { check_merged_size(kNames, far, 0.0); }), "c.yaml: lies too far"));
   far[2].origin.y = 1e9 - 10.0;
   EXPECT_FALSE(check_merged_size(kNames, far, 0.0));
+}
+
+TEST(MergeOutput, MapsMayReachAsFarAsOriginsMay) {
+  // Diagonals of 5 m and of 13 m: so far they may reach.
+  std::vector<OccupancyGrid> maps{make_grid(3, 4, 1.0), make_grid(10, 24, 0.5)};
+  const Names names{"a", "b"};
+  for (const double sign : {-1.0, 1.0}) {
+    for (double SE2::*const axis : {&SE2::x, &SE2::y}) {
+      for (OccupancyGrid& map : maps) {
+        map.origin.*axis = sign * (1e9 - 18.0);
+        EXPECT_FALSE(check_merged_size(names, maps, 0.0));
+        map.origin.*axis = sign * (1e9 - 17.75);
+        EXPECT_EQ(message_of<FileError>([&] { check_merged_size(names, maps, 0.0); }),
+                  std::string(&map == &maps[0] ? "a" : "b") +
+                      ": lies too far from zero: with the other maps it may reach beyond 1000000000 m");
+        map.origin = {};
+      }
+    }
+  }
+}
+
+TEST(MergeOutput, AMergedMapMayHaveTwoToThe28Cells) {
+  // 2^8 cells, each of which is 2^20 smaller ones.
+  std::vector<OccupancyGrid> maps{make_grid(16, 16, 1024.0, {}, Cell::free)};
+  const Names names{"a", "b"};
+  EXPECT_FALSE(check_merged_size(names, maps, 1.0));
+  EXPECT_EQ(message_of<FileError>([&] { check_merged_size(names, maps, 0.75); }),
+            "a: alone has 4.77e+08 cells of 0.75 m, and a merged map may have 2^28: choose an output "
+            "resolution of 1.5 m (--output-resolution)");
+  // Two have twice as many: cells of twice the side have room to spare.
+  maps.push_back(maps[0]);
+  EXPECT_DOUBLE_EQ(check_merged_size(names, maps, 1.0).value_or(0.0), 2.0);
+  EXPECT_FALSE(check_merged_size(names, maps, 2.0));
+  maps[1] = make_grid(1, 1, 1.0, {}, Cell::free);
+  EXPECT_DOUBLE_EQ(check_merged_size(names, maps, 1.0).value_or(0.0), 1.5);
+}
+
+TEST(MergeOutput, OfATooLargeMapWhatIsKnownCounts) {
+  const Names names{"a"};
+  std::vector<OccupancyGrid> maps{make_grid(17, 16, 1024.0)};
+  EXPECT_TRUE(contains(message_of<FileError>([&] { check_merged_size(names, maps, 1.0); }),
+                       "a: alone has 2.85e+08 cells"));  // nothing is known
+  maps[0].at(0, 0) = maps[0].at(15, 15) = Cell::free;
+  EXPECT_FALSE(check_merged_size(names, maps, 1.0));
+  maps[0].at(16, 15) = Cell::free;
+  EXPECT_TRUE(contains(message_of<FileError>([&] { check_merged_size(names, maps, 1.0); }),
+                       "a: alone has 2.85e+08 cells"));
 }
 
 TEST(MergeOutput, AFullDiskLeavesTheDirectoryAsItWas) {
