@@ -98,25 +98,29 @@ TEST(PlanLayer, IsPartOfThePageWhetherItsFileIsThereOrNot) {
   EXPECT_FALSE(page_data({kNames, kMaps, test::merged(kMaps, {})}).contains("plan"));
 }
 
-TEST(PlanLayer, ALargePlanIsThinned) {
-  OccupancyGrid plan = make_grid(3600, 2800, 0.01, {}, Cell::free);
-  for (int column = 100; column < 3500; ++column) {
-    for (int row = 100; row < 2700; ++row) {
-      if (column % 400 == 100 || row % 400 == 100) plan.at(column, row) = Cell::occupied;
-    }
+TEST(PlanLayer, APlanOfMoreThanFourMillionCellsIsThinned) {
+  for (const int width : {2048, 2049}) {
+    OccupancyGrid plan = make_grid(width, 2048, 0.25);
+    for (int column = 0; column < width; ++column)
+      plan.at(column, 0) = plan.at(column, 2047) = Cell::occupied;
+    for (int row = 0; row < 2048; ++row) plan.at(0, row) = plan.at(width - 1, row) = Cell::occupied;
+    const Json grid = plan_of(on_a_plan(), &plan).at("grid");
+    EXPECT_EQ(grid.at("width"), width == 2048 ? 2048 : 1025);
+    EXPECT_EQ(grid.at("height"), width == 2048 ? 2048 : 1024);
+    EXPECT_EQ(grid.at("resolution"), width == 2048 ? 0.25 : 0.5);
+    EXPECT_LT(grid.at("cells").get<std::string>().size(), 100'000u);
   }
-  const Json lines = plan_of(on_a_plan(), &plan).at("grid");
-  EXPECT_EQ(lines.at("resolution"), 0.02);
-  EXPECT_LT(lines.at("cells").get<std::string>().size(), 100'000u);
-  EXPECT_GT(std::ranges::count(test::cells_of(lines), Cell::occupied), 10'000);
-  // Dots cannot be packed: they are drawn coarser until they are small.
+}
+
+TEST(PlanLayer, DotsThatCannotBePackedAreThinnedUntilTheyAreSmall) {
+  // In cells of its own it would take 0.55 MB.
   std::mt19937 random(3);
-  for (int i = 0; i < 2'000'000; ++i)
-    plan.at(100 + static_cast<int>(random() % 3400), 100 + static_cast<int>(random() % 2600)) =
-        Cell::occupied;
-  const Json dots = plan_of(on_a_plan(), &plan).at("grid");
-  EXPECT_LE(dots.at("cells").get<std::string>().size(), 500'000u);
-  EXPECT_GT(dots.at("width"), 100);
+  OccupancyGrid plan = make_grid(2048, 1300, 0.25);
+  for (Cell& cell : plan.cells) cell = random() % 2 == 0 ? Cell::occupied : Cell::unknown;
+  plan.cells.front() = plan.cells.back() = Cell::occupied;
+  const Json grid = plan_of(on_a_plan(), &plan).at("grid");
+  EXPECT_EQ(grid.at("width"), 1024);
+  EXPECT_EQ(grid.at("resolution"), 0.5);
 }
 
 }  // namespace
