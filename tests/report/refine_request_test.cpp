@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 
 #include "io/support.hpp"
 
@@ -57,6 +58,25 @@ TEST(RefineRequest, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(complaint(with_fixed("[{\"map\": 0, " + pose + "}]")), "fixed[0].map is the moving map");
   EXPECT_EQ(complaint(with_fixed("[{\"map\": 1, " + pose + "}, {\"map\": 1, " + pose + "}]")),
             "fixed[1].map is there twice");
+}
+
+TEST(RefineRequest, PosesMayBeAsFarAsMapsGetAndAsTurnedAsAPageCounts) {
+  const auto request = [](const std::string& pose) {
+    return "{\"moving\": 0, \"transform\": " + pose +
+           ", \"fixed\": [{\"map\": 2, \"transform\": {\"x\": 0, \"y\": 0, \"theta\": 0}}]}";
+  };
+  for (const double sign : {-1.0, 1.0}) {
+    const auto pose = [sign](double x, double y, double theta) {
+      return "{\"x\": " + std::to_string(sign * x) + ", \"y\": " + std::to_string(sign * y) +
+             ", \"theta\": " + std::to_string(sign * theta) + "}";
+    };
+    const RefineRequest farthest = parse_refine_request(request(pose(1e7, 1e7, 100.0)), 3);
+    EXPECT_EQ(farthest.moving.T_page_map, (SE2{sign * 1e7, sign * 1e7, normalize_angle(sign * 100.0)}));
+    EXPECT_EQ(complaint(request(pose(1e7 + 1, 0, 0))), "transform.x lies outside [-10000000, 10000000]");
+    EXPECT_EQ(complaint(request(pose(0, 1e7 + 1, 0))), "transform.y lies outside [-10000000, 10000000]");
+    EXPECT_EQ(complaint(request(pose(0, 0, 100.001))), "transform.theta lies outside [-100, 100]");
+  }
+  EXPECT_TRUE(contains(complaint("{\"moving\": -1}"), "moving is no whole number"));
 }
 
 TEST(RefineRequest, TheAnswerIsTheDocumentedText) {
