@@ -284,6 +284,29 @@ TEST(PreviewLayout, BesideAMapAloneOnThePlanTwelveOthersAreShown) {
   }
 }
 
+TEST(PreviewLayout, BesideALongMapOnThePlanThereIsRoomForMoreInARow) {
+  const std::vector<OccupancyGrid> maps{make_grid(1200, 1, 0.5, {}, Cell::free), map_from({"#"}, 0.5),
+                                        map_from({"#"}, 0.5), map_from({"#"}, 0.5), map_from({"#"}, 0.5)};
+  const std::vector<std::string> names{"a", "b", "c", "d", "e"};
+  const OccupancyGrid plan = map_from({"#"}, 0.5);
+  MergeResult result;
+  std::vector<Canvas> others;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    result.left_out.push_back({i, Reason::ambiguous});
+    if (i > 0) others.push_back(draw_panel(small_panel(names[i], maps[i], i), TextSize::small));
+  }
+  result.plan = PlanPlacement{"floor.png", 1.0, {{{0}, {}, 1.0, 0.99, Reason::none}}, 0.5};
+  MapPanel panel = merged_panel("a on floor.png", {&maps[0]}, 0);
+  panel.plan = PlacedMap{&plan, {}};
+  const Canvas drawn = draw_panel(panel, TextSize::large);
+  ASSERT_EQ(drawn.width(), 1200 + 24);
+  expect_page(
+      {names, maps, result, &plan},
+      {drawn,
+       legend_of({{explained_map(0, "a"), explained(Colours::kPlan, Colours::kPlan, "walls of floor.png")}}),
+       written("Left out", TextSize::large), in_rows({others}, kGap)});
+}
+
 /// Two maps of 2 m x 0.5 m on a plan in which all is wall, in cells of `cell` m: of it the part is drawn that
 /// is no farther away than 2 m to each side.
 void expect_cut(const SE2& T_plan_cells, int width, int height, const OccupancyGrid& walls) {
@@ -316,20 +339,35 @@ TEST(PreviewLayout, APlanIsCutWhereItLiesFartherAwayThanTheMapsAreLong) {
 
 TEST(PreviewLayout, APlanThatIsFarLongerThanTheMapsMakesThePictureCoarser) {
   // 500 m of maps on a plan of any length make 1500 m, 3000 cells: two of them are a pixel.
-  const std::vector<OccupancyGrid> maps(2, make_grid(1000, 1, 0.5, {}, Cell::free));
-  MergeResult result = test::merged(maps, {{{0, {}}, {1, {}}}});
-  result.plan = PlanPlacement{"floor.png", 1.0, {{{0, 1}, {}, 1.0, 0.99, Reason::none}}, 10.0};
-  const OccupancyGrid plan = make_grid(300, 1, 10.0, {-1000.0, 0.0, 0.0}, Cell::occupied);
-  const OccupancyGrid walls = make_grid(150, 1, 10.0, {-500.0, 0.0, 0.0}, Cell::occupied);
-  MapPanel panel = merged_panel("merged.yaml: 2 maps", {&maps[0], &maps[1]}, 0);
-  panel.longest_side = 3000.0;
-  panel.plan = PlacedMap{&walls, {}};
-  const Canvas drawn = draw_panel(panel, TextSize::large);
-  ASSERT_EQ(drawn.width(), 1500 + 24);
-  expect_page({{"a", "b"}, maps, result, &plan},
-              {drawn, legend_of({{explained_map(0, "a"), explained_map(1, "b"),
-                                  explained(Colours::kPlan, Colours::kPlan, "walls of floor.png"),
-                                  explained_sharing(), explained_disagreement()}})});
+  for (const bool is_upright : {false, true}) {
+    const auto along = [&](int length, double resolution, double from, Cell cell) {
+      return is_upright ? make_grid(1, length, resolution, {0.0, from, 0.0}, cell)
+                        : make_grid(length, 1, resolution, {from, 0.0, 0.0}, cell);
+    };
+    const std::vector<OccupancyGrid> maps(2, along(1000, 0.5, 0.0, Cell::free));
+    MergeResult result = test::merged(maps, {{{0, {}}, {1, {}}}});
+    result.plan = PlanPlacement{"floor.png", 1.0, {{{0, 1}, {}, 1.0, 0.99, Reason::none}}, 10.0};
+    const OccupancyGrid plan = along(300, 10.0, -1000.0, Cell::occupied);
+    const OccupancyGrid walls = along(150, 10.0, -500.0, Cell::occupied);
+    MapPanel panel = merged_panel("merged.yaml: 2 maps", {&maps[0], &maps[1]}, 0);
+    panel.longest_side = 3000.0;
+    panel.plan = PlacedMap{&walls, {}};
+    const Canvas drawn = draw_panel(panel, TextSize::large);
+    if (is_upright) {
+      ASSERT_EQ(drawn.height(), 50 + 1500 + 24 + 12 + 25);
+    } else {
+      ASSERT_EQ(drawn.width(), 1500 + 24);
+    }
+    std::vector<std::vector<Canvas>> rows{{explained_map(0, "a"), explained_map(1, "b"),
+                                           explained(Colours::kPlan, Colours::kPlan, "walls of floor.png"),
+                                           explained_sharing()}};
+    if (is_upright) {
+      rows.push_back({explained_disagreement()});
+    } else {
+      rows[0].push_back(explained_disagreement());
+    }
+    expect_page({{"a", "b"}, maps, result, &plan}, {drawn, legend_of(rows)});
+  }
 }
 
 }  // namespace
