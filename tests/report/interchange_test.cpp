@@ -199,6 +199,18 @@ TEST(GeoJson, OfAMapOfNothingThereIsNoPolygon) {
   EXPECT_TRUE(json["features"][2]["geometry"].is_null());
 }
 
+// A reader may take it for a direction.
+TEST(Exports, HaveNoNegativeZero) {
+  const std::vector<OccupancyGrid> maps(2, map_from({"#.", ".#"}, 0.5, {-1e-9, -0.0, -0.0}));
+  MergeResult result = test::merged(maps, {{{0, {-0.0, -0.0, -0.0}}, {1, {-1e-8, -0.0, -0.0}}}});
+  result.joins[0].T_fixed_moving = {-0.0, -0.0, -0.0};
+  for (const ExportFormat format : {ExportFormat::g2o, ExportFormat::open_rmf, ExportFormat::geojson}) {
+    const std::string text = export_text(format, {test::fleet_names(2), maps, result});
+    for (const char* zero : {"-0 ", "-0\n", "-0.0,", "-0.0]", "-0.000000"})
+      EXPECT_FALSE(contains(text, zero)) << zero << " in " << text;
+  }
+}
+
 TEST(Exports, AreFoundByTheirNames) {
   for (const ExportFormat format : export_formats()) EXPECT_EQ(export_format(name_of(format)), format);
   EXPECT_FALSE(export_format("kml"));

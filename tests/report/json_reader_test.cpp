@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
+
+#include "report/record_values.hpp"
 
 namespace gridmerge::internal {
 namespace {
@@ -35,6 +38,23 @@ TEST(JsonReader, CountsAreWholeAndAtMostTwoToThe53) {
   for (const char* text : {"-1", "9007199254740993", "18446744073709551615", "1.0", "1e3", "\"1\"", "null"})
     EXPECT_EQ(message_of(text, count), "the text is no whole number from 0 to 2^53") << text;
   EXPECT_EQ(JsonReader(parse_json("9007199254740992")).count(), std::int64_t{1} << 53);
+}
+
+TEST(JsonReader, SharesMayBeRoundedByABillionth) {
+  const auto share = [](const JsonReader& json) { read_share(json); };
+  for (const char* text : {"0", "1", "0.5", "-0.99e-9", "1.00000000099"})
+    EXPECT_EQ(message_of(text, share), "") << text;
+  for (const char* text : {"-1.01e-9", "1.00000000101", "-1", "2"})
+    EXPECT_NE(message_of(text, share), "") << text;
+}
+
+TEST(JsonReader, ReasonsAreThoseThatOutputsName) {
+  for (int i = 0; i <= static_cast<int>(Reason::over_budget); ++i) {
+    const auto reason = static_cast<Reason>(i);
+    EXPECT_EQ(read_reason(JsonReader(nlohmann::json(name_of(reason)))), reason);
+  }
+  const auto read = [](const JsonReader& json) { read_reason(json); };
+  EXPECT_EQ(message_of("\"tired\"", read), "the text is unknown: 'tired'");
 }
 
 TEST(JsonReader, PosesLieWithinReach) {

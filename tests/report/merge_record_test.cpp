@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "gridmerge/io/map_file.hpp"
 #include "io/support.hpp"
@@ -236,6 +239,39 @@ TEST(MergeRecord, SaysWhatIsWrongAndWhere) {
   EXPECT_TRUE(contains(complaint("/components/0/map", "../merged.yaml"), "is not 'merged.yaml'"));
   EXPECT_TRUE(contains(complaint("/components/0/frame", "c.yaml"), "not the frame of its members"));
   EXPECT_TRUE(contains(complaint("/components/0/members", Json::array()), "fewer than two"));
+}
+
+TEST(MergeRecord, MembersStandInTheOrderOfTheMaps) {
+  const std::vector<OccupancyGrid> maps(4, kMaps[0]);
+  const std::vector<std::string> names{"a", "b", "c", "d"};
+  const SE2 apart{1.0, 0.0, 0.0};
+  const Json sound = Json::parse(
+      transforms_json(names, test::merged(maps, {{{0, {}}, {1, apart}, {2, apart}, {3, apart}}})));
+  EXPECT_EQ(parse(sound.dump()).result.components.at(0).members.size(), 4u);
+  for (const std::size_t i : {1u, 2u, 3u}) {
+    Json swapped = sound;
+    std::swap(swapped["components"][0]["members"][i - 1], swapped["components"][0]["members"][i]);
+    EXPECT_EQ(
+        message_of<FileError>([&] { parse(swapped.dump()); }),
+        "transforms.json: components[0].members[" + std::to_string(i) + "] is not in the order of the maps");
+  }
+}
+
+TEST(MergeRecord, WhatWasLeftOutStandsInTheOrderOfTheMaps) {
+  const std::vector<OccupancyGrid> maps(4, kMaps[0]);
+  const Json sound = Json::parse(transforms_json({"a", "b", "c", "d"}, test::merged(maps, {})));
+  EXPECT_EQ(parse(sound.dump()).result.left_out.size(), 4u);
+  for (const std::size_t i : {1u, 2u, 3u}) {
+    Json swapped = sound;
+    std::swap(swapped["left_out"][i - 1], swapped["left_out"][i]);
+    EXPECT_EQ(message_of<FileError>([&] { parse(swapped.dump()); }),
+              "transforms.json: left_out[" + std::to_string(i) + "] is not in the order of the maps");
+    swapped = sound;
+    std::swap(swapped["left_out_maps"][i - 1], swapped["left_out_maps"][i]);
+    EXPECT_EQ(
+        message_of<FileError>([&] { parse(swapped.dump()); }),
+        "transforms.json: left_out_maps[" + std::to_string(i - 1) + "].source does not go with left_out");
+  }
 }
 
 TEST(MergeRecord, WhatIsNoJson) {
