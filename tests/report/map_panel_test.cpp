@@ -56,7 +56,7 @@ void draw_bar(Canvas& canvas, int y, int length, const std::string& label) {
 
 TEST(MapPanel, HasATitleAboveAndABarBelow) {
   const std::vector<OccupancyGrid> maps{map_from({"#..", "..#"})};
-  // Cells of 10 pixels; a tenth of a metre is a pixel, and a quarter of the width 5 m.
+  // A metre has 13 pixels, so 2 m are what fits a quarter of the width.
   MapPanel panel = panel_of(maps);
   panel.min_side = 39;
   for (const TextSize size : {TextSize::small, TextSize::large}) {
@@ -165,11 +165,8 @@ TEST(MapPanel, IsAsWideAsTheWidestOfItsParts) {
   // 1 pixel and its margin: the scale, a quarter of that, is wider with what is written beside it.
   const Canvas narrow = draw_panel(panel, TextSize::small);
   EXPECT_EQ(narrow.width(), 5 + 8 + text_width("5 m", TextSize::small));
-  panel.min_side = 32;
-  panel.resolution = 32.0;
   const std::vector<OccupancyGrid> wide{map_from({"####"})};
   panel.maps = {{&wide[0], {}}};
-  panel.resolution = 1.0;
   panel.min_side = 128;
   EXPECT_EQ(draw_panel(panel, TextSize::small).width(), 128 + 2 * kMargin);
   panel.min_width = 128 + 2 * kMargin + 1;

@@ -307,8 +307,7 @@ TEST(PreviewLayout, BesideALongMapOnThePlanThereIsRoomForMoreInARow) {
        written("Left out", TextSize::large), in_rows({others}, kGap)});
 }
 
-/// Two maps of 2 m x 0.5 m on a plan in which all is wall, in cells of `cell` m: of it the part is drawn that
-/// is no farther away than 2 m to each side.
+/// Two maps of 2 m x 0.5 m on a plan in which all is wall, in cells of 0.5 m by its scale: `walls` are drawn.
 void expect_cut(const SE2& T_plan_cells, int width, int height, const OccupancyGrid& walls) {
   const std::vector<OccupancyGrid> maps(2, map_from({"#..#"}, 0.5, {0.5, 0.5, 0.0}));
   MergeResult result = test::merged(maps, {{{0, {}}, {1, {}}}});
