@@ -5,12 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/simulate/simulate.hpp"
 #include "support/building.hpp"
@@ -81,6 +83,44 @@ TEST(Figures, OfPairs) {
   add("loop", match(loop[0], loop[1]), lines);
   add("office and loop", match(office[0], loop[1]), lines);
   test::expect_figures(GRIDMERGE_TEST_DATA "/figures.tsv", lines);
+}
+
+/// So many cells that not all of them are counted.
+TEST(Figures, OfAPairOfManyCells) {
+  std::vector<FigureLine> lines;
+  OccupancyGrid one = draw_building(33);
+  one.resolution *= 3.0;
+  const OccupancyGrid left = map_part(one, {0, 0, 39, 39}, {1.0, 2.0, 0.4}),
+                      right = map_part(one, {15, 0, 54, 39}, {-3.0, 1.0, 2.4});
+  const PreparedMap fixed(transform_grid(left, {}, 0.075)), moving(transform_grid(right, {}, 0.075));
+  ASSERT_GT(std::min(fixed.known().cells.size(), moving.known().cells.size()), 4U * 60000U);
+  add("a large building", match(fixed, moving), lines);
+  test::expect_figures(GRIDMERGE_TEST_DATA "/large_figures.tsv", lines);
+}
+
+TEST(Figures, OfRefinedPoses) {
+  std::vector<FigureLine> lines;
+  const OccupancyGrid one = draw_building(31), other = draw_building(32);
+  const SE2 T_left{1.0, 2.0, 0.4}, T_right{-3.0, 1.0, 2.4};
+  const PreparedMap left(map_part(one, {0, 0, 11, 13}, T_left)),
+      right(map_part(one, {7, 0, 18, 13}, T_right)), strange(map_part(other, {7, 0, 18, 13}, T_right));
+  const SE2 truth = T_left * inverse(T_right);
+  const auto add_refined = [&](const std::string& name, const PreparedMap& moving, const SE2& start) {
+    const RefinedPose refined = refine_pose(left, moving, start);
+    lines.push_back(
+        {name, with_pose(refined.T_fixed_moving, {{"evidence", refined.score},
+                                                  {"start", refined.start_score},
+                                                  {"moved", refined.moved},
+                                                  {"probability", refined.probability},
+                                                  {"agreement", static_cast<double>(refined.agreement)},
+                                                  {"disagreement", static_cast<double>(refined.disagreement)},
+                                                  {"overlap", refined.overlap}})});
+  };
+  add_refined("the truth", right, truth);
+  add_refined("near the truth", right, SE2{0.4, -0.5, 0.05} * truth);
+  add_refined("far from the truth", right, SE2{3.0, -2.0, 0.9} * truth);
+  add_refined("another building", strange, truth);
+  test::expect_figures(GRIDMERGE_TEST_DATA "/refined_figures.tsv", lines);
 }
 
 TEST(Figures, OfPairsOfAnotherScale) {

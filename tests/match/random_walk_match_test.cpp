@@ -154,6 +154,14 @@ TEST(MatchByRandomWalk, RefusesOptionsThatMakeNoSense) {
   refused([](auto& o) { o.accept_acceptance_index = 1.5; });
   refused([](auto& o) { o.accept_acceptance_index = std::nan(""); });
   refused([](auto& o) { o.walk.patience = 0; });
+  RandomWalkMatchOptions least = quick();
+  least.threads = least.restarts = 1;
+  least.least_common_cells = 0;
+  least.accept_acceptance_index = 0.0;
+  least.c_locks = {0.0};
+  EXPECT_NO_THROW(validate(least));
+  least.accept_acceptance_index = 1.0;
+  EXPECT_NO_THROW(validate(least));
 }
 
 }  // namespace
