@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "merge/copies.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "../similarity/random_grid.hpp"
+
+namespace gridmerge::internal {
+namespace {
+
+using Places = std::vector<std::size_t>;
+
+OccupancyGrid some_map(unsigned seed, const SE2& origin = {}) {
+  OccupancyGrid map = test::random_grid(seed, 30, 20);
+  map.origin = origin;
+  return map;
+}
+
+TEST(Copies, HoldTheSameCellsAndHaveWalls) {
+  const PreparedMap map(some_map(1)), moved(some_map(1, {3.0, -2.0, 0.7})), other(some_map(2));
+  EXPECT_TRUE(is_copy(map, map));
+  EXPECT_TRUE(is_copy(map, moved)) << "where its frame lies does not matter";
+  EXPECT_FALSE(is_copy(map, other));
+  OccupancyGrid changed = some_map(1);
+  std::swap(changed.at(10, 10), changed.at(11, 10));
+  for (int column = 10; changed.at(column, 10) == changed.at(column + 1, 10); ++column)
+    std::swap(changed.at(column + 1, 10), changed.at(column + 2, 10));
+  ASSERT_NE(changed.cells, some_map(1).cells);
+  EXPECT_FALSE(is_copy(map, PreparedMap(changed))) << "as many cells of each kind, elsewhere";
+  const OccupancyGrid floor = make_grid(10, 10, 0.1, {}, Cell::free);
+  EXPECT_FALSE(is_copy(PreparedMap(floor), PreparedMap(floor))) << "nothing tells floors apart";
+}
+
+TEST(Copies, LieWhereTheirCellsLieOnEachOther) {
+  const SE2 origin{3.0, -2.0, 0.7}, other_origin{-1.0, 4.0, -0.2};
+  const PreparedMap a(some_map(1, origin)), b(some_map(1, other_origin));
+  EXPECT_EQ(between_copies(a, a), SE2{});
+  const SE2 T_a_b = between_copies(a, b);
+  const Point2 in_a = a.known().origin * Point2{1.5, 0.5}, in_b = b.known().origin * Point2{1.5, 0.5};
+  EXPECT_NEAR((T_a_b * in_b).x, in_a.x, 1e-12);
+  EXPECT_NEAR((T_a_b * in_b).y, in_a.y, 1e-12);
+}
+
+TEST(WithoutCopies, OfThoseThatLieOnEachOtherTheFirstStays) {
+  const SE2 T{2.0, 1.0, 0.4}, origin{3.0, -2.0, 0.7};
+  const PreparedMap map(some_map(1)), copy(some_map(1, origin)), other(some_map(2));
+  const SE2 T_copy = T * map.known().origin * inverse(copy.known().origin);
+  EXPECT_EQ(without_copies({{&map, T}, {&copy, T_copy}, {&map, T}}), (Places{0}));
+  EXPECT_EQ(without_copies({{&map, T}, {&other, T}}), (Places{0, 1})) << "another map in the same place";
+  EXPECT_EQ(without_copies({{&other, T}, {&copy, T_copy}, {&map, T}}), (Places{0, 1}));
+  EXPECT_EQ(without_copies({{&map, T}, {&copy, T}}), (Places{0, 1})) << "a copy elsewhere";
+  EXPECT_TRUE(without_copies({}).empty());
+}
+
+TEST(WithoutCopies, TheSamePlaceIsWithinAThousandthOfACell) {
+  const PreparedMap map(some_map(1));
+  const OccupancyGrid& known = map.known();
+  const double cell = known.resolution, side = std::max(known.width, known.height) * cell;
+  const auto lies_on_it = [&](const SE2& T) {
+    // The pose of the known rectangle's corner, so that a turn does not shift it.
+    const SE2 T_corner = known.origin * T * inverse(known.origin);
+    return without_copies({{&map, {}}, {&map, T_corner}}).size() == 1;
+  };
+  EXPECT_TRUE(lies_on_it({0.9e-3 * cell, 0.0, 0.0}));
+  EXPECT_FALSE(lies_on_it({1.1e-3 * cell, 0.0, 0.0}));
+  EXPECT_TRUE(lies_on_it({0.0, -0.9e-3 * cell, 0.0}));
+  EXPECT_FALSE(lies_on_it({0.0, -1.1e-3 * cell, 0.0}));
+  EXPECT_TRUE(lies_on_it({0.0, 0.0, 0.9e-3 * cell / side}));
+  EXPECT_FALSE(lies_on_it({0.0, 0.0, -1.1e-3 * cell / side}));
+  EXPECT_FALSE(lies_on_it({0.6e-3 * cell, 0.0, 0.6e-3 * cell / side})) << "the sum counts";
+}
+
+}  // namespace
+}  // namespace gridmerge::internal
