@@ -19,7 +19,7 @@ import subprocess
 import sys
 import time
 
-from tables import (
+from benchmark_tables import (
     by_shared_wall,
     counts_of,
     plot_cost,

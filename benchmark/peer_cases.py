@@ -63,9 +63,9 @@ def simulate(
     """Whether there is such a pair: some overlaps cannot be had."""
     if (folder / "negatives.tsv").exists():
         return True
-    pair = f"--kind {kind} --size {size} --overlap {overlap} --seed {seed}"
-    others = "--robots 2 --drift 0.3 --others 1 --threads 1 --quiet"
-    command = [gridmerge, "simulate", "-o", folder, *pair.split(), *others.split()]
+    of_this_pair = f"--kind {kind} --size {size} --overlap {overlap} --seed {seed}"
+    of_all = "--robots 2 --drift 0.3 --others 1 --threads 1 --quiet"
+    command = [gridmerge, "simulate", "-o", folder, *of_this_pair.split(), *of_all.split()]
     process = subprocess.run(
         [str(word) for word in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )

@@ -26,10 +26,10 @@ import tempfile
 import time
 from collections.abc import Callable
 
+from benchmark_tables import NO_FIGURE, table
 from peer_cases import Case, limited, real_cases, simulated_cases, training_cases
 from peer_maps import Answer, KnownCells, coarsened, read_map, write_map
 from poses import inverse, read_pose
-from tables import NONE, table
 
 # The answer for (fixed, moving), and the CPU seconds, user and system, that it took.
 Match = Callable[[pathlib.Path, pathlib.Path], tuple[Answer, float]]
@@ -223,10 +223,10 @@ def summarize(group: str, peer: str, judged: list[Judged]) -> dict:
             "refused": len(pairs) - len(accepted),
         }
         if pairs
-        else dict.fromkeys(COUNTS, NONE)
+        else dict.fromkeys(COUNTS, NO_FIGURE)
     )
     row["unrelated accepted"] = (
-        f"{sum(one.answer.accepted for one in unrelated)} of {len(unrelated)}" if unrelated else NONE
+        f"{sum(one.answer.accepted for one in unrelated)} of {len(unrelated)}" if unrelated else NO_FIGURE
     )
     row["CPU s"] = f"{statistics.median(one.seconds for one in judged):.2f}"
     return row

@@ -46,7 +46,7 @@ def measure(gridmerge: pathlib.Path, data: pathlib.Path, output: pathlib.Path, l
     import cv2
     import peer_cases
     import peers
-    from tables import table
+    from benchmark_tables import table
 
     cv2.setNumThreads(1)
     matchers = {

@@ -21,6 +21,8 @@ using namespace internal;
 
 namespace {
 
+using Step = StepProposals::Step;
+
 /// The known rectangle of a map, about its centre.
 struct Rectangle {
   explicit Rectangle(const OccupancyGrid& map) {
@@ -144,7 +146,7 @@ void validate(const RandomWalkOptions& options) {
   const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
   if (!(options.c_lock >= 0.0 && std::isfinite(options.c_lock)))
     throw std::invalid_argument("c_lock must be a number, and not negative");
-  if (options.memory < kMinMemory)
+  if (options.memory < StepProposals::kMinMemory)
     throw std::invalid_argument("the walk must remember at least four samples");
   if (!positive(options.smallest_step) || !positive(options.largest_step) ||
       !(options.first_step >= options.smallest_step && options.first_step <= options.largest_step))

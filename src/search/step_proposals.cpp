@@ -7,7 +7,7 @@
 
 namespace gridmerge::internal {
 
-Step StepProposals::draw(std::mt19937_64& random) {
+StepProposals::Step StepProposals::draw(std::mt19937_64& random) {
   Step step;
   for (int i = 0; i < 3; ++i)
     step[i] = std::max(scale_ * deviations_[i], options_.smallest_step) * normal_(random);

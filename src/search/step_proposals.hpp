@@ -10,17 +10,17 @@
 
 namespace gridmerge::internal {
 
-/// A step of a walk: x, y, and the way of a cell at the moving map's radius when it turns [cells].
-using Step = Eigen::Vector3d;
-
-/// So many steps make a covariance of three numbers.
-inline constexpr std::size_t kMinMemory = 4;
-
 /// The steps that a walk tries: normal ones, with the mean and the covariance of its last accepted steps
 /// (Birk & Carpin 2006, algorithm 1). Its axes' deviations stay between the options' smallest and largest
 /// step.
 class StepProposals {
  public:
+  /// x, y, and the way of a cell at the moving map's radius when it turns [cells].
+  using Step = Eigen::Vector3d;
+
+  /// So many steps make a covariance of three numbers.
+  static constexpr std::size_t kMinMemory = 4;
+
   /// `options` must live as long.
   explicit StepProposals(const RandomWalkOptions& options)
       : options_(options), deviations_(Step::Constant(options.first_step)) {}

@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadYaml{"Nothing", "", "not a YAML map"}, BadYaml{"AWord", "hello", "not a YAML map"},
         BadYaml{"AList", "- image: a.pgm\n- resolution: 1\n", "not a YAML map"},
-        BadYaml{"BrokenYaml", "image: [a.pgm\nresolution: 1", "not valid YAML: line 2: "},
+        BadYaml{"BrokenYaml", "image: a.pgm\n\tresolution: 1", "not valid YAML: line 2: "},
         BadYaml{"EmptyImage", with("image", "image: ''"), "'image' is empty"},
         BadYaml{"NullImage", with("image", "image:"), "'image' is not a single value"},
         BadYaml{"ListForImage", with("image", "image: [a.pgm]"), "'image' is not a single value"},

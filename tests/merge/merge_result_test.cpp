@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <iterator>
 #include <set>
 #include <string>
@@ -15,7 +16,7 @@ constexpr Reason kReasons[] = {
     Reason::nothing_to_compare, Reason::ambiguous,   Reason::contradiction, Reason::too_little_overlap,
     Reason::contradicts_others, Reason::over_budget, Reason::several};
 
-/// As many maps as are told, the first of which was left out for `reason`.
+/// As many maps as are told, all of them left out for `reason`.
 MergeResult with_left_out(std::size_t count, Reason reason) {
   MergeResult result;
   for (std::size_t i = 0; i < count; ++i) result.left_out.push_back({i, reason});

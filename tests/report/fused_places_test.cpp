@@ -16,14 +16,14 @@ namespace {
 using test::map_from;
 using Places = std::vector<std::size_t>;
 
-/// Maps 1, 3, 6 and 7 are copies; 4 is another one.
+/// Maps 1, 3, 6 and 7 are copies of one, and 0, 2, 4 and 5 of another.
 std::vector<OccupancyGrid> some_maps() {
   const OccupancyGrid copied = map_from({"####", "#..#", "#. #", "##.#"}, 0.5);
   const OccupancyGrid other = map_from({"####", "#..#", "#..#", "#..#"}, 0.5);
   return {other, copied, other, copied, other, other, copied, copied};
 }
 
-/// The second component has the maps 1, 3, 4, 6 and 7, of which the sixth lies beside the others.
+/// The second component has the maps 1, 3, 4, 6 and 7, of which map 6 lies beside the others.
 MergeResult some_result() {
   const SE2 at{3.0, -2.0, 0.5};
   MergeResult result;

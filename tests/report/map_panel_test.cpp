@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ using Colours = PreviewColours;
 constexpr Colour kRed{200, 20, 0}, kBlue{0, 100, 200};
 constexpr int kMargin = 12;  // around the maps [pixels]
 
-/// A panel of maps that lie where they are; cells have 1 m.
+/// A panel of maps that lie where they are, and must live as long; cells have 1 m.
 MapPanel panel_of(const std::vector<OccupancyGrid>& maps) {
   MapPanel panel;
   panel.title = "title";
@@ -34,6 +35,8 @@ MapPanel panel_of(const std::vector<OccupancyGrid>& maps) {
   panel.max_side = 1000;
   return panel;
 }
+
+MapPanel panel_of(std::vector<OccupancyGrid>&&) = delete;
 
 /// The same pixels; says where the first other one is.
 void expect_equal(const Canvas& drawn, const Canvas& expected) {
@@ -118,7 +121,7 @@ TEST(MapPanel, OfSeveralMapsTheFirstThatSeesACellGivesItItsColour) {
 
 TEST(MapPanel, DrawsBentMapsAsTheyLie) {
   const std::vector<OccupancyGrid> maps{map_from({"#...", "...."}), map_from({"...."})};
-  MapPanel panel = panel_of({maps[0]});
+  MapPanel panel = panel_of(maps);
   panel.maps = {{&maps[0], {}}, {&maps[1], {}}};
   panel.min_side = 40;
   // By a cell upwards: the second map lies on the upper row of the first.
@@ -183,9 +186,8 @@ TEST(MapPanel, ALongTitleIsCut) {
 }
 
 TEST(MapPanel, IsMagnifiedInWholePixelsAndDrawnCoarserInWholeCells) {
-  const OccupancyGrid map = make_grid(50, 3, 1.0, {}, Cell::occupied);
-  MapPanel panel = panel_of({map});
-  panel.maps = {{&map, {}}};
+  const std::vector<OccupancyGrid> maps{make_grid(50, 3, 1.0, {}, Cell::occupied)};
+  MapPanel panel = panel_of(maps);
   const auto expect_size = [&](int width, int height) {
     const Canvas drawn = draw_panel(panel, TextSize::small);
     EXPECT_EQ(drawn.width(), width + 2 * kMargin);
@@ -215,9 +217,8 @@ TEST(MapPanel, IsMagnifiedInWholePixelsAndDrawnCoarserInWholeCells) {
 }
 
 TEST(MapPanel, OfATallMapTheHeightCounts) {
-  const OccupancyGrid map = make_grid(3, 50, 1.0, {}, Cell::occupied);
-  MapPanel panel = panel_of({map});
-  panel.maps = {{&map, {}}};
+  const std::vector<OccupancyGrid> maps{make_grid(3, 50, 1.0, {}, Cell::occupied)};
+  MapPanel panel = panel_of(maps);
   panel.min_side = 100;
   EXPECT_EQ(draw_panel(panel, TextSize::small).height(), 33 + 100 + 2 * kMargin + 33);
 }

@@ -121,6 +121,7 @@ TEST(PlanLayer, DotsThatCannotBePackedAreThinnedUntilTheyAreSmall) {
   const Json grid = plan_of(on_a_plan(), &plan).at("grid");
   EXPECT_EQ(grid.at("width"), 1024);
   EXPECT_EQ(grid.at("resolution"), 0.5);
+  EXPECT_LE(grid.at("cells").get<std::string>().size(), 500'000U);
 }
 
 }  // namespace

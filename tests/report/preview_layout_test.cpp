@@ -132,6 +132,7 @@ void expect_page(const NamedMerge& merge, const std::vector<Canvas>& parts) {
   ASSERT_EQ(page.width, expected.width());
   ASSERT_EQ(page.height, expected.height());
   const auto& samples = expected.image().samples;
+  ASSERT_EQ(page.samples.size(), samples.size());
   const auto differs = std::mismatch(page.samples.begin(), page.samples.end(), samples.begin()).first;
   const auto at = static_cast<int>((differs - page.samples.begin()) / 3);
   EXPECT_TRUE(differs == page.samples.end()) << "at " << at % page.width << ", " << at / page.width;

@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
 
 namespace gridmerge::internal {
 namespace {
+
+using Step = StepProposals::Step;
 
 struct Moments {
   Step mean = Step::Zero();
@@ -101,7 +104,7 @@ TEST(StepProposals, AreHeldBetweenTheSmallestAndTheLargestStep) {
   StepProposals same(options), wild(options);
   for (int i = 0; i < 10; ++i) {
     same.learn({6.0, 0.0, 0.0});  // a covariance of zero
-    wild.learn(Step::Constant(0.0) + 100.0 * Step::Unit(i % 3) * (i % 2 == 0 ? 1.0 : -1.0));
+    wild.learn((i % 2 == 0 ? 100.0 : -100.0) * Step::Unit(i % 3));
   }
   const Moments smallest = moments_of_draws(same), largest = moments_of_draws(wild);
   EXPECT_NEAR(smallest.mean.x(), 6.0, tolerance_of_mean(0.25));
@@ -128,21 +131,22 @@ TEST(StepProposals, AreHalvedAfterEveryHundredRefusalsAndStartAgain) {
 
 TEST(StepProposals, RefusalsTakeTheMeanAwayAndAnAcceptedStepGivesTheSizeBack) {
   RandomWalkOptions options;
-  options.first_step = 2.0;
   StepProposals proposals(options);
+  const auto expect = [&](double mean, double variance_of_turns) {
+    const Moments drawn = moments_of_draws(proposals);
+    const double variance = std::pow(options.smallest_step, 2);  // of equal steps
+    EXPECT_NEAR(drawn.mean.x(), mean, tolerance_of_mean(variance));
+    EXPECT_NEAR(drawn.covariance(2, 2), variance_of_turns, tolerance_of_variance(variance_of_turns));
+  };
   for (int i = 0; i < 4; ++i) proposals.learn({5.0, 0.0, i % 2 == 0 ? 2.0 : -2.0});
   for (int i = 0; i < 50; ++i) proposals.learn_refusal();
-  EXPECT_NEAR(moments_of_draws(proposals).mean.x(), 5.0, 0.2);
+  expect(5.0, 16.0 / 3.0);
   for (int i = 0; i < 50; ++i) proposals.learn_refusal();
-  const Moments refused = moments_of_draws(proposals);
-  EXPECT_NEAR(refused.mean.x(), 0.0, 0.2);
-  EXPECT_NEAR(refused.covariance(2, 2), 4.0 / 3.0, 0.3);  // half of the deviation of 2, -2, 2, -2
+  expect(0.0, 4.0 / 3.0);  // half of the deviation
   proposals.learn({5.0, 0.0, 2.0});
-  const Moments learnt = moments_of_draws(proposals);
-  EXPECT_NEAR(learnt.mean.x(), 5.0, 0.2);
-  EXPECT_NEAR(learnt.covariance(2, 2), 4.8, 0.6);                        // of 2, -2, 2, -2, 2
+  expect(5.0, 4.8);                                                      // of 2, -2, 2, -2, 2
   for (int i = 0; i < 99; ++i) EXPECT_FALSE(proposals.learn_refusal());  // counted anew
-  EXPECT_NEAR(moments_of_draws(proposals).mean.x(), 5.0, 0.2);
+  expect(5.0, 4.8);
 }
 
 TEST(StepProposals, StartAnewAsIfNothingHadBeenLearnt) {

@@ -8,7 +8,7 @@ import pathlib
 
 # Limits of shared wall [m] between which pairs are counted together.
 WALLS = (0, 2.5, 5, 10, 20, 40, 80, math.inf)
-NONE = "\N{EN DASH}"  # in a table, where there is no figure
+NO_FIGURE = "\N{EN DASH}"  # in a table, where there is no figure
 
 
 def counts_of(cases: list[dict]) -> dict:
@@ -20,14 +20,14 @@ def counts_of(cases: list[dict]) -> dict:
         "best right": sum(case["correct"] for case in pairs),
         "accepted right": sum(case["correct"] for case in accepted),
         "accepted wrong": sum(not case["correct"] for case in accepted),
-        "median s": f"{seconds[len(seconds) // 2]:.3f}" if seconds else NONE,
+        "median s": f"{seconds[len(seconds) // 2]:.3f}" if seconds else NO_FIGURE,
     }
 
 
 def interval(right: int, of: int) -> str:
     """The rates that could well have given so many of so many: Wilson's interval of 95 %."""
     if of == 0:
-        return NONE
+        return NO_FIGURE
     z, rate = 1.96, right / of
     middle, half = rate + z * z / (2 * of), z * math.sqrt(rate * (1 - rate) / of + z * z / (4 * of * of))
     return f"{max(0.0, (middle - half) / (1 + z * z / of)):.2f} to {min(1.0, (middle + half) / (1 + z * z / of)):.2f}"
@@ -118,7 +118,7 @@ def plot_cost(rows: list[dict], label: str, path: pathlib.Path) -> None:
     values = [str(row["value"]) for row in rows]
     axes.plot(
         values,
-        [math.nan if row["median s"] == NONE else float(row["median s"]) for row in rows],
+        [math.nan if row["median s"] == NO_FIGURE else float(row["median s"]) for row in rows],
         color="#0072b2",
         marker="o",
     )
