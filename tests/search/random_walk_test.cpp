@@ -371,7 +371,8 @@ TEST(RandomWalk, RefusesOptionsThatMakeNoSense) {
   refused([](auto& o) { o.first_step = 50.0; });
   refused([](auto& o) { o.smallest_step = 50.0; });
   refused([](auto& o) { o.temperature = -1.0; });
-  refused([](auto& o) { o.cooling = 1.5; });
+  refused([](auto& o) { o.cooling = 1.001; });
+  refused([](auto& o) { o.cooling = 0.0; });
   refused([](auto& o) { o.wide_share = -0.01; });
   refused([](auto& o) { o.wide_share = 1.01; });
   refused([](auto& o) { o.wide_share = std::nan(""); });

@@ -279,6 +279,12 @@ TEST(SearchThoroughly, RefusesOptionsThatMakeNoSense) {
   refused([](auto& options) { options.samples = kMaxThoroughSamples + 1; });
   refused([](auto& options) { options.sigma = 0.0; });
   refused([](auto& options) { options.outliers = 1.0; });
+  refused([](auto& options) { options.sigma = -1.0; });
+  refused([](auto& options) { options.outliers = 0.0; });
+  ThoroughSearchOptions least;
+  least.coarse_factor = least.rotations = 1;
+  least.samples = kMaxThoroughSamples;
+  EXPECT_FALSE(search_thoroughly(map, map, least).empty());
   const LikelihoodField other = make_likelihood_field(test::random_grid(1, 30, 30), 0.2);
   EXPECT_THROW(search_thoroughly(map, other), std::invalid_argument);
 }
