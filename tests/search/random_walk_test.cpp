@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -140,17 +142,30 @@ TEST(RandomWalk, TheWholeTraceHoldsEveryProposal) {
   options.wide_share = 0.2;
   const RandomWalkResult result = random_walk(pair.fixed, pair.moving, pair.start, options);
   std::vector<std::size_t> entries(result.proposals + 1, 0);
-  std::size_t accepted = 0, wide = 0;
+  std::size_t accepted = 0, wide = 0, kept = 0;
+  std::vector<SE2> refused_wide;
+  int undefined = 4;
   for (const WalkSample& sample : result.trace) {
-    ++entries[sample.step];
     EXPECT_TRUE(sample.measured || !sample.accepted) << sample.step;
+    if (++entries[sample.step] == 2) {  // the walk went to one that it had refused before
+      ++kept;
+      EXPECT_TRUE(sample.accepted && sample.wide) << sample.step;
+      EXPECT_NE(std::find(refused_wide.begin(), refused_wide.end(), sample.T_fixed_moving),
+                refused_wide.end());
+    }
+    if (sample.wide && !sample.accepted) refused_wide.push_back(sample.T_fixed_moving);
+    if (sample.accepted) {
+      EXPECT_LE(sample.similarity.undefined_terms(), undefined) << sample.step;
+      undefined = sample.similarity.undefined_terms();
+    }
     accepted += sample.accepted ? 1 : 0;
     wide += sample.wide ? 1 : 0;
     if (!sample.measured) continue;
     EXPECT_EQ(sample.delta, sample.similarity.psi());
   }
   EXPECT_EQ(accepted, result.accepted + 1);
-  for (const std::size_t count : entries) EXPECT_TRUE(count == 1 || count == 2);  // 2: it went to a kept one
+  for (const std::size_t count : entries) EXPECT_TRUE(count == 1 || count == 2);
+  EXPECT_GT(kept, 0U);
   EXPECT_NEAR(static_cast<double>(wide) / static_cast<double>(result.proposals), 0.2, 0.05);
   // What a walk does is not changed by what is told of it.
   options.trace = WalkTrace::accepted;
