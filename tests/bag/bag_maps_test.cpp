@@ -172,6 +172,84 @@ TEST_F(BagMapsTest, TopicsAreChosenByName) {
   EXPECT_TRUE(contains(error(bag_of({}), ""), "has no topics"));
 }
 
+TEST_F(BagMapsTest, AListOfTopicsEndsWithTheTwentieth) {
+  std::vector<Recorded> messages;
+  std::string names;
+  const auto error = [&] { return test::message_of<FileError>([&] { BagMaps{bag_of(messages)}; }); };
+  const std::string begin = directory_.file("a.mcap") + ": has ";
+  for (char c = 'a'; c < 'a' + 20; ++c) {
+    messages.push_back(row_at(1, {0}, std::string("/") + c));
+    names += (c == 'a' ? "/" : ", /") + std::string(1, c);
+    if (c == 'b') {
+      EXPECT_EQ(error(), begin + "2 topics of maps: add #TOPIC to its name to choose one of /a, /b");
+    }
+  }
+  EXPECT_EQ(error(), begin + "20 topics of maps: add #TOPIC to its name to choose one of " + names);
+  messages.push_back(row_at(1, {0}, "/z"));
+  EXPECT_EQ(error(),
+            begin + "21 topics of maps: add #TOPIC to its name to choose one of " + names + " and 1 more");
+}
+
+TEST_F(BagMapsTest, WhatIsNoMapIsListedWithItsType) {
+  const Bag bag = bag_of({{"/a", 1, "", "t/msg/A", "cdr"}, {"/b", 1, "", "t/msg/B", "cdr"}});
+  const std::string expected = directory_.file("a.mcap") +
+                               ": has no maps (messages of nav_msgs/msg/OccupancyGrid); its topics are /a "
+                               "(t/msg/A), /b (t/msg/B)";
+  EXPECT_EQ(test::message_of<FileError>([&] { BagMaps{bag}; }), expected);
+  EXPECT_EQ(test::message_of<FileError>([&] { BagMaps(bag, "/a"); }), expected);
+  EXPECT_EQ(test::message_of<FileError>([&] { BagMaps{bag_of({})}; }),
+            directory_.file("a.mcap") + ": has no topics, and so no maps");
+}
+
+// Whole maps are looked for from the end, in blocks of 1, 2, 4 and so on.
+TEST_F(BagMapsTest, TheLastMapWithCellsIsFoundWhereverItIs) {
+  for (int count = 1; count <= 9; ++count) {
+    for (int last = 0; last < count; ++last) {
+      std::vector<Recorded> messages;
+      for (int i = 0; i < count; ++i)
+        messages.push_back(row_at(i, i <= last
+                                         ? std::vector<std::int8_t>{static_cast<std::int8_t>(i * 11), 100}
+                                         : std::vector<std::int8_t>{}));
+      const BagMap map = BagMaps(bag_of(messages)).last();
+      EXPECT_EQ(map.time, last) << count;
+      EXPECT_EQ(map.grid.cells, cells_of({static_cast<std::int8_t>(last * 11), 100})) << count;
+    }
+  }
+}
+
+TEST_F(BagMapsTest, DamageBehindTheLastMapIsNotPassedOver) {
+  const Recorded damaged{"/map", 5, "\x01"};
+  const auto at = [](Recorded message, std::int64_t time) {
+    message.time = time;
+    return message;
+  };
+  for (int empty = 0; empty <= 5; ++empty) {
+    std::vector<Recorded> messages{row_at(1, {0, 100}), at(damaged, 2)};
+    for (int i = 0; i < empty; ++i) messages.push_back(row_at(3 + i, {}));
+    const Bag bag = bag_of(messages);
+    EXPECT_TRUE(contains(test::message_of<FileError>([&] { BagMaps(bag).last(); }),
+                         ": a message of /map is damaged: the message ends early"))
+        << empty;
+    messages.push_back(row_at(20, {100, 0}));
+    for (int i = 0; i < empty; ++i) messages.push_back(row_at(30 + i, {}));
+    EXPECT_EQ(BagMaps(bag_of(messages)).last().time, 20) << empty;
+  }
+  const Bag update = bag_of({row_at(1, {0, 100}), at({"/map_updates", 2, "\x01", test::kUpdateType}, 2)});
+  EXPECT_TRUE(contains(test::message_of<FileError>([&] { BagMaps(update).last(); }),
+                       ": a message of /map_updates is damaged: the message ends early"));
+}
+
+TEST_F(BagMapsTest, UpdatesBeforeTheLastMapAreNotDrawnOnIt) {
+  const Bag bag = bag_of({update_at(1, {}), row_at(2, {0, 0}), update_at(3, {}), row_at(4, {0, 100}),
+                          update_at(5, {.x = -1}), update_at(6, {.x = 5})});
+  const BagMap last = BagMaps(bag).last();
+  EXPECT_EQ(last.time, 4) << "an update that is passed over is no news";
+  EXPECT_FALSE(last.is_update);
+  EXPECT_EQ(last.grid.cells, cells_of({0, 100}));
+  ASSERT_EQ(last.warnings.size(), 1u);
+  EXPECT_EQ(last.warnings[0].text, "2 updates reach beyond their map: they are passed over");
+}
+
 TEST_F(BagMapsTest, OtherEncodingsAreNotGuessed) {
   Recorded ros1 = row_at(1, {0, 0});
   ros1.encoding = "ros1";
