@@ -8,9 +8,12 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bag/bag_builder.hpp"
+#include "gridmerge/io/map_file.hpp"
+#include "io/map_yaml.hpp"
 #include "io/parse_error.hpp"
 #include "io/support.hpp"
 
@@ -99,7 +102,8 @@ TEST(MapMessages, PlacesThatNoMapHasAreRefused) {
   EXPECT_TRUE(contains(error_of(map_message({.x = nan})), "origin"));
   EXPECT_TRUE(contains(error_of(map_message({.y = 2e9})), "origin"));
   EXPECT_TRUE(contains(error_of(map_message({.qx = std::sqrt(0.5), .qw = std::sqrt(0.5)})), "tilted"));
-  EXPECT_TRUE(contains(error_of(map_message({.qw = 0.5})), "no quaternion of length 1"));
+  EXPECT_EQ(error_of(map_message({.qx = 0.125, .qy = 0.25, .qz = 0.5, .qw = 0.375})),
+            "the map's orientation (0.125, 0.25, 0.5, 0.375) is no quaternion of length 1");
   EXPECT_TRUE(contains(error_of(map_message({.qz = nan})), "no quaternion of length 1"));
 }
 
@@ -113,16 +117,76 @@ TEST(MapMessages, SizesAreCheckedBeforeMemoryIsTaken) {
   EXPECT_TRUE(contains(error_of(claims), "ends early"));
 }
 
+// The longest side that fits an int is let pass here, and its cells are missed then.
+TEST(MapMessages, ASideFitsAnInt) {
+  constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+  const auto error = [&](std::uint32_t width, std::uint32_t height) {
+    return error_of(map_message({.width = width, .height = height, .values = {0}}), kAny);
+  };
+  constexpr std::uint32_t kMost = 2'147'483'647;
+  EXPECT_EQ(error(kMost, 1), "the message has 1 values for 2147483647 x 1 cells");
+  EXPECT_EQ(error(1, kMost), "the message has 1 values for 1 x 2147483647 cells");
+  EXPECT_EQ(error(kMost, kMost), "the message has 1 values for 2147483647 x 2147483647 cells");
+  EXPECT_EQ(error(kMost + 1, 1), "2147483648 x 1 cells exceed the limit of 18446744073709551615");
+  EXPECT_EQ(error(1, kMost + 1), "1 x 2147483648 cells exceed the limit of 18446744073709551615");
+}
+
+TEST(MapMessages, ExactlySoManyCellsAreRead) {
+  EXPECT_EQ(parse_map_message(map_message(), 6).values, (std::vector<std::int8_t>{-1, 0, 100, 0, 0, 100}));
+  EXPECT_EQ(error_of(map_message(), 5), "3 x 2 cells exceed the limit of 5");
+  EXPECT_EQ(error_of(map_message({.values = {0, 0, 0, 0, 0}}), 6),
+            "the message has 5 values for 3 x 2 cells");
+  EXPECT_EQ(error_of(map_message({.values = {0, 0, 0, 0, 0, 0, 0}}), 6),
+            "the message has 7 values for 3 x 2 cells");
+}
+
+TEST(MapMessages, AnOriginLiesWithinTheLimitToTheLastDigit) {
+  for (const double sign : {1.0, -1.0}) {
+    const double most = sign * kMaxOrigin, beyond = sign * std::nextafter(kMaxOrigin, 2 * kMaxOrigin);
+    const MapMessage map = parse_map_message(map_message({.x = most, .y = -most}), kMaxCells);
+    EXPECT_EQ(map.origin.x, most);
+    EXPECT_EQ(map.origin.y, -most);
+    EXPECT_TRUE(contains(error_of(map_message({.x = beyond})), "the map's origin is "));
+    EXPECT_TRUE(contains(error_of(map_message({.y = beyond})), "the map's origin is "));
+    EXPECT_TRUE(contains(error_of(map_message({.x = sign * std::numeric_limits<double>::infinity()})),
+                         "the map's origin is "));
+  }
+  EXPECT_EQ(parse_map_message(map_message({.z = 2 * kMaxOrigin}), kMaxCells).values.size(), 6u)
+      << "its height does not matter";
+}
+
+TEST(MapMessages, TypesHaveANameOfRos2AndOneOfRos1) {
+  EXPECT_TRUE(is_map_type("nav_msgs/msg/OccupancyGrid"));
+  EXPECT_TRUE(is_map_type("nav_msgs/OccupancyGrid"));
+  EXPECT_TRUE(is_update_type("map_msgs/msg/OccupancyGridUpdate"));
+  EXPECT_TRUE(is_update_type("map_msgs/OccupancyGridUpdate"));
+  for (const char* other : {"", "OccupancyGrid", "nav_msgs/msg/OccupancyGridUpdate", "nav_msgs/msg/Path"}) {
+    EXPECT_FALSE(is_map_type(other)) << other;
+    EXPECT_FALSE(is_update_type(other)) << other;
+  }
+  EXPECT_FALSE(is_map_type("map_msgs/msg/OccupancyGridUpdate"));
+  EXPECT_FALSE(is_update_type("nav_msgs/msg/OccupancyGrid"));
+}
+
 TEST(MapMessages, AnOrientationOfZerosIsNone) {
   const MapMessage map = parse_map_message(map_message({.qw = 0.0}), kMaxCells);
   EXPECT_TRUE(map.lacks_rotation);
   EXPECT_EQ(map.origin.theta, 0.0);
+  EXPECT_FALSE(parse_map_message(map_message(), kMaxCells).lacks_rotation);
 }
 
 TEST(MapMessages, AMapWithoutCellsIsNoError) {
   EXPECT_TRUE(
       parse_map_message(map_message({.resolution = 0.0F, .width = 0, .height = 0, .values = {}}), kMaxCells)
           .is_empty());
+  for (const auto& [width, height] : {std::pair(0U, 5U), std::pair(5U, 0U), std::pair(0U, 4'000'000'000U)}) {
+    const MapMessage map =
+        parse_map_message(map_message({.width = width, .height = height, .values = {}}), kMaxCells);
+    EXPECT_TRUE(map.is_empty());
+    EXPECT_EQ(map.frame_id, "map");
+    EXPECT_EQ(map.width, 0);
+  }
+  EXPECT_FALSE(parse_map_message(map_message({.width = 1, .height = 1, .values = {0}}), 1).is_empty());
 }
 
 TEST(MapMessages, OtherEncodingsAreRefused) {

@@ -7,10 +7,14 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <random>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "bag/support.hpp"
 #include "gridmerge/grid/execution.hpp"
@@ -21,6 +25,9 @@
 namespace gridmerge {
 namespace {
 
+using internal::looks_like_sqlite;
+using internal::SqliteBag;
+using internal::StoredMessage;
 using test::all_cells;
 using test::cells_of;
 using test::contains;
@@ -110,7 +117,12 @@ TEST_F(SqliteBagTest, ALogThatCannotBeUsedIsNamed) {
 
 TEST_F(SqliteBagTest, WhatIsNoBagIsRefused) {
   run_sql(path_, "CREATE TABLE topics(id INTEGER)");
-  EXPECT_TRUE(contains(error_of(path_), "has no table 'messages'"));
+  EXPECT_EQ(error_of(path_),
+            path_ + ": is an SQLite database, and no rosbag2 file: it has no table 'messages'");
+  const std::string other = directory_.file("b.db3");
+  run_sql(other, "CREATE TABLE messages(id INTEGER)");
+  EXPECT_EQ(error_of(other),
+            other + ": is an SQLite database, and no rosbag2 file: it has no table 'topics'");
   run_sql(path_, "CREATE TABLE messages(id INTEGER)");
   EXPECT_TRUE(contains(error_of(path_), "SQLite cannot read it: no such column"));
 }
@@ -146,7 +158,123 @@ TEST_F(SqliteBagTest, AViewThatNeverEndsIsNotRun) {
 TEST_F(SqliteBagTest, LargeMessagesAreRefusedBeforeTheyAreRead) {
   write_db3(path_, {row_at(1, {0, 100})});
   run_sql(path_, "UPDATE messages SET data = zeroblob(3000000)");
-  EXPECT_TRUE(contains(error_of(path_, {.max_cells = 100}), "exceeds the limit"));
+  EXPECT_EQ(error_of(path_, {.max_cells = 100}),
+            path_ + ": a message of 3000000 bytes exceeds the limit of 1048676");
+}
+
+TEST_F(SqliteBagTest, AMessageOfExactlyTheLimitIsRead) {
+  write_db3(path_, {row_at(1, {0, 100})});
+  run_sql(path_, "UPDATE messages SET data = zeroblob(5000)");
+  SqliteBag enough(path_, "shown", 5000), few(path_, "shown", 4999);
+  const StoredMessage message = enough.find(enough.topics()).at(0);
+  EXPECT_EQ(message.bytes, 5000u);
+  EXPECT_TRUE(enough.read(message) == std::string(5000, '\0'));
+  EXPECT_EQ(test::message_of<FileError>([&] { few.read(message); }),
+            "shown: a message of 5000 bytes exceeds the limit of 4999");
+}
+
+TEST_F(SqliteBagTest, NamesAreNoLongerThanMessages) {
+  write_db3(path_, {row_at(1, {0, 100})});
+  run_sql(path_, "UPDATE topics SET name = printf('%.*c', 3000000, 'x')");
+  EXPECT_EQ(error_of(path_, {.max_cells = 100}), path_ + ": a message exceeds the limit of 1048676 bytes");
+}
+
+TEST_F(SqliteBagTest, AMessageThatIsGoneIsNoMessage) {
+  write_db3(path_, {row_at(1, {0, 100})});
+  SqliteBag bag(path_, "shown", 5000);
+  EXPECT_EQ(test::message_of<FileError>([&] { bag.read({.offset = 2, .bytes = 1}); }),
+            "shown: a message is gone: does somebody write to the file?");
+}
+
+TEST_F(SqliteBagTest, ManyMessagesAreCountedAndFound) {
+  write_db3(path_, {row_at(1, {0, 100})});
+  run_sql(path_,
+          "WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < 20000) "
+          "INSERT INTO messages(topic_id, timestamp, data) SELECT 1, 20000 - i % 100, '' FROM n");
+  SqliteBag bag(path_, "shown", 5000);
+  ASSERT_EQ(bag.topics().size(), 1u);
+  EXPECT_EQ(bag.topics()[0].messages, 20'000u);
+  const std::vector<StoredMessage> messages = bag.find(bag.topics());
+  ASSERT_EQ(messages.size(), 20'000u);
+  EXPECT_TRUE(std::ranges::is_sorted(messages, {}, [](const StoredMessage& message) {
+    return std::pair(message.time, message.offset);
+  })) << "by time, those of one time as they were recorded";
+}
+
+TEST_F(SqliteBagTest, TellsWhereEachMessageOfEachTopicIs) {
+  write_db3(path_, {row_at(30, {0}, "/b"), row_at(10, {100, 0}, "/b"), row_at(20, {0}, "/a"),
+                    row_at(10, {0}, "/b")});
+  SqliteBag bag(path_, "shown", 5000);
+  std::vector<BagTopic> topics = bag.topics();
+  ASSERT_EQ(topics.size(), 2u);
+  std::ranges::reverse(topics);
+  topics.push_back({"/b", "another/msg/Type", "cdr", 0});
+  std::vector<std::tuple<std::int64_t, std::size_t, std::uint64_t, std::uint64_t>> found;
+  for (const StoredMessage& message : bag.find(topics)) {
+    found.emplace_back(message.time, message.topic, message.offset, message.bytes);
+    EXPECT_EQ(message.place, 0u);
+  }
+  const std::uint64_t one = row_at(0, {0}).bytes.size();
+  EXPECT_EQ(found, (decltype(found){{10, 0, 2, one + 1}, {10, 0, 4, one}, {30, 0, 1, one}, {20, 1, 3, one}}));
+}
+
+TEST_F(SqliteBagTest, ATopicWithoutMessagesIsATopicAndNoMap) {
+  write_db3(path_, {row_at(1, {0}, "/a"), row_at(2, {0}, "/b")});
+  run_sql(path_, "DELETE FROM messages WHERE timestamp = 2");
+  const Bag bag(path_);
+  ASSERT_EQ(bag.topics().size(), 2u);
+  EXPECT_EQ(bag.topics()[1].messages, 0u);
+  ASSERT_EQ(bag.map_topics().size(), 1u);
+  EXPECT_EQ(bag.map_topics()[0].name, "/a");
+  EXPECT_EQ(BagMaps(bag).topic(), "/a") << "the only one of which there is a map";
+  EXPECT_EQ(test::message_of<EmptyTopic>([&] { BagMaps(bag, "b").last(); }),
+            path_ + ": has no message on /b");
+}
+
+TEST_F(SqliteBagTest, TopicsOfOneNameAndTypeAreOne) {
+  write_db3(path_, {row_at(1, {0}, "/a"), row_at(2, {0}, "/b"), row_at(3, {0}, "/b")});
+  run_sql(path_, "UPDATE topics SET name = '/map'");
+  const Bag bag(path_);
+  ASSERT_EQ(bag.topics().size(), 1u);
+  EXPECT_EQ(bag.topics()[0].messages, 3u);
+  EXPECT_EQ(bag.topics()[0].encoding, "cdr");
+  EXPECT_EQ(all_cells(bag).size(), 3u);
+}
+
+TEST_F(SqliteBagTest, TopicsAreNotEndless) {
+  write_db3(path_, {row_at(1, {0, 100})});
+  run_sql(path_,
+          "WITH RECURSIVE n(i) AS (SELECT 2 UNION ALL SELECT i + 1 FROM n WHERE i < 65536) "
+          "INSERT INTO topics SELECT i, 'n' || i, 't', 'cdr', '' FROM n");
+  EXPECT_EQ(SqliteBag(path_, "shown", 5000).topics().size(), 65'536u);
+  run_sql(path_, "INSERT INTO topics VALUES (65537, 'n', 't', 'cdr', '')");
+  EXPECT_EQ(test::message_of<FileError>([&] { SqliteBag(path_, "shown", 5000); }),
+            "shown: it has more than 65536 topics");
+}
+
+TEST_F(SqliteBagTest, AJournalThatWouldHaveToBePlayedBackIsNamed) {
+  write_db3(path_, {row_at(1, {0, 100})});
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path_.c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(database, "PRAGMA synchronous = OFF; BEGIN; UPDATE messages SET timestamp = 5;",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  const std::string copy = directory_.write("copy.db3", test::read_file(path_));
+  directory_.write("copy.db3-journal", test::read_file(path_ + "-journal"));
+  sqlite3_close(database);
+  EXPECT_EQ(error_of(copy),
+            copy +
+                ": copy.db3-journal beside it holds what a recorder wrote last, and reading that takes "
+                "writing beside it: copy both files to a folder of yours");
+}
+
+TEST_F(SqliteBagTest, IsToldByItsFirstSixteenBytes) {
+  const std::string begin("SQLite format 3\0", 16);
+  EXPECT_TRUE(looks_like_sqlite(begin));
+  EXPECT_TRUE(looks_like_sqlite(begin + "more"));
+  EXPECT_FALSE(looks_like_sqlite(begin.substr(0, 15)));
+  EXPECT_FALSE(looks_like_sqlite("SQLite format 3 and more"));
+  EXPECT_FALSE(looks_like_sqlite(""));
 }
 
 TEST_F(SqliteBagTest, ValuesOfOtherTypesAreNoMaps) {
