@@ -49,6 +49,8 @@ TEST_F(AnyMap, NamesAreTakenApartAtTheTopic) {
   EXPECT_EQ(parts(bag), bag + "|") << "a file that is there";
   EXPECT_EQ(parts(bag + "#/map"), bag + "|/map");
   EXPECT_EQ(parts(bag + "#map"), bag + "|map");
+  EXPECT_EQ(parts(bag + "#m"), bag + "|m");
+  EXPECT_EQ(parts(bag + "#"), bag + "#|") << "no topic";
   EXPECT_EQ(format_map_name(parse_map_name(bag + "#/map")), bag + "#/map");
   EXPECT_EQ(format_map_name({bag, ""}), bag);
 }

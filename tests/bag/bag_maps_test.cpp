@@ -234,6 +234,10 @@ TEST_F(BagMapsTest, DamageBehindTheLastMapIsNotPassedOver) {
     for (int i = 0; i < empty; ++i) messages.push_back(row_at(30 + i, {}));
     EXPECT_EQ(BagMaps(bag_of(messages)).last().time, 20) << empty;
   }
+  const Bag before = bag_of({row_at(1, {0, 0}), at(damaged, 2), row_at(3, {0, 100}), row_at(4, {})});
+  EXPECT_EQ(BagMaps(before).last().time, 3) << "in one block with the damaged one";
+  const Bag behind = bag_of({row_at(1, {0, 0}), row_at(2, {0, 100}), at(damaged, 3), row_at(4, {})});
+  EXPECT_THROW(BagMaps(behind).last(), FileError);
   const Bag update = bag_of({row_at(1, {0, 100}), at({"/map_updates", 2, "\x01", test::kUpdateType}, 2)});
   EXPECT_TRUE(contains(test::message_of<FileError>([&] { BagMaps(update).last(); }),
                        ": a message of /map_updates is damaged: the message ends early"));

@@ -125,6 +125,23 @@ TEST_F(RandomAccessFileTest, WhatStopsReadingIsTold) {
   ::close(descriptor);
 }
 
+// The system gives some of its own files in pieces, as it may any.
+TEST_F(RandomAccessFileTest, APartThatComesInPiecesIsReadInWhole) {
+  const char* const path = "/proc/kallsyms";
+  constexpr std::size_t kCount = 30'000, kBegin = 100;
+  std::string expected(kBegin + kCount, '\0'), found(kCount, '\0');
+  std::ifstream(path).read(expected.data(), static_cast<std::streamsize>(expected.size()));
+  const int descriptor = ::open(path, O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) GTEST_SKIP() << "there is no such file";
+  const ssize_t once = ::pread(descriptor, found.data(), kCount, kBegin);
+  const BytesRead read = try_read_at(descriptor, kBegin, found.data(), kCount);
+  ::close(descriptor);
+  if (once <= 0 || expected.back() == '\0') GTEST_SKIP() << "it cannot be read";
+  EXPECT_EQ(read.count, kCount);
+  EXPECT_EQ(read.error, 0);
+  EXPECT_TRUE(found == expected.substr(kBegin));
+}
+
 TEST_F(RandomAccessFileTest, APartTakesOneCallOfTheSystem) {
   const auto calls = [] {  // 0 where the system does not count them
     std::ifstream file("/proc/self/io");

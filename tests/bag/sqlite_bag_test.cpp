@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <filesystem>
 #include <random>
 #include <string>
@@ -16,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "bag/sqlite_reading.hpp"
 #include "bag/support.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/io/file_error.hpp"
@@ -266,6 +268,61 @@ TEST_F(SqliteBagTest, AJournalThatWouldHaveToBePlayedBackIsNamed) {
             copy +
                 ": copy.db3-journal beside it holds what a recorder wrote last, and reading that takes "
                 "writing beside it: copy both files to a folder of yours");
+}
+
+// What SQLite asks of a file, as it asks.
+TEST_F(SqliteBagTest, AFileAtRestIsReadAndNothingElse) {
+  const char* const name = internal::sqlite_reading();
+  ASSERT_NE(name, nullptr);
+  EXPECT_EQ(internal::sqlite_reading(), name);
+  sqlite3_vfs* const system = sqlite3_vfs_find(name);
+  ASSERT_NE(system, nullptr);
+  EXPECT_NE(system, sqlite3_vfs_find(nullptr)) << "other databases of the program are opened as ever";
+  std::vector<std::max_align_t> memory(static_cast<std::size_t>(system->szOsFile) / sizeof(std::max_align_t) +
+                                       1);
+  auto* const file = reinterpret_cast<sqlite3_file*>(memory.data());
+  constexpr int kFlags = SQLITE_OPEN_MAIN_DB | SQLITE_OPEN_READONLY;
+  EXPECT_EQ(system->xOpen(system, directory_.file("none").c_str(), file, kFlags, nullptr), SQLITE_CANTOPEN);
+  EXPECT_EQ(file->pMethods, nullptr) << "so it is not closed";
+
+  const std::string path = directory_.write("a", "0123456789");
+  ASSERT_EQ(system->xOpen(system, path.c_str(), file, kFlags, nullptr), SQLITE_OK);
+  EXPECT_EQ(file->pMethods->xClose(file), SQLITE_OK);
+  int flags = 0;
+  ASSERT_EQ(system->xOpen(system, path.c_str(), file, kFlags | SQLITE_OPEN_URI, &flags), SQLITE_OK);
+  EXPECT_EQ(flags, kFlags);
+  const sqlite3_io_methods& can = *file->pMethods;
+  EXPECT_EQ(can.iVersion, 1) << "it can neither share nor map memory";
+  std::string room = "......";
+  EXPECT_EQ(can.xRead(file, room.data(), 4, 3), SQLITE_OK);
+  EXPECT_EQ(room, "3456..");
+  EXPECT_EQ(can.xRead(file, room.data(), 3, 7), SQLITE_OK);
+  EXPECT_EQ(room, "7896..");
+  EXPECT_EQ(can.xRead(file, room.data(), 5, 8), SQLITE_IOERR_SHORT_READ);
+  EXPECT_EQ(room, std::string("89\0\0\0.", 6)) << "zeros behind its end, as SQLite wants them";
+  EXPECT_EQ(can.xRead(file, room.data(), 1, 10), SQLITE_IOERR_SHORT_READ);
+  EXPECT_EQ(room, std::string("\0\x39\0\0\0.", 6));
+  sqlite3_int64 size = 0;
+  EXPECT_EQ(can.xFileSize(file, &size), SQLITE_OK);
+  EXPECT_EQ(size, 10);
+  EXPECT_EQ(can.xWrite(file, "x", 1, 0), SQLITE_READONLY);
+  EXPECT_EQ(can.xTruncate(file, 1), SQLITE_READONLY);
+  EXPECT_EQ(can.xSync(file, SQLITE_SYNC_FULL), SQLITE_OK);
+  EXPECT_EQ(can.xLock(file, SQLITE_LOCK_SHARED), SQLITE_OK);
+  int is_reserved = 1;
+  EXPECT_EQ(can.xCheckReservedLock(file, &is_reserved), SQLITE_OK);
+  EXPECT_EQ(is_reserved, 0);
+  EXPECT_EQ(can.xUnlock(file, SQLITE_LOCK_NONE), SQLITE_OK);
+  EXPECT_EQ(can.xFileControl(file, SQLITE_FCNTL_PRAGMA, nullptr), SQLITE_NOTFOUND);
+  EXPECT_EQ(can.xSectorSize(file), 4096);
+  EXPECT_EQ(can.xDeviceCharacteristics(file), SQLITE_IOCAP_IMMUTABLE);
+  EXPECT_EQ(can.xClose(file), SQLITE_OK);
+  EXPECT_EQ(can.xRead(file, room.data(), 1, 0), SQLITE_IOERR_READ) << "it is closed";
+  EXPECT_EQ(test::read_file(path), "0123456789");
+
+  std::string full(20, '?');
+  EXPECT_EQ(system->xFullPathname(system, "/proc/self/fd/7", 20, full.data()), SQLITE_OK);
+  EXPECT_STREQ(full.c_str(), "/proc/self/fd/7") << "as it is named, wherever that leads";
 }
 
 TEST_F(SqliteBagTest, IsToldByItsFirstSixteenBytes) {
