@@ -90,7 +90,7 @@ Recorded record(const std::string& topic, std::int64_t time, const OccupancyGrid
 
 std::string mcap_number(std::uint64_t value, std::size_t bytes) {
   std::string text;
-  for (std::size_t i = 0; i < bytes; ++i) text += static_cast<char>(value >> 8 * i);
+  for (std::size_t i = 0; i < bytes; ++i) text += i < 8 ? static_cast<char>(value >> 8 * i) : '\0';
   return text;
 }
 
