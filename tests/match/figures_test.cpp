@@ -95,6 +95,9 @@ TEST(Figures, OfAPairOfManyCells) {
   const PreparedMap fixed(transform_grid(left, {}, 0.075)), moving(transform_grid(right, {}, 0.075));
   ASSERT_GT(std::min(fixed.known().cells.size(), moving.known().cells.size()), 4U * 60000U);
   add("a large building", match(fixed, moving), lines);
+  MatchOptions thorough;
+  thorough.search = SearchMethod::thorough;
+  add("a large building, thorough", match(fixed, moving, thorough), lines);
   test::expect_figures(GRIDMERGE_TEST_DATA "/large_figures.tsv", lines);
 }
 
