@@ -102,6 +102,10 @@ std::string mcap_record(std::uint8_t kind, std::string_view content) {
   return static_cast<char>(kind) + mcap_number(content.size(), 8) + std::string(content);
 }
 
+std::string mcap_with_chunk(std::string_view content) {
+  return std::string(kMcapMagic) + mcap_record(6, content);
+}
+
 std::string pack_zstd(std::string_view text) {
   std::string packed(ZSTD_compressBound(text.size()), '\0');
   packed.resize(ZSTD_compress(packed.data(), packed.size(), text.data(), text.size(), 3));
@@ -120,8 +124,6 @@ std::uint32_t crc_of(std::string_view text) {
   return static_cast<std::uint32_t>(
       crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size())));
 }
-
-constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
 
 /// What a file is about: its schemas and channels.
 struct Channels {
@@ -177,7 +179,7 @@ std::string mcap_chunk(std::string_view records, const std::string& compression,
 std::string mcap_file(const std::vector<Recorded>& messages, const McapStyle& style) {
   const Channels channels(messages);
   const std::string extra = style.has_extras ? mcap_record(0x99, "nobody knows") : "";
-  std::string file = std::string(kMagic) + mcap_record(1, mcap_text("ros2") + mcap_text("test")) + extra;
+  std::string file = std::string(kMcapMagic) + mcap_record(1, mcap_text("ros2") + mcap_text("test")) + extra;
   std::string records = channels.records() + extra;
   std::set<std::uint16_t> in_chunk;
   std::size_t count = 0;
@@ -212,7 +214,7 @@ std::string mcap_file(const std::vector<Recorded>& messages, const McapStyle& st
   const std::string footer = static_cast<char>(2) + mcap_number(20, 8) +
                              mcap_number(style.has_summary ? begin : 0, 8) + mcap_number(0, 8);
   const std::uint32_t crc = style.has_crc ? crc_of(file.substr(begin) + footer) : 0;
-  return file + footer + mcap_number(crc, 4) + std::string(kMagic);
+  return file + footer + mcap_number(crc, 4) + std::string(kMcapMagic);
 }
 
 void run_sql(const std::string& path, const std::string& sql) {

@@ -83,8 +83,14 @@ struct McapStyle {
   bool has_extras = false;  ///< records of kinds that nobody knows
 };
 
+/// What an MCAP file begins and ends with.
+inline constexpr std::string_view kMcapMagic{"\x89MCAP0\r\n", 8};
+
 /// A record: kind, length, content.
 std::string mcap_record(std::uint8_t kind, std::string_view content);
+
+/// A file without an end whose only chunk has this content.
+std::string mcap_with_chunk(std::string_view content);
 
 /// A number as MCAP has it: little-endian, of so many bytes.
 std::string mcap_number(std::uint64_t value, std::size_t bytes);

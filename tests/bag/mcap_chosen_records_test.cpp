@@ -21,15 +21,13 @@ namespace {
 using internal::StoredMessage;
 using test::all_cells;
 using test::cells_of;
-using test::contains;
+using test::kMcapMagic;
 using test::mcap_file;
 using test::mcap_number;
 using test::mcap_record;
-using test::Recorded;
+using test::mcap_with_chunk;
 using test::row_at;
 using Rows = std::vector<std::vector<Cell>>;
-
-constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
 
 std::string schema(std::uint64_t id, const std::string& name = test::kMapType) {
   return mcap_record(3,
@@ -62,16 +60,16 @@ std::string statistics(std::uint64_t messages, std::uint64_t channels, const Cou
 // Records between the magic and a footer that says where the summary begins.
 std::string ended(const std::string& records, std::uint64_t summary_begin, std::uint8_t kind = 2,
                   std::size_t more = 0) {
-  return std::string(kMagic) + records +
+  return std::string(kMcapMagic) + records +
          mcap_record(kind, mcap_number(summary_begin, 8) + mcap_number(0, 12) + std::string(more, '\0')) +
-         std::string(kMagic);
+         std::string(kMcapMagic);
 }
 
 // Data of two messages, the end of the data, and then this summary.
 std::string with_summary(const std::string& summary) {
   const std::string data = schema(1) + channel(1, 1, "/map") + message(1, 5, row_at(0, {0}).bytes) +
                            message(1, 6, row_at(0, {100}).bytes) + mcap_record(15, mcap_number(0, 4));
-  return ended(data + summary, kMagic.size() + data.size());
+  return ended(data + summary, kMcapMagic.size() + data.size());
 }
 
 class McapRecordsOfFile : public testing::Test {
@@ -92,11 +90,6 @@ class McapRecordsOfFile : public testing::Test {
     const std::string text = test::message_of<FileError>([&] { Bag{path}; });
     EXPECT_TRUE(text.starts_with(path + ": ")) << text;
     return text.substr(std::min(text.size(), path.size() + 2));
-  }
-
-  // A file without an end whose only chunk is this.
-  static std::string with_chunk(const std::string& content) {
-    return std::string(kMagic) + mcap_record(6, content);
   }
 
   const test::TemporaryDirectory directory_;
@@ -154,11 +147,11 @@ TEST_F(McapRecordsOfFile, OnlyAFooterEndsAFile) {
   EXPECT_EQ(warnings(ended(data, 0)), 0u);
   EXPECT_EQ(warnings(ended(data, 0, 0x99)), 1u) << "a record of another kind";
   EXPECT_EQ(warnings(ended(data, 0, 2, 1)), 1u) << "a record that is longer";
-  EXPECT_EQ(warnings(std::string(kMagic) + data), 1u);
-  const std::vector<MapWarning> told = BagMaps(bag_of(std::string(kMagic) + data)).last().warnings;
+  EXPECT_EQ(warnings(std::string(kMcapMagic) + data), 1u);
+  const std::vector<MapWarning> told = BagMaps(bag_of(std::string(kMcapMagic) + data)).last().warnings;
   EXPECT_EQ(told.at(0).kind, MapWarningKind::cut_off);
   EXPECT_EQ(told.at(0).text, "the file has no end: recording was cut off, and what came last may be missing");
-  EXPECT_TRUE(bag_of(std::string(kMagic)).topics().empty());
+  EXPECT_TRUE(bag_of(std::string(kMcapMagic)).topics().empty());
   EXPECT_TRUE(bag_of(ended("", 0)).topics().empty());
 }
 
@@ -173,7 +166,7 @@ TEST_F(McapRecordsOfFile, ARecordReachesToTheLastByte) {
   EXPECT_EQ(opening_error(ended(data + "x", 0)), at);
   EXPECT_EQ(topic_of(ended(data + mcap_record(0x99, ""), 0)), "/map 0 nav_msgs/msg/OccupancyGrid");
   // Without an end, what is not whole is left out.
-  const std::string cell = message(1, 5, row_at(0, {0}).bytes), begin = std::string(kMagic) + data;
+  const std::string cell = message(1, 5, row_at(0, {0}).bytes), begin = std::string(kMcapMagic) + data;
   EXPECT_EQ(topic_of(begin + cell), "/map 1 nav_msgs/msg/OccupancyGrid");
   EXPECT_EQ(topic_of(begin + cell + cell.substr(0, cell.size() - 1)), "/map 1 nav_msgs/msg/OccupancyGrid");
   EXPECT_EQ(topic_of(begin + cell + cell.substr(0, 8)), "/map 1 nav_msgs/msg/OccupancyGrid");
@@ -182,7 +175,7 @@ TEST_F(McapRecordsOfFile, ARecordReachesToTheLastByte) {
 TEST_F(McapRecordsOfFile, ARecordReachesToTheLastByteOfItsChunk) {
   const std::string inner = mcap_record(0x99, "012345");
   const auto chunk = [](const std::string& records, std::uint64_t claimed, bool has_crc = false) {
-    return with_chunk(test::mcap_chunk(records, "", has_crc, claimed));
+    return mcap_with_chunk(test::mcap_chunk(records, "", has_crc, claimed));
   };
   EXPECT_TRUE(bag_of(chunk(inner, inner.size())).topics().empty());
   EXPECT_TRUE(bag_of(chunk("", 0)).topics().empty());
@@ -195,14 +188,14 @@ TEST_F(McapRecordsOfFile, ARecordReachesToTheLastByteOfItsChunk) {
   EXPECT_EQ(opening_error(chunk("", 4'294'967'297)), "a chunk claims to unpack to 4294967297 bytes");
   std::string reaching = test::mcap_chunk(inner, "");
   reaching.pop_back();
-  EXPECT_EQ(opening_error(with_chunk(reaching)), "a chunk's records reach beyond the chunk");
-  EXPECT_EQ(opening_error(with_chunk(test::mcap_chunk(inner, "gzip"))),
+  EXPECT_EQ(opening_error(mcap_with_chunk(reaching)), "a chunk's records reach beyond the chunk");
+  EXPECT_EQ(opening_error(mcap_with_chunk(test::mcap_chunk(inner, "gzip"))),
             "a chunk is packed by 'gzip', which is neither zstd nor lz4");
 }
 
 TEST_F(McapRecordsOfFile, AChunkWhoseIndexesListOtherMessagesIsNotUnpacked) {
   const std::string names =
-      std::string(kMagic) + schema(1) + channel(1, 1, "/map") + channel(2, 1, "/tb2/map");
+      std::string(kMcapMagic) + schema(1) + channel(1, 1, "/map") + channel(2, 1, "/tb2/map");
   const std::string good =
       mcap_record(6, test::mcap_chunk(message(1, 5, row_at(0, {0, 100}).bytes), "")) + index(1);
   const std::string bad = mcap_record(6, test::mcap_chunk("no record", "gzip"));
@@ -210,8 +203,8 @@ TEST_F(McapRecordsOfFile, AChunkWhoseIndexesListOtherMessagesIsNotUnpacked) {
   const std::string summary =
       schema(1) + channel(1, 1, "/map") + channel(2, 1, "/tb2/map") + statistics(2, 2, {{1, 1}, {2, 1}});
   const auto rows = [&](const std::string& chunks) {
-    const std::string data = names.substr(kMagic.size()) + chunks + end;
-    return all_cells(bag_of(ended(data + summary, kMagic.size() + data.size())), "/map");
+    const std::string data = names.substr(kMcapMagic.size()) + chunks + end;
+    return all_cells(bag_of(ended(data + summary, kMcapMagic.size() + data.size())), "/map");
   };
   const Rows expected{cells_of({0, 100})};
   EXPECT_EQ(rows(good), expected);
@@ -225,7 +218,7 @@ TEST_F(McapRecordsOfFile, AChunkWhoseIndexesListOtherMessagesIsNotUnpacked) {
 }
 
 TEST_F(McapRecordsOfFile, TellsWhereEachMessageOfEachTopicIs) {
-  const std::string names = std::string(kMagic) + schema(1) + schema(2, "other/msg/Type") +
+  const std::string names = std::string(kMcapMagic) + schema(1) + schema(2, "other/msg/Type") +
                             channel(1, 1, "/map") + channel(2, 1, "/b") + channel(3, 2, "/map");
   const std::string one = message(1, 30, "one"), two = message(2, 10, "second"),
                     three = message(3, 20, "none");

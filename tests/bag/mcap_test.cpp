@@ -27,15 +27,15 @@ using internal::StoredMessage;
 using test::all_cells;
 using test::cells_of;
 using test::contains;
+using test::kMcapMagic;
 using test::mcap_file;
 using test::mcap_number;
 using test::mcap_record;
+using test::mcap_with_chunk;
 using test::McapStyle;
 using test::Recorded;
 using test::row_at;
 using Rows = std::vector<std::vector<Cell>>;
-
-constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
 
 rc::Gen<std::vector<std::int8_t>> any_row() {
   return rc::gen::suchThat(
@@ -101,7 +101,7 @@ RC_GTEST_PROP(Mcap, OfAFileCutShortTheBeginningIsRead, ()) {
   for (int i = 0; i < 6; ++i) messages.push_back(row_at(i, *any_row()));
   McapStyle style = *any_style();
   const std::string whole = mcap_file(messages, style);
-  const auto length = *rc::gen::inRange<std::size_t>(kMagic.size(), whole.size());
+  const auto length = *rc::gen::inRange<std::size_t>(kMcapMagic.size(), whole.size());
   const test::TemporaryDirectory directory;
   const Bag bag(directory.write("a.mcap", whole.substr(0, length)));
   if (bag.map_topics().empty()) return;
@@ -162,11 +162,6 @@ class McapFileTest : public testing::Test {
     return message;
   }
 
-  // A file without an end whose only chunk is this.
-  static std::string with_chunk(const std::string& content) {
-    return std::string(kMagic) + mcap_record(6, content);
-  }
-
   const std::vector<Recorded> messages_{row_at(1, {0, 100, 100}), row_at(2, {100, 0, 0})};
   const test::TemporaryDirectory directory_;
 };
@@ -174,8 +169,8 @@ class McapFileTest : public testing::Test {
 TEST_F(McapFileTest, AWrongChecksumIsRefused) {
   for (const char* compression : {"", "lz4", "zstd"}) {
     std::string file = mcap_file(messages_, {.compression = compression, .has_end = false});
-    const std::size_t begin = file.find('\x06', kMagic.size() + 9);  // the chunk, behind the header
-    file[begin + 9 + 24] ^= 1;                                       // its checksum
+    const std::size_t begin = file.find('\x06', kMcapMagic.size() + 9);  // the chunk, behind the header
+    file[begin + 9 + 24] ^= 1;                                           // its checksum
     EXPECT_TRUE(contains(error_of(file), "a chunk's checksum is wrong")) << compression;
   }
   std::string plain = mcap_file(messages_);
@@ -206,17 +201,18 @@ TEST_F(McapFileTest, ASummaryThatTellsTooLittleIsNotRelyedOn) {
 
 TEST_F(McapFileTest, AChunkIsHeldToWhatItSays) {
   const std::string records = mcap_record(0x99, "some bytes");
-  EXPECT_TRUE(contains(error_of(with_chunk(test::mcap_chunk(records, "lz4", false, records.size() - 1))),
+  EXPECT_TRUE(contains(error_of(mcap_with_chunk(test::mcap_chunk(records, "lz4", false, records.size() - 1))),
                        "reaches beyond its chunk"));
   EXPECT_TRUE(
-      contains(error_of(with_chunk(test::mcap_chunk(records + records, "zstd", false, records.size()))),
+      contains(error_of(mcap_with_chunk(test::mcap_chunk(records + records, "zstd", false, records.size()))),
                "unpacks to more than it says"));
-  EXPECT_TRUE(contains(error_of(with_chunk(test::mcap_chunk(records, "zstd", false, records.size() + 9))),
-                       "unpacks to less than it says"));
-  EXPECT_TRUE(contains(error_of(with_chunk(test::mcap_chunk(records, "gzip"))), "packed by 'gzip'"));
+  EXPECT_TRUE(
+      contains(error_of(mcap_with_chunk(test::mcap_chunk(records, "zstd", false, records.size() + 9))),
+               "unpacks to less than it says"));
+  EXPECT_TRUE(contains(error_of(mcap_with_chunk(test::mcap_chunk(records, "gzip"))), "packed by 'gzip'"));
   std::string reaching = test::mcap_chunk(records, "");
   reaching.pop_back();
-  EXPECT_TRUE(contains(error_of(with_chunk(reaching)), "reach beyond the chunk"));
+  EXPECT_TRUE(contains(error_of(mcap_with_chunk(reaching)), "reach beyond the chunk"));
 }
 
 TEST_F(McapFileTest, AChunkBombIsReadInAStream) {
@@ -229,14 +225,14 @@ TEST_F(McapFileTest, AChunkBombIsReadInAStream) {
     packed = test::mcap_chunk(records, "zstd", false);
   }
   EXPECT_LT(packed.size(), 100'000u);
-  EXPECT_TRUE(contains(error_of(with_chunk(packed)), "has no topics"));
+  EXPECT_TRUE(contains(error_of(mcap_with_chunk(packed)), "has no topics"));
   std::string claims = test::mcap_chunk("", "zstd", false, std::uint64_t{1} << 60);
-  EXPECT_TRUE(contains(error_of(with_chunk(claims)), "claims to unpack to 1152921504606846976 bytes"));
+  EXPECT_TRUE(contains(error_of(mcap_with_chunk(claims)), "claims to unpack to 1152921504606846976 bytes"));
 }
 
 TEST_F(McapFileTest, RecordsReachNotBeyondTheFile) {
   std::string file = mcap_file(messages_, {.has_summary = false, .has_crc = false});
-  const std::size_t begin = file.find('\x06', kMagic.size() + 9);
+  const std::size_t begin = file.find('\x06', kMcapMagic.size() + 9);
   file.replace(begin + 1, 8, mcap_number(std::uint64_t{1} << 63, 8));
   EXPECT_TRUE(contains(error_of(file), "reaches beyond the file"));
 }
@@ -248,12 +244,12 @@ TEST_F(McapFileTest, AFooterNamesAPlaceOfTheFile) {
 }
 
 TEST_F(McapFileTest, ShortMessagesAreNone) {
-  const std::string file = std::string(kMagic) + mcap_record(5, "short");
+  const std::string file = std::string(kMcapMagic) + mcap_record(5, "short");
   EXPECT_TRUE(contains(error_of(file), "a record ends early"));
 }
 
 TEST_F(McapFileTest, PublishersOfOneTopicAreOneTopic) {
-  std::string file = std::string(kMagic);
+  std::string file = std::string(kMcapMagic);
   file += mcap_record(
       3, mcap_number(1, 2) + test::mcap_text(test::kMapType) + test::mcap_text("") + test::mcap_text(""));
   for (const std::uint64_t id : {1, 2})
@@ -341,7 +337,7 @@ TEST_F(McapFileTest, OnlySoMuchIsKeptOfWhatIsOutOfOrder) {
 }
 
 TEST_F(McapFileTest, ShortRecordsAreReadByFewCalls) {
-  std::string file(kMagic);
+  std::string file(kMcapMagic);
   for (int i = 0; i < 50'000; ++i) file += mcap_record(0x99, "");
   const std::string path = directory_.write("a.mcap", file);
   const Reads before = reads_by_now();
