@@ -193,5 +193,25 @@ TEST(Changes, ANewFrameIsNoJump) {
   EXPECT_EQ(events[0].robot, "a");
 }
 
+TEST(Changes, OfThreeTheOneJumpedThatLiesElsewhereToBothOthers) {
+  RobotGroup before = pair_at(10.0), now = pair_at(10.0);
+  before.robots["c"] = {{3.0, 0, 0}, 0.99};
+  now.robots["c"] = {{7.0, 0, 0}, 0.99};
+  const std::vector<TeamEvent> events = changes_between({before}, {now}, kExtents, {});
+  ASSERT_EQ(events.size(), 1u) << "to half of the others is not to most of them";
+  EXPECT_EQ(events[0].kind, TeamEvent::Kind::jumped);
+  EXPECT_EQ(events[0].text, "c moved by 4.0 m: its newer place is confirmed");
+}
+
+TEST(Changes, AreToldWithFourNamesAndTheNumberOfTheOthers) {
+  RobotGroup group;
+  for (const char* robot : {"a", "b", "c", "d", "e"}) group.robots[robot] = {{}, 0.99};
+  EXPECT_EQ(say_placed("a", group), "it lies together with b, c, d, e");
+  group.robots["f"] = group.robots["g"] = {{}, 0.99};
+  EXPECT_EQ(say_placed("a", group), "it lies together with b, c, d, e and 2 more");
+  group.robots.erase("g");
+  EXPECT_EQ(say_placed("a", group), "it lies together with b, c, d, e and 1 more");
+}
+
 }  // namespace
 }  // namespace gridmerge::internal

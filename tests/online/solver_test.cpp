@@ -181,11 +181,15 @@ TEST(TeamSolver, TheFrameIsThatOfTheRobotHeardFirstForAsLongAsItLives) {
   news["carl"] = map_news(explorers.map(2, 5), 10);
   news["bert"] = map_news(explorers.map(1, 5), 20);
   solver.take(news);
-  EXPECT_EQ(solver.solve(Effort::further).components.at(0).anchor, "carl");
+  TeamAnswer answer = solver.solve(Effort::further);
+  EXPECT_EQ(answer.components.at(0).anchor, "carl");
+  // Outputs take the first map for the one that holds the frame, unless they are told otherwise.
+  EXPECT_EQ(answer.merge->names.at(0), "bert");
+  EXPECT_TRUE(answer.merge->result.components.at(0).in_world_frame);
   news = {};
   news["anna"] = map_news(explorers.map(0, 5), 30);
   solver.take(news);
-  TeamAnswer answer = solver.solve(Effort::further);
+  answer = solver.solve(Effort::further);
   EXPECT_EQ(answer.components.at(0).anchor, "carl");
   EXPECT_EQ(status_of(answer, "carl").T_world_map, SE2{});
   expect_at(answer, "anna", explorers.between(2, 0));
@@ -195,6 +199,7 @@ TEST(TeamSolver, TheFrameIsThatOfTheRobotHeardFirstForAsLongAsItLives) {
   solver.take(news);
   answer = solver.solve(Effort::further);
   EXPECT_EQ(answer.components.at(0).anchor, "bert");
+  EXPECT_FALSE(answer.merge->result.components.at(0).in_world_frame);
   expect_at(answer, "anna", explorers.between(1, 0));
   EXPECT_TRUE(answer.events.empty());  // a frame is not a jump
   news = {};

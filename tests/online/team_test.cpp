@@ -257,6 +257,35 @@ TEST(Team, SaysNothingOfWhereAForgottenMapLay) {
   EXPECT_EQ(bert().state, RobotState::left_out);
 }
 
+TEST(Team, SaysThatWhatWasHeardOfAForgottenRobotIsBeingLookedAt) {
+  TeamOptions options;
+  options.quiet = 0ms;
+  std::promise<void> is_told, goes_on;
+  std::atomic<bool> is_held = false;
+  Team team(options, [&](const std::shared_ptr<const TeamAnswer>& answer) {
+    const bool is_second = !answer->robots.empty() && answer->robots.front().maps_heard == 2;
+    if (!is_second || is_held.exchange(true)) return;
+    is_told.set_value();
+    goes_on.get_future().wait();  // until then the answer before is the newest
+  });
+  team.hear("anna", make_grid(3, 3, 0.05));
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  EXPECT_EQ(team.answer()->robots.at(0).why, "there is no other map yet");
+  team.hear("anna", make_grid(3, 3, 0.05));
+  is_told.get_future().wait();
+  team.forget("anna");
+  team.hear("anna", make_grid(4, 4, 0.05));
+  const auto answer = team.answer();
+  goes_on.set_value();
+  ASSERT_EQ(answer->robots.size(), 1u);
+  EXPECT_EQ(answer->robots[0].name, "anna");
+  EXPECT_EQ(answer->robots[0].state, RobotState::waiting);
+  EXPECT_EQ(answer->robots[0].why, "it was forgotten, and what was heard since is being looked at");
+  EXPECT_FALSE(answer->settled);
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  EXPECT_EQ(team.answer()->robots.at(0).why, "there is no other map yet");
+}
+
 TEST(Team, RefusesWhatMakesNoSense) {
   TeamOptions options;
   options.max_robots = 2;
@@ -280,6 +309,9 @@ TEST(Team, RefusesWhatMakesNoSense) {
   refuses([](TeamOptions& o) { o.search_again = -0.1; });
   refuses([](TeamOptions& o) { o.confirmations = 0; });
   refuses([](TeamOptions& o) { o.quiet = -1ms; });
+  TeamOptions restless;
+  restless.quiet = 0ms;
+  EXPECT_NO_THROW(validate(restless));
   refuses([](TeamOptions& o) { o.quiet = std::chrono::milliseconds::max(); });
   refuses([](TeamOptions& o) { o.quiet = std::chrono::hours(365 * 24) + 1ms; });
   refuses([](TeamOptions& o) { o.max_robots = 0; });

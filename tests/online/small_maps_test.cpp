@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a team does at limits that small maps meet to the cell.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <numbers>
+
+#include "online/solver.hpp"
+#include "solver_news.hpp"
+
+namespace gridmerge::internal {
+namespace {
+
+using Effort = TeamSolver::Effort;
+using test::map_news;
+using test::status_of;
+
+OccupancyGrid floor_of(int side) {
+  return make_grid(side, side, 0.1, {}, Cell::free);
+}
+
+/// Two robots whose poses are given lie together, whatever is on their maps.
+News two_fixed(const OccupancyGrid& anna, const OccupancyGrid& bert, const SE2& T_anna_bert) {
+  News news;
+  news["anna"] = map_news(anna);
+  news["anna"].known_pose = KnownPose{{}, 0.0, 0.0, true};
+  news["bert"] = map_news(bert, 1);
+  news["bert"].known_pose = KnownPose{T_anna_bert, 0.0, 0.0, true};
+  return news;
+}
+
+/// Whether the map was searched anew once the looks that are due at once are made.
+bool is_searched(TeamSolver& solver, const OccupancyGrid& map) {
+  solver.take({{"bert", map_news(map, 1)}});
+  solver.solve(Effort::soon);
+  solver.solve(Effort::further);
+  return solver.is_settled();
+}
+
+TEST(TeamOfSmallMaps, SearchesAPlacedMapFromThatVeryShareOn) {
+  TeamOptions options;
+  options.search_again = 1.0 / 64.0;
+  TeamSolver solver(options);
+  OccupancyGrid map = floor_of(8);
+  solver.take(two_fixed(floor_of(9), map, {2.0, 0.0, 0.0}));
+  ASSERT_EQ(status_of(solver.solve(Effort::full), "bert").state, RobotState::placed);
+  map.at(3, 4) = Cell::unknown;  // one of 64
+  EXPECT_TRUE(is_searched(solver, map));
+}
+
+/// It is waited for: a quarter of the share is enough.
+TEST(TeamOfSmallMaps, SearchesTheMapOfARobotThatLiesNowhereSooner) {
+  TeamOptions options;
+  options.search_again = 0.4;
+  TeamSolver solver(options);
+  OccupancyGrid map = floor_of(10);
+  solver.take({{"bert", map_news(map, 1)}});
+  ASSERT_EQ(status_of(solver.solve(Effort::full), "bert").state, RobotState::waiting);
+  const auto is_searched_without = [&](std::ptrdiff_t cells) {
+    std::fill_n(map.cells.begin(), cells, Cell::unknown);
+    return is_searched(solver, map);
+  };
+  EXPECT_FALSE(is_searched_without(9)) << "of 100";
+  EXPECT_TRUE(is_searched_without(11));
+}
+
+TEST(TeamOfSmallMaps, SaysHowFarTheCellsOfAMapHaveJumped) {
+  OccupancyGrid map = floor_of(1);
+  map.origin = {9.95, -0.05, 0.0};  // all of it lies around (10, 0)
+  TeamSolver solver({});
+  solver.take(two_fixed(floor_of(5), map, {30.0, 0.0, 0.0}));
+  ASSERT_EQ(status_of(solver.solve(Effort::full), "bert").state, RobotState::placed);
+  // The origin of its frame, about which it is turned, stays.
+  solver.take(two_fixed(floor_of(5), map, {30.0, 0.0, std::numbers::pi}));
+  const TeamAnswer answer = solver.solve(Effort::full);
+  const auto of_bert = std::find_if(answer.events.begin(), answer.events.end(),
+                                    [](const TeamEvent& event) { return event.robot == "bert"; });
+  ASSERT_NE(of_bert, answer.events.end());
+  EXPECT_EQ(of_bert->text, "bert moved by 20.0 m: its newer place is confirmed");
+}
+
+}  // namespace
+}  // namespace gridmerge::internal
