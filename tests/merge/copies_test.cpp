@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "../similarity/random_grid.hpp"
+#include "merge/joins.hpp"
 
 namespace gridmerge::internal {
 namespace {
@@ -72,6 +74,34 @@ TEST(WithoutCopies, TheSamePlaceIsWithinAThousandthOfACell) {
   EXPECT_TRUE(lies_on_it({0.0, 0.0, 0.9e-3 * cell / side}));
   EXPECT_FALSE(lies_on_it({0.0, 0.0, -1.1e-3 * cell / side}));
   EXPECT_FALSE(lies_on_it({0.6e-3 * cell, 0.0, 0.6e-3 * cell / side})) << "the sum counts";
+}
+
+void expect_near(const SE2& found, const SE2& expected) {
+  EXPECT_NEAR(found.x, expected.x, 1e-12);
+  EXPECT_NEAR(found.y, expected.y, 1e-12);
+  EXPECT_NEAR(normalize_angle(found.theta - expected.theta), 0.0, 1e-12);
+}
+
+/// In the frame of the copy, as the pose of the match is.
+TEST(AddCopies, GivesACopyAllHypothesesOfItsOriginal) {
+  const SE2 T_0_1{5.0, -1.0, 0.3}, other_T_0_1{-2.0, 4.0, 2.5}, T_1_2{1.0, 2.0, -0.8};
+  const OccupancyGrid map = some_map(1), original = some_map(2);
+  MergeResult result;
+  MatchResult match;
+  match.T_fixed_moving = T_0_1;
+  match.hypotheses = {{T_0_1, 1.0, 0.6}, {other_T_0_1, 0.5, 0.3}};
+  result.joins = {make_join(0, 1, match)};
+  result.left_out = {{0, Reason::several}, {1, Reason::several}};
+  add_copies({{2, 1, T_1_2}}, {&map, &original, &original}, std::vector<std::optional<KnownPose>>(3), 0.0,
+             result);
+  const auto join = std::find_if(result.joins.begin(), result.joins.end(),
+                                 [](const Join& one) { return one.fixed == 0 && one.moving == 2; });
+  ASSERT_NE(join, result.joins.end());
+  expect_near(join->T_fixed_moving, T_0_1 * T_1_2);
+  expect_near(join->match.T_fixed_moving, T_0_1 * T_1_2);
+  ASSERT_EQ(join->match.hypotheses.size(), 2u);
+  expect_near(join->match.hypotheses[0].T_fixed_moving, T_0_1 * T_1_2);
+  expect_near(join->match.hypotheses[1].T_fixed_moving, other_T_0_1 * T_1_2);
 }
 
 }  // namespace

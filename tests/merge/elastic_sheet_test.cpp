@@ -141,6 +141,21 @@ TEST(ElasticSheet, AStepIsTakenAsFarAsItStaysTame) {
   EXPECT_EQ(sheet.shifts(), before);
 }
 
+TEST(ElasticSheet, AStepThatIsAMillionTimesTooFarIsNotTaken) {
+  ElasticSheet sheet(some_map(), 2.0, {});
+  const std::vector<Point2> tame = random_shifts(sheet, 1, 0.05);
+  const double bound = strain_bound(tame, sheet.columns(), sheet.rows(), sheet.spacing());
+  const auto step = [&](double factor) {
+    std::vector<Point2> shifts = tame;
+    for (Point2& shift : shifts) shift = {factor * shift.x, factor * shift.y};
+    sheet.step_to(shifts, 1.5 * bound);
+  };
+  step(2.0 * (1 << 20));
+  EXPECT_EQ(sheet.shifts(), std::vector<Point2>(tame.size()));
+  step(1 << 20);
+  EXPECT_EQ(sheet.shifts(), tame) << "halved so often, to the bit";
+}
+
 TEST(ElasticSheet, LiesWhereItsDeformationAndPoseSay) {
   const SE2 T_group_map{-2.0, 5.0, 1.1};
   ElasticSheet sheet(some_map(), 2.0, T_group_map);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <random>
 #include <stdexcept>
 #include <vector>
 
@@ -59,6 +61,31 @@ RC_GTEST_PROP(ConsistentSetWithin, IsFilledBySurestPairs, ()) {
   const ConsistentSet found = find_consistent_set_within(problem, 0.8, budget);
   RC_ASSERT(2 * steps.size() - found.groups.size() == fitting);
   RC_ASSERT(found.over_budget.size() == steps.size() - fitting);
+}
+
+/// Doubts that are summed in another order may fit where they did not: the least sure pair goes, no other.
+TEST(ConsistentSetWithin, CutsTheLeastSurePairWhereSumsDifferByRounding) {
+  std::vector<double> odds;
+  for (int i = 0; i < 24; ++i) odds.push_back(4.0 + 0.01 * i);  // with sums above 0.5, which are rounded
+  std::mt19937 random(1);
+  JoinProblem problem;
+  double budget = 0.0, expected = 0.0;
+  for (int tries = 0; tries < 100 && !(budget < expected); ++tries) {
+    std::shuffle(odds.begin(), odds.end(), random);
+    problem = lone_pairs(odds);
+    const ConsistentSet all = find_consistent_set(problem, 0.8);
+    expected = expected_false_joins(all);
+    std::vector<double> doubts;  // surest first
+    for (const NodeGroup& group : all.groups) {
+      for (const PlacedNode& node : group) doubts.push_back(0.5 * (1.0 - node.probability));
+    }
+    std::sort(doubts.begin(), doubts.end());
+    budget = std::accumulate(doubts.begin(), doubts.end(), 0.0);
+  }
+  ASSERT_LT(budget, expected) << "no order of the pairs is of use to this test";
+  const ConsistentSet found = find_consistent_set_within(problem, 0.8, budget);
+  ASSERT_EQ(found.over_budget.size(), 1U);
+  EXPECT_EQ(odds[found.over_budget[0]], 4.0);
 }
 
 TEST(ConsistentSetWithin, RefusesABudgetThatIsNone) {

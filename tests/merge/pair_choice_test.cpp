@@ -5,19 +5,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <random>
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merger.hpp"
+#include "merge/map_store.hpp"
 #include "merge/team.hpp"
 
 namespace gridmerge {
@@ -147,6 +151,26 @@ TEST(PairChoice, FewerPairsMakeTheSameMapsWhateverTheOrderAndTheThreads) {
   ASSERT_TRUE(other.not_compared);
   EXPECT_EQ(other.not_compared->pairs, result.not_compared->pairs);
   EXPECT_EQ(other.not_compared->expected_joins, result.not_compared->expected_joins);
+}
+
+/// A group's signature tells with which maps it may share a place: others are not worth a match.
+TEST(PairChoice, OfMeetingsThoseAreWorthAMatchThatMayMakeNearlyAllJoins) {
+  const Fleet fleet(24);
+  internal::MapStore store;
+  std::vector<internal::MapStore::MapId> maps;
+  for (std::size_t i = 1; i < fleet.maps.size(); i += 2)
+    maps.push_back(store.add(std::make_unique<const internal::MapStore::Input>(
+                                 std::make_shared<const OccupancyGrid>(fleet.maps[i])),
+                             std::nullopt));
+  internal::PairChoice choice(0.9);
+  choice.prepare(store, maps);
+  std::vector<std::unique_ptr<PreparedMap>> groups;
+  groups.push_back(std::make_unique<PreparedMap>(fleet.maps[4]));
+  std::vector<std::pair<std::size_t, std::size_t>> meetings;
+  for (std::size_t i = 0; i < maps.size(); ++i) meetings.emplace_back(0, i);
+  const std::vector<bool> worth = choice.worth_meeting(groups, meetings, 0);
+  EXPECT_TRUE(worth.at(2)) << "the other map of the same floor";
+  EXPECT_LE(2 * std::count(worth.begin(), worth.end(), true), std::ssize(worth)) << "of others a few";
 }
 
 /// What a merge of the maps, with comparisons of this store, would match first.

@@ -356,6 +356,12 @@ TEST(PlaceOnPlan, RefusesWhatMakesNoSense) {
   OccupancyGrid broken = ends.plan;
   broken.cells.pop_back();
   fails(broken, apart(2), {}, "cell");
+  broken = corner;  // a line drawing, of which lines alone are used: it has to be a grid all the same
+  broken.probability = {50};
+  fails(broken, apart(2), {}, "probabilities");
+  broken = make_grid(30, 20, 0.1);
+  broken.cells.clear();
+  fails(broken, apart(2), {}, "cells do not number");
   for (const double budget : {std::nan(""), -0.1, HUGE_VAL}) {
     MergeOptions options;
     options.max_false_joins = budget;
