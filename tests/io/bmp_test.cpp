@@ -112,6 +112,17 @@ TEST(Bmp, RowsOfWholeWordsHaveNothingToFillThemUp) {
   EXPECT_TRUE(contains(cut(23), "end early"));
 }
 
+TEST(Bmp, AHeaderThatIsCutAnywhereIsSaidToEnd) {
+  const std::string whole =
+      BmpBuilder{.bits = 8, .colors = 3, .palette = kBlackGrayWhite, .rows = bytes({0, 0, 0, 0})}.build();
+  const std::size_t palette_end = 14 + 40 + 3 * 4 - 1;  // nobody needs the last colour's fourth byte
+  for (std::size_t size = 18; size < palette_end; ++size) {
+    const std::string error =
+        test::message_of<ParseError>([&] { decode_bmp(whole.substr(0, size), kLimit); });
+    EXPECT_EQ(error, "the file ends within its header") << size;
+  }
+}
+
 TEST(Bmp, TellsItsSizeWhicheverRowComesFirst) {
   for (const std::int32_t height : {5, -5}) {
     const ImageSize size =

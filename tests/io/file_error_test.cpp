@@ -22,6 +22,13 @@ TEST(FileError, StaysOnOneLineWhateverTheNames) {
                "\\x9b31m");
 }
 
+TEST(FileError, CutsTheMiddleOutOfMoreThanTenThousandBytes) {
+  const std::string whole = "the file" + std::string(9'984, 'x') + "the cause";
+  EXPECT_EQ(FileError(whole.substr(1)).what(), whole.substr(1));
+  EXPECT_EQ(FileError(whole).what(), "the file" + std::string(292, 'x') + " [... 9401 bytes ...] " +
+                                         std::string(291, 'x') + "the cause");
+}
+
 TEST(FileError, LeavesOtherTextAlone) {
   EXPECT_STREQ(FileError("Küche – 台所.yaml\xc2").what(), "Küche – 台所.yaml\xc2");
 }

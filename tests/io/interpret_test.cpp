@@ -132,7 +132,7 @@ TEST(Trinary, LiteralThresholdsAreReadToTheLetter) {
   ASSERT_EQ(map.warnings.size(), 1u);
   EXPECT_EQ(map.warnings[0].kind, MapWarningKind::gray_is_known);
   EXPECT_TRUE(contains(map.warnings[0].text, "2 pixels of lightness 205"));
-  EXPECT_TRUE(contains(map.warnings[0].text, "load as free with free_thresh 0.25"));
+  EXPECT_TRUE(contains(map.warnings[0].text, "load as free with free_thresh 0.25 and negate 0"));
 }
 
 TEST(Trinary, OfALossyPictureWhatIsNearerToUnknownThanToFreeIsUnknown) {
@@ -269,6 +269,14 @@ TEST(Raw, TakesNoHeedOfNegateAndAlpha) {
   const LoadedMap map = interpret(yaml, row_of({0, 100}, {0, 0}));
   EXPECT_EQ(map.grid.cells, (Cells{kFree, kOccupied}));
   EXPECT_EQ(texts_of(map), Warnings{"negate has no effect in raw mode"});
+}
+
+TEST(Interpret, TellsFirstWhatTheYamlIsWarnedOf) {
+  MapYaml yaml = yaml_of();
+  yaml.warnings = {{MapWarningKind::long_origin, "the origin has a fourth number"}};
+  const LoadedMap map = interpret(yaml, row_of({205, 254}));
+  EXPECT_EQ(texts_of(map), (Warnings{"the origin has a fourth number", "the map has no occupied cell"}));
+  EXPECT_EQ(map.warnings[0].kind, MapWarningKind::long_origin);
 }
 
 TEST(Interpret, WarnsOfMissingCells) {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <ostream>
 #include <string>
+#include <utility>
 
 #include "io/parse_error.hpp"
 #include "io/support.hpp"
@@ -216,6 +217,24 @@ TEST(MapYaml, ShowsValuesOfSixtyCharactersWhole) {
 
 TEST(MapYaml, DeepNestingIsRefused) {
   EXPECT_TRUE(contains(error_of(std::string(100000, '[')), "nested too deeply"));
+  EXPECT_TRUE(contains(error_of(std::string(100000, '{')), "nested too deeply"));
+}
+
+TEST(MapYaml, SixteenLevelsAreTheMostOfListsAndOfMaps) {
+  const auto nested = [](int depth, const std::string& begin, const std::string& end) {
+    std::string text;
+    for (int i = 0; i < depth; ++i) text += begin;
+    text += "x";
+    for (int i = 0; i < depth; ++i) text += end;
+    return kGood + "more: " + text + "\n";  // the map that this is a part of is a level, too
+  };
+  for (const auto& [begin, end] : {std::pair("[", "]"), std::pair("{a: ", "}")}) {
+    EXPECT_EQ(parse_map_yaml(nested(15, begin, end)).image, "a.pgm");
+    EXPECT_TRUE(contains(error_of(nested(16, begin, end)), "nested too deeply")) << begin;
+  }
+  std::string beside_each_other;
+  for (int i = 0; i < 20; ++i) beside_each_other += "more" + std::to_string(i) + ": {a: [b]}\n";
+  EXPECT_EQ(parse_map_yaml(kGood + beside_each_other).image, "a.pgm");
 }
 
 TEST(MapYaml, AnchorsThatUnfoldToBillionsCostNothing) {

@@ -57,6 +57,13 @@ TEST(Png, TellsItsSizeInItsFirstTwentyFourBytes) {
   EXPECT_FALSE(png_size(image.substr(0, 23)));
 }
 
+TEST(Png, TellsThatAChannelHas16Bits) {
+  const PngImage image =
+      decode_png(PngBuilder{.width = 2, .bit_depth = 16, .rows = bytes({1, 2, 3, 4})}.build());
+  EXPECT_EQ(image.bit_depth, 16);
+  EXPECT_EQ(image.samples, (Samples{1, 2, 3, 4}));
+}
+
 TEST(Png, GrayBecomesLightness) {
   const MapImage image = decode(two_by_two());
   EXPECT_EQ(image.white, 255);
@@ -237,6 +244,11 @@ RC_GTEST_PROP(Png, ReadsWhatItWrites, ()) {
   RC_ASSERT(read.channels == image.channels);
   RC_ASSERT(read.bit_depth == 8);
   RC_ASSERT(read.samples == image.samples);
+}
+
+TEST(Png, WritesNothingBehindTheImage) {
+  EXPECT_TRUE(encode_png({.width = 2, .height = 1, .channels = 3, .samples = Samples(6)})
+                  .ends_with(png_chunk("IEND", "")));
 }
 
 TEST(Png, WritesOnlyWhatFits) {

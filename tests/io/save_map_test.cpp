@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -56,6 +58,46 @@ RC_GTEST_PROP(SaveMap, LoadsAgainToTheSameBits, (const OccupancyGrid& grid)) {
   RC_ASSERT(loaded.resolution == grid.resolution);
   RC_ASSERT(loaded.origin == grid.origin);
   RC_ASSERT(loaded.cells == grid.cells);
+}
+
+TEST(SaveProbabilityMap, WritesPercentsWithTheTopRowFirst) {
+  const TemporaryDirectory directory;
+  OccupancyGrid grid = small_grid();
+  const float unknown = std::numeric_limits<float>::quiet_NaN();
+  grid.probability = {1.0F, 0.0F, 0.37F, 1.5F, -0.5F, unknown};
+  save_probability_map(grid, directory.file("fused.yaml"));
+  EXPECT_EQ(test::read_file(directory.file("fused.yaml")),
+            "image: fused.pgm\n"
+            "mode: raw\n"
+            "resolution: 0.05\n"
+            "origin: [-1.5, 2.25, 0.0]\n"
+            "negate: 0\n"
+            "occupied_thresh: 0.65\n"
+            "free_thresh: 0.196\n");
+  EXPECT_EQ(test::read_file(directory.file("fused.pgm")),
+            "P5\n3 2\n255\n" + bytes({100, 0, 255, 100, 0, 37}));
+  EXPECT_EQ(directory.names(), (std::vector<std::string>{"fused.pgm", "fused.yaml"}));
+}
+
+TEST(SaveProbabilityMap, LoadsAgainRoundedToAPercent) {
+  const TemporaryDirectory directory;
+  OccupancyGrid grid = small_grid();
+  const float unknown = std::numeric_limits<float>::quiet_NaN();
+  grid.probability = {0.994F, 0.096F, unknown, 0.004F, 0.5F, 0.646F};
+  save_probability_map(grid, directory.file("a.yaml"));
+  const OccupancyGrid loaded = load_map(directory.file("a.yaml")).grid;
+  EXPECT_EQ(loaded.cells, (std::vector<Cell>{Cell::occupied, Cell::free, Cell::unknown, Cell::free,
+                                             Cell::unknown, Cell::occupied}));
+  ASSERT_EQ(loaded.probability.size(), 6U);
+  EXPECT_TRUE(std::isnan(loaded.probability[2]));
+  for (const std::size_t i : {0U, 1U, 3U, 4U, 5U})
+    EXPECT_NEAR(loaded.probability[i], grid.probability[i], 0.005) << i;
+}
+
+TEST(SaveProbabilityMap, NeedsProbabilities) {
+  const TemporaryDirectory directory;
+  EXPECT_THROW(save_probability_map(small_grid(), directory.file("a.yaml")), std::invalid_argument);
+  EXPECT_TRUE(directory.names().empty());
 }
 
 TEST(SaveMap, TakesAnyName) {
