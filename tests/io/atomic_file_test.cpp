@@ -7,12 +7,16 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
+#include "io/directory_names.hpp"
+#include "io/faulty_disk.hpp"
 #include "io/file_size_limit.hpp"
 #include "io/spool_file.hpp"
 #include "io/support.hpp"
@@ -94,6 +98,22 @@ TEST(SpoolFile, HoldsWhatIsWrittenLaterAndHasNoName) {
   EXPECT_EQ(directory.names(), Names{"a"});
   EXPECT_TRUE(contains(test::message_of<FileError>([&] { SpoolFile(directory.file("no/such/a")); }),
                        "a: cannot be written: No such file"));
+}
+
+// What an errno says counts only after a call that failed. In a child, as it might go on for ever.
+TEST(SpoolFile, IsCopiedAfterACallThatASignalHadEnded) {
+  const TemporaryDirectory directory;
+  SpoolFile spool(directory.file("a"));
+  spool.append("all of it");
+  StagedFile staged(directory.file("a"));
+  EXPECT_EXIT(
+      {
+        ::alarm(10);
+        errno = EINTR;
+        spool.copy_to(staged);
+        ::_exit(0);
+      },
+      testing::ExitedWithCode(0), "");
 }
 
 TEST(AtomicFile, DisappearsWithoutCommit) {
@@ -235,6 +255,57 @@ TEST(AtomicFile, LeavesTheFilesOfThoseWhoWriteAtTheSameTime) {
   for (std::thread& cleaner : cleaners) cleaner.join();
   EXPECT_EQ(gone, 0);
   EXPECT_EQ(directory.names(), Names{"final"});
+}
+
+TEST(AtomicFile, RemovesWhatAKilledProgramHasLeftWithoutStandardInputToo) {
+  const TemporaryDirectory directory;
+  directory.write(".gridmerge-999999-0.tmp", "left");
+  const int input = ::dup(STDIN_FILENO);
+  ::close(STDIN_FILENO);  // the next file that is opened is descriptor 0
+  remove_abandoned(directory.path());
+  ::dup2(input, STDIN_FILENO);
+  ::close(input);
+  EXPECT_EQ(directory.names(), Names{});
+}
+
+TEST(AtomicFile, LeavesNoDescriptorOpen) {
+  const TemporaryDirectory directory;
+  const auto count_open = [] {
+    std::error_code error;
+    return names_in("/proc/self/fd", error).size();
+  };
+  const std::size_t before = count_open();
+  write_file_atomically(directory.file("a"), "new");
+  EXPECT_EQ(count_open(), before);
+}
+
+TEST(AtomicFile, WhatIsAppendedToAFlushedFileIsFlushedAsWell) {
+  const TemporaryDirectory directory;
+  test::FaultyDisk disk;
+  StagedFile staged(directory.file("a"), "new");
+  staged.append(" and newer");
+  staged.commit();
+  EXPECT_EQ(disk.flushed, (std::vector<std::uintmax_t>{3, 13}));
+}
+
+TEST(AtomicFile, IsFlushedAgainAfterASignal) {
+  const TemporaryDirectory directory;
+  test::FaultyDisk disk;
+  disk.flush_errors = {EINTR, EINTR};
+  EXPECT_NO_THROW(write_file_atomically(directory.file("a"), "new"));
+  EXPECT_EQ(disk.flushed, std::vector<std::uintmax_t>{3});
+}
+
+TEST(AtomicFile, ADiskThatCannotBeFlushedIsAnErrorAndOneThatNeverIsIsNone) {
+  const TemporaryDirectory directory;
+  directory.write("a", "old");
+  test::FaultyDisk disk;
+  disk.flush_errors = {EIO};
+  EXPECT_EQ(error_of(directory.file("a")), directory.file("a") + ": cannot be written: Input/output error");
+  EXPECT_EQ(read_file(directory.file("a")), "old");
+  disk.flush_errors = {EINVAL, ENOTSUP};  // of the file, and of its directory
+  EXPECT_NO_THROW(write_file_atomically(directory.file("a"), "new"));
+  EXPECT_EQ(read_file(directory.file("a")), "new");
 }
 
 TEST(AtomicFile, LeavesAllAsItWasOnAFullDisk) {

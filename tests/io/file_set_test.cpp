@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <string>
@@ -17,6 +18,7 @@
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "io/atomic_file.hpp"
+#include "io/faulty_disk.hpp"
 #include "io/support.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -160,6 +162,59 @@ TEST(FileSet, NeedsADirectory) {
   EXPECT_TRUE(
       contains(test::message_of<FileError>([&] { const FileSet files(directory.path() / "missing"); }),
                "No such file"));
+}
+
+TEST(FileSet, WhereThereAreNoLinksFilesAreReplacedOneByOne) {
+  // FAT, and folders that virtual machines share with their hosts.
+  for (const int error : {EPERM, ENOSYS, ENOTSUP, EROFS, EPROTO, EINVAL}) {
+    const TemporaryDirectory directory;
+    for (const char* name : {"a", "b"}) directory.write(name, "old");
+    test::FaultyDisk disk;
+    disk.link_error = error;
+    {
+      FileSet files(directory.path());
+      files.add("a", "new a");
+      files.add("c", "new c");
+      files.remove("b");
+      EXPECT_NO_THROW(files.commit()) << error;
+    }
+    EXPECT_EQ(directory.names(), (Names{"a", "c"})) << error;
+    EXPECT_EQ(read_file(directory.file("a")) + read_file(directory.file("c")), "new anew c") << error;
+  }
+}
+
+TEST(FileSet, WhereALinkFailsOtherwiseNothingHasHappened) {
+  const TemporaryDirectory directory;
+  directory.write("a", "old");
+  test::FaultyDisk disk;
+  disk.link_error = ENOSPC;
+  {
+    FileSet files(directory.path());
+    files.add("a", "new");
+    EXPECT_TRUE(contains(test::message_of<FileError>([&] { files.commit(); }),
+                         directory.path().string() + ": cannot be written: No space left on device"));
+  }
+  EXPECT_EQ(directory.names(), Names{"a"});
+  EXPECT_EQ(read_file(directory.file("a")), "old");
+}
+
+// The first file that such a program opens is descriptor 0. In a child, as it might wait for its own lock.
+TEST(FileSet, ReplacesFilesInAProgramWithoutStandardInput) {
+  const TemporaryDirectory directory;
+  const auto replace = [&] {
+    FileSet files(directory.path());
+    files.add("a", "new");
+    files.commit();
+  };
+  EXPECT_EXIT(
+      {
+        ::alarm(10);
+        ::close(STDIN_FILENO);
+        replace();
+        ::_exit(0);
+      },
+      testing::ExitedWithCode(0), "");
+  EXPECT_EQ(directory.names(), Names{"a"});
 }
 
 // As root, who may write everywhere, a child becomes somebody else.
