@@ -149,5 +149,25 @@ TEST_F(MatchWorkTest, WhatCannotBeKeptIsMadeAllTheSameIfThatIsAskedFor) {
   EXPECT_THROW(match_with_cache(another, team.maps, cache, options), FileError);
 }
 
+TEST_F(MatchWorkTest, MatchesThatCannotBeKeptAreToldOnce) {
+  std::vector<std::string> warned;
+  MatchCache cache(directory.file("matches"), [&](const std::string& line) { warned.push_back(line); });
+  MergeOptions quick;
+  quick.match.search = SearchMethod::quick;
+  const std::vector<OccupancyGrid> maps(team.maps.begin(), team.maps.begin() + 3);
+  Merger merger(maps, quick);
+  MatchWorkOptions options;
+  options.progress = [&](std::size_t done, std::size_t) {  // the folder is lost when the work has begun
+    if (done > 0) return;
+    EXPECT_TRUE(warned.empty());
+    std::filesystem::remove_all(directory.file("matches"));
+    directory.write("matches", "a file now");
+  };
+  EXPECT_EQ(match_with_cache(merger, maps, cache, options).made, 3u);
+  ASSERT_EQ(warned.size(), 1u);
+  EXPECT_NE(warned[0].find("matches that cannot be kept are made all the same"), std::string::npos)
+      << warned[0];
+}
+
 }  // namespace
 }  // namespace gridmerge

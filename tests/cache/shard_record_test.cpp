@@ -71,6 +71,34 @@ TEST(ShardRecordText, WhatIsDamagedIsNone) {
   EXPECT_FALSE(parse_shard_record(good + "x"));
 }
 
+TEST(ParseShard, TakesTheFirstToTheLastOfAMillionAtMost) {
+  for (const char* text : {"1/1", "3/3", "1/1000000", "1000000/1000000"})
+    EXPECT_TRUE(parse_shard(text)) << text;
+  EXPECT_EQ(parse_shard("2/8").value().index, 1u);
+  EXPECT_EQ(parse_shard("2/8").value().count, 8u);
+  for (const char* text : {"", "1", "1/", "/1", "0/3", "4/3", "1/3x", "1/-3", "1/1000001"})
+    EXPECT_FALSE(parse_shard(text)) << text;
+}
+
+TEST(ShardRecords, AreFoundInTheOrderOfTheirNames) {
+  const test::TemporaryDirectory directory;
+  for (std::size_t i = 0; i < 9; ++i)
+    keep_shard_record(directory.path(), {{(5 * i + 3) % 9, 9}, some_work()});
+  std::vector<std::size_t> found;
+  for (const ShardRecord& record : find_shard_records(directory.path())) found.push_back(record.shard.index);
+  EXPECT_EQ(found, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6, 7, 8}));
+}
+
+TEST(ShardRecords, OfMoreThanSixteenMebibytesAreNone) {
+  const test::TemporaryDirectory directory;
+  keep_shard_record(directory.path(), {{0, 2}, some_work()});
+  const MergeWork large = work_with("accept", std::string(std::size_t{1} << 24, '9'));
+  directory.write("shards/2-of-2-large.shard", format_shard_record({{1, 2}, large}));
+  const std::vector<ShardRecord> found = find_shard_records(directory.path());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].shard.index, 0u);
+}
+
 TEST(DescribeOtherShards, SaysNothingOfShardsThatFit) {
   std::vector<ShardRecord> records;
   EXPECT_EQ(told_to_merge(records), "");
