@@ -216,15 +216,19 @@ Settled PoseJudge::settle(const Hypothesis& hypothesis) const {
   const SE2 T_cells = to_cells(hypothesis.T_fixed_moving, maps_.fixed_walls, maps_.moving_walls);
   const SE2 climbed =
       climb(settling_walls_, metric_, T_cells, kFirstSettlingStep, kLastSettlingStep).T_fixed_moving;
-  if (const std::optional<SE2> on_cells = best_cell_on_cell(T_cells)) {
-    const SE2 T_climbed = to_map_frames(climbed, maps_.fixed_walls, maps_.moving_walls);
-    if (agreement(*on_cells) >= agreement(T_climbed)) {
-      Hypothesis settled = judge(to_cells(*on_cells, maps_.fixed_walls, maps_.moving_walls));
-      settled.T_fixed_moving = *on_cells;
-      return {settled, true};
-    }
+  double most = agreement(to_map_frames(climbed, maps_.fixed_walls, maps_.moving_walls));
+  std::optional<SE2> on_cells;
+  for (const SE2& from : {T_cells, climbed}) {
+    const std::optional<SE2> near = best_cell_on_cell(from);
+    const double agreeing = near ? agreement(*near) : 0.0;
+    if (!near || agreeing < most || (on_cells && agreeing == most)) continue;
+    most = agreeing;
+    on_cells = near;
   }
-  return {judge(climbed), false};
+  if (!on_cells) return {judge(climbed), false};
+  Hypothesis settled = judge(to_cells(*on_cells, maps_.fixed_walls, maps_.moving_walls));
+  settled.T_fixed_moving = *on_cells;
+  return {settled, true};
 }
 
 double PoseJudge::agreement(const SE2& T_fixed_moving) const {

@@ -54,8 +54,8 @@ class PoseJudge {
   Hypothesis judge(const SE2& T_cells) const;
 
   /// The hypothesis at the maximum of the evidence near a judged one: of all walls, in steps down to a
-  /// sixteenth of a cell. Where a pose near it that lays cell on cell is no worse, that one: a map lies on
-  /// itself exactly.
+  /// sixteenth of a cell. Where a pose near one of the two that lays cell on cell is no worse, that one: a
+  /// map lies on itself exactly.
   Settled settle(const Hypothesis& hypothesis) const;
 
   /// What is known of a pose between the grid frames [cells] at little cost: its walls' evidence and its

@@ -98,7 +98,7 @@ std::vector<Hypothesis> keep_distinct(std::vector<Hypothesis> all, const Compare
 
 /// Weighs them, and brings the best one to its maximum. If that lays cell on cell, it fits without a
 /// remainder: a rival a part of a cell beside such a pose would lose for that part alone, so all are brought
-/// to theirs.
+/// to theirs. Some may come to one place by that.
 void weigh_and_settle(std::vector<Hypothesis>& hypotheses, const ComparedMaps& maps, const PoseJudge& judge) {
   weigh(hypotheses, maps);
   if (hypotheses.empty()) return;
@@ -108,6 +108,7 @@ void weigh_and_settle(std::vector<Hypothesis>& hypotheses, const ComparedMaps& m
     parallel_for(hypotheses.size() - 1,
                  [&](std::size_t i) { hypotheses[i + 1] = judge.settle(hypotheses[i + 1]).hypothesis; });
   }
+  hypotheses = keep_distinct(std::move(hypotheses), maps);
   weigh(hypotheses, maps);
 }
 

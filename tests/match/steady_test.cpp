@@ -130,6 +130,21 @@ TEST(Symmetric, AnEmptyRoomLiesOnItselfCellOnCell) {
   }
 }
 
+/// Many of the places that it could be in beside itself climb to it. They are one hypothesis, and cell on
+/// cell.
+TEST(Symmetric, WhatClimbsToOnePlaceInAnEmptyRoomIsOneHypothesis) {
+  for (const unsigned seed : {5U, 15U, 42U, 58U}) {
+    const OccupancyGrid room = draw_room(300, 180, seed);
+    const MatchResult result = match(room, room);
+    ASSERT_FALSE(result.hypotheses.empty());
+    EXPECT_EQ(result.T_fixed_moving, SE2{}) << seed;
+    for (std::size_t i = 1; i < result.hypotheses.size(); ++i) {
+      const SE2& T = result.hypotheses[i].T_fixed_moving;
+      if (std::abs(T.theta) < 0.1) EXPECT_GT(std::hypot(T.x, T.y), 0.3) << seed << ' ' << i;
+    }
+  }
+}
+
 /// Walls of one cell with floor on both sides, `border` cells inside the map.
 OccupancyGrid draw_maze(int border) {
   constexpr int kSide = 200;
