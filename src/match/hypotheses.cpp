@@ -171,7 +171,7 @@ Hypothesis PoseJudge::judge(const SE2& T_cells) const {
   return {to_map_frames(T_cells, maps_.fixed_walls, maps_.moving_walls), found.score, 0.0, found};
 }
 
-std::optional<SE2> PoseJudge::best_cell_on_cell(const SE2& T_cells) const {
+std::optional<PoseJudge::CellOnCell> PoseJudge::best_cell_on_cell(const SE2& T_cells) const {
   const OccupancyGrid &fixed = maps_.fixed, &moving = maps_.moving;
   if (fixed.resolution != moving.resolution) return std::nullopt;
   const SE2 T_grids =
@@ -209,25 +209,22 @@ std::optional<SE2> PoseJudge::best_cell_on_cell(const SE2& T_cells) const {
       improved = true;
     }
   }
-  return best;
+  return CellOnCell{best, most};
 }
 
 Settled PoseJudge::settle(const Hypothesis& hypothesis) const {
   const SE2 T_cells = to_cells(hypothesis.T_fixed_moving, maps_.fixed_walls, maps_.moving_walls);
   const SE2 climbed =
       climb(settling_walls_, metric_, T_cells, kFirstSettlingStep, kLastSettlingStep).T_fixed_moving;
-  double most = agreement(to_map_frames(climbed, maps_.fixed_walls, maps_.moving_walls));
-  std::optional<SE2> on_cells;
+  std::optional<CellOnCell> best;
   for (const SE2& from : {T_cells, climbed}) {
-    const std::optional<SE2> near = best_cell_on_cell(from);
-    const double agreeing = near ? agreement(*near) : 0.0;
-    if (!near || agreeing < most || (on_cells && agreeing == most)) continue;
-    most = agreeing;
-    on_cells = near;
+    const std::optional<CellOnCell> found = best_cell_on_cell(from);
+    if (found && (!best || found->agreement > best->agreement)) best = found;
   }
-  if (!on_cells) return {judge(climbed), false};
-  Hypothesis settled = judge(to_cells(*on_cells, maps_.fixed_walls, maps_.moving_walls));
-  settled.T_fixed_moving = *on_cells;
+  if (!best || best->agreement < agreement(to_map_frames(climbed, maps_.fixed_walls, maps_.moving_walls)))
+    return {judge(climbed), false};
+  Hypothesis settled = judge(to_cells(best->T_fixed_moving, maps_.fixed_walls, maps_.moving_walls));
+  settled.T_fixed_moving = best->T_fixed_moving;
   return {settled, true};
 }
 

@@ -68,9 +68,15 @@ class PoseJudge {
   /// All that speaks for a pose between the grid frames [cells] and against it.
   PoseFigures figures(const SE2& T_cells) const;
 
+  /// A pose between the map frames that lays cell on cell, and its agreement().
+  struct CellOnCell {
+    SE2 T_fixed_moving;
+    double agreement;
+  };
+
   /// Of the poses between the map frames that lay cell on cell, near one between the grid frames [cells], the
   /// one at which most cells agree; none if the maps' cells differ in size, or if there is none near.
-  std::optional<SE2> best_cell_on_cell(const SE2& T_cells) const;
+  std::optional<CellOnCell> best_cell_on_cell(const SE2& T_cells) const;
 
   /// The acceptance index of the cells that are counted, between the map frames.
   double agreement(const SE2& T_fixed_moving) const;

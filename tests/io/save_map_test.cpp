@@ -29,6 +29,17 @@ OccupancyGrid small_grid() {
   return grid;
 }
 
+/// What is written beside the image of small_grid().
+std::string yaml_of_small_grid(const std::string& image, const std::string& mode) {
+  return "image: " + image + "\nmode: " + mode +
+         "\n"
+         "resolution: 0.05\n"
+         "origin: [-1.5, 2.25, 0.0]\n"
+         "negate: 0\n"
+         "occupied_thresh: 0.65\n"
+         "free_thresh: 0.196\n";
+}
+
 std::string error_of(const OccupancyGrid& grid, const std::filesystem::path& path) {
   return test::message_of<FileError>([&] { save_map(grid, path); });
 }
@@ -36,14 +47,7 @@ std::string error_of(const OccupancyGrid& grid, const std::filesystem::path& pat
 TEST(SaveMap, WritesWhatMapServerReads) {
   const TemporaryDirectory directory;
   save_map(small_grid(), directory.file("merged.yaml"));
-  EXPECT_EQ(test::read_file(directory.file("merged.yaml")),
-            "image: merged.pgm\n"
-            "mode: trinary\n"
-            "resolution: 0.05\n"
-            "origin: [-1.5, 2.25, 0.0]\n"
-            "negate: 0\n"
-            "occupied_thresh: 0.65\n"
-            "free_thresh: 0.196\n");
+  EXPECT_EQ(test::read_file(directory.file("merged.yaml")), yaml_of_small_grid("merged.pgm", "trinary"));
   EXPECT_EQ(test::read_file(directory.file("merged.pgm")),
             "P5\n3 2\n255\n" + bytes({254, 254, 205, 0, 254, 254}));
   EXPECT_EQ(directory.names(), (std::vector<std::string>{"merged.pgm", "merged.yaml"}));
@@ -66,14 +70,7 @@ TEST(SaveProbabilityMap, WritesPercentsWithTheTopRowFirst) {
   const float unknown = std::numeric_limits<float>::quiet_NaN();
   grid.probability = {1.0F, 0.0F, 0.37F, 1.5F, -0.5F, unknown};
   save_probability_map(grid, directory.file("fused.yaml"));
-  EXPECT_EQ(test::read_file(directory.file("fused.yaml")),
-            "image: fused.pgm\n"
-            "mode: raw\n"
-            "resolution: 0.05\n"
-            "origin: [-1.5, 2.25, 0.0]\n"
-            "negate: 0\n"
-            "occupied_thresh: 0.65\n"
-            "free_thresh: 0.196\n");
+  EXPECT_EQ(test::read_file(directory.file("fused.yaml")), yaml_of_small_grid("fused.pgm", "raw"));
   EXPECT_EQ(test::read_file(directory.file("fused.pgm")),
             "P5\n3 2\n255\n" + bytes({100, 0, 255, 100, 0, 37}));
   EXPECT_EQ(directory.names(), (std::vector<std::string>{"fused.pgm", "fused.yaml"}));
