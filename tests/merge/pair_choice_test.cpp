@@ -22,7 +22,10 @@
 #include "gridmerge/merge/merge.hpp"
 #include "gridmerge/merge/merger.hpp"
 #include "merge/map_store.hpp"
+#include "merge/pair_looks.hpp"
 #include "merge/team.hpp"
+#include "preselect/chance.hpp"
+#include "preselect/signature.hpp"
 
 namespace gridmerge {
 namespace {
@@ -171,6 +174,40 @@ TEST(PairChoice, OfMeetingsThoseAreWorthAMatchThatMayMakeNearlyAllJoins) {
   const std::vector<bool> worth = choice.worth_meeting(groups, meetings, 0);
   EXPECT_TRUE(worth.at(2)) << "the other map of the same floor";
   EXPECT_LE(2 * std::count(worth.begin(), worth.end(), true), std::ssize(worth)) << "of others a few";
+}
+
+/// Where the first looks say the same of all pairs, signatures say which of them get a second one.
+TEST(PairChoice, PairsThatSignaturesExpectToJoinGetASecondLook) {
+  const Fleet fleet(20);
+  internal::MapStore store;
+  for (const OccupancyGrid& map : fleet.maps)
+    store.add(std::make_unique<const internal::MapStore::Input>(std::make_shared<const OccupancyGrid>(map)),
+              std::nullopt);
+  const std::vector<internal::MapStore::MapId> maps = store.in_canonical_order();
+  internal::PairChoice choice(0.9);
+  choice.prepare(store, maps);
+  internal::PairLooks looks{MatchOptions{}};
+  std::vector<internal::PairChoice::Pair> apart;
+  std::map<internal::PairChoice::Pair, double> log_odds;
+  for (std::size_t a = 0; a < maps.size(); ++a) {
+    const internal::Signature moving = internal::make_signature(store.at(maps[a]).prepared.known());
+    for (std::size_t b = a + 1; b < maps.size(); ++b) {
+      const internal::Signature fixed = internal::make_signature(store.at(maps[b]).prepared.known());
+      apart.emplace_back(maps[a], maps[b]);
+      log_odds[apart.back()] = internal::log_odds_of_joining(internal::compare(fixed, moving), fixed, moving);
+      looks.hand_in(apart.back(), looks.first_search(), MatchResult{});
+    }
+  }
+  const auto worth = choice.worth_a_second_look(apart, looks, {});
+  ASSERT_FALSE(worth.empty());
+  ASSERT_LT(worth.size(), apart.size());
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& pair : worth) {
+    least = std::min(least, log_odds.at(pair));
+    log_odds.erase(pair);
+  }
+  for (const auto& [pair, other] : log_odds)
+    EXPECT_LE(other, least + 1e-4) << pair.first << ' ' << pair.second;
 }
 
 /// What a merge of the maps, with comparisons of this store, would match first.
