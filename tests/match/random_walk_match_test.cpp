@@ -73,6 +73,19 @@ TEST(MatchByRandomWalk, AHandfulOfCellsIsNotEnough) {
   EXPECT_EQ(match_by_random_walk(building(), corner, options).reason, Reason::too_little_overlap);
 }
 
+/// Cells that differ are common ones, too.
+TEST(MatchByRandomWalk, CellsThatDifferAreComparedAsWell) {
+  const OccupancyGrid other = downsample(test::draw_building(4), 2);
+  RandomWalkMatchOptions options = quick();
+  options.accept_acceptance_index = 0.0;
+  const MatchResult found = match_by_random_walk(building(), other, options);
+  ASSERT_GT(found.disagreement, 0);
+  options.least_common_cells = found.agreement + found.disagreement;
+  EXPECT_EQ(match_by_random_walk(building(), other, options).verdict, Verdict::accepted);
+  options.least_common_cells += 1;
+  EXPECT_EQ(match_by_random_walk(building(), other, options).reason, Reason::too_little_overlap);
+}
+
 TEST(MatchByRandomWalk, TheFirstWalkHasTheSeedItselfAndTheOthersSeedsOfTheirOwn) {
   const OccupancyGrid other = downsample(test::draw_building(4), 2);
   RandomWalkMatchOptions options = quick();

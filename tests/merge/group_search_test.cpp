@@ -350,30 +350,6 @@ TEST(JoinWeights, NoCandidateProposesABetterWayThanTheBest) {
   EXPECT_GT(compared, 500u);
 }
 
-/// Two maps side by side know half of a third one each.
-TEST(JoinWeights, APairThatSpeaksLessForAJoinMakesItWorthLess) {
-  OccupancyGrid grid = make_grid(40, 40, 0.5);
-  std::fill(grid.cells.begin(), grid.cells.end(), Cell::free);
-  const Coverage large(grid);
-  for (int y = 0; y < grid.height; ++y) {
-    for (int x = 20; x < 40; ++x) grid.cells[static_cast<std::size_t>(y * 40 + x)] = Cell::unknown;
-  }
-  const Coverage half(grid);
-  double last = -1e9, least = 1e9;
-  for (double log_odds = -6.8; log_odds < 7.0; log_odds += 0.1) {
-    JoinProblem problem;
-    problem.maps = {{half.extent(), &half}, {half.extent(), &half}, {large.extent(), &large}};
-    problem.pairs = {{0, 2, {{SE2{}, 5.0, 0.2}}}, {1, 2, {{SE2{-10.0, 0.0, 0.0}, log_odds, 0.2}}}};
-    const JoinWeights weights(problem);
-    const JoinWorth worth = weights.worth_of({{0, {}}, {1, {10.0, 0.0, 0.0}}}, {{2, {}}}, {});
-    EXPECT_GE(worth.against_apart, last) << log_odds;
-    last = worth.against_apart;
-    least = std::min(least, last);
-  }
-  EXPECT_LT(least, 4.0);  // a pair that doubts is heard
-  EXPECT_GT(last, 7.0);   // and one that is sure, too
-}
-
 TEST(JoinWeights, TheBestWayIsTheFirstOfAll) {
   std::size_t found = 0, left_out = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {
