@@ -13,6 +13,7 @@
 #include "grid/quarter_turned.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/match/match.hpp"
+#include "match/hypotheses.hpp"
 #include "support/building.hpp"
 
 namespace gridmerge {
@@ -127,6 +128,21 @@ TEST(Symmetric, AnEmptyRoomLiesOnItselfCellOnCell) {
     const MatchResult result = match(room, room);
     EXPECT_EQ(result.verdict, Verdict::accepted) << width;
     EXPECT_EQ(result.T_fixed_moving, SE2{}) << width;
+  }
+}
+
+/// From farther away than cells are tried, walls have to climb first: of both ways to settle the better one
+/// counts.
+TEST(Symmetric, AnEmptyRoomSettlesOnItselfFromNearby) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const PreparedMap room(draw_room(120, 80, seed));
+    const internal::ComparedMaps maps(room, room);
+    const internal::PoseJudge judge(maps);
+    for (const SE2& start : {SE2{}, SE2{0.06, 0.06, 0.002}, SE2{0.15, 0.0, 0.0}, SE2{0.3, 0.2, 0.0}}) {
+      const internal::Settled settled =
+          judge.settle(judge.judge(internal::to_cells(start, maps.fixed_walls, maps.moving_walls)));
+      EXPECT_EQ(settled.hypothesis.T_fixed_moving, SE2{}) << seed << ' ' << start.x << ' ' << start.y;
+    }
   }
 }
 
