@@ -218,6 +218,26 @@ TEST(PoseJudge, SettlesAPartOfAMapOnItsCells) {
   }
 }
 
+/// The outer side of a thick wall says nothing of where a thin one lies in it: cells that agree do.
+TEST(PoseJudge, SettlesOnTheCellsThatAgreeMost) {
+  constexpr int kSide = 80, kThick = 5;
+  OccupancyGrid thick = make_grid(kSide, kSide, 0.1, {}, Cell::free), thin = thick;
+  for (int i = 0; i < kSide; ++i) {
+    for (int depth = 0; depth < kThick; ++depth) thick.at(i, depth) = thick.at(depth, i) = Cell::occupied;
+    for (int depth = 0; depth < kThick; ++depth) thin.at(i, depth) = thin.at(depth, i) = Cell::unknown;
+  }
+  for (int i = kThick; i < kSide; ++i) thin.at(i, kThick - 1) = thin.at(kThick - 1, i) = Cell::occupied;
+  const PreparedMap a(thick), b(thin);
+  const ComparedMaps maps(a, b);
+  const PoseJudge judge(maps);
+  for (const SE2& start : {SE2{}, SE2{-0.1, 0.0, 0.0}, SE2{-0.1, -0.1, 0.0}, SE2{0.1, 0.1, 0.0}}) {
+    const Settled settled = judge.settle(judge.judge(to_cells(start, maps.fixed_walls, maps.moving_walls)));
+    const SE2& found = settled.hypothesis.T_fixed_moving;
+    EXPECT_NEAR(found.x, 0.0, 1e-9);
+    EXPECT_NEAR(found.y, 0.0, 1e-9);
+  }
+}
+
 TEST(PoseJudge, StaysNearWhatItSettlesWhereMoreAgreesFartherAway) {
   // A wedge that grows thinner to the right: an empty room agrees more with every column that it moves there.
   constexpr int kColumns = 90, kRows = 40;
