@@ -4,7 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
 
+#include "io/faulty_disk.hpp"
+#include "io/support.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {
@@ -42,6 +48,38 @@ TEST(RemoveDirectory, TakesWhatIsInItButNotWhatLinksLeadTo) {
   EXPECT_THROW(remove_directory(directory.file("gone")), fs::filesystem_error);
   EXPECT_THROW(remove_directory(directory.file("kept/file")), fs::filesystem_error);
   EXPECT_TRUE(fs::exists(directory.file("kept/file")));
+}
+
+TEST(RemoveDirectory, TakesItForRemovedWhatAnotherProgramRemovesMeanwhile) {
+  const test::TemporaryDirectory directory;
+  for (const char* name : {"gone/a", "gone/b"}) directory.write(name, "");
+  test::FaultyDisk disk;
+  disk.at_unlink = [](const fs::path& path) { fs::remove(path); };
+  EXPECT_NO_THROW(remove_directory(directory.file("gone")));
+  EXPECT_EQ(directory.names(), std::vector<std::string>{});
+}
+
+TEST(RemoveDirectory, SaysWhichFileStays) {
+  const test::TemporaryDirectory directory;
+  const std::string file = directory.write("folder/file", "");
+  test::FaultyDisk disk;
+  disk.at_unlink = [](const fs::path& path) {  // just then another program puts a folder there
+    fs::remove(path);
+    fs::create_directory(path);
+  };
+  const std::string message =
+      test::message_of<fs::filesystem_error>([&] { remove_directory(directory.file("folder")); });
+  EXPECT_TRUE(test::contains(message, "cannot be removed: Is a directory [" + file + "]"));
+}
+
+TEST(RemoveDirectory, SaysSoWhereTheDirectoryItselfCannotGo) {
+  const test::TemporaryDirectory directory;
+  directory.write("stays/file", "");
+  // The system removes no directory that is named by a dot.
+  const std::string message =
+      test::message_of<fs::filesystem_error>([&] { remove_directory(directory.file("stays/.")); });
+  EXPECT_TRUE(test::contains(message, "cannot be removed: Invalid argument")) << message;
+  EXPECT_TRUE(fs::is_empty(directory.file("stays")));
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
+#include <string>
 
 namespace gridmerge::test {
 
@@ -40,8 +42,22 @@ int symlink(const char* text, const char* path) noexcept {
   return ::symlinkat(text, AT_FDCWD, path);
 }
 
+int linkat(int from, const char* file, int to, const char* name, int flags) noexcept {
+  const auto* disk = gridmerge::test::current;
+  if (disk != nullptr && disk->hard_link_error != 0) return gridmerge::test::fail(disk->hard_link_error);
+  return static_cast<int>(::syscall(SYS_linkat, from, file, to, name, flags));
+}
+
+int unlink(const char* path) noexcept {
+  const auto* disk = gridmerge::test::current;
+  if (disk != nullptr && disk->at_unlink) disk->at_unlink(path);
+  return ::unlinkat(AT_FDCWD, path, 0);
+}
+
 int fsync(int descriptor) {
   auto* disk = gridmerge::test::current;
+  if (disk != nullptr && disk->at_flush)
+    disk->at_flush(std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(descriptor)));
   if (disk != nullptr && !disk->flush_errors.empty()) {
     const int error = disk->flush_errors.front();
     disk->flush_errors.pop_front();

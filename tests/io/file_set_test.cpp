@@ -147,6 +147,9 @@ TEST(FileSet, RefusesWhatIsNoRegularFile) {
   };
   EXPECT_TRUE(contains(error_of("folder"), "it names a directory"));
   EXPECT_TRUE(contains(error_of("pipe"), "it is not a regular file"));
+  files.remove("folder");
+  EXPECT_TRUE(contains(test::message_of<FileError>([&] { files.commit(); }), "it names a directory"));
+  EXPECT_EQ(read_file(directory.file("folder/file")), "mine");
 }
 
 TEST(FileSet, RefusesWhatIsInTheWayOfItsFolder) {
@@ -196,6 +199,64 @@ TEST(FileSet, WhereALinkFailsOtherwiseNothingHasHappened) {
   }
   EXPECT_EQ(directory.names(), Names{"a"});
   EXPECT_EQ(read_file(directory.file("a")), "old");
+}
+
+// Whoever looks while files are replaced, and whoever finds that it failed, sees all old or all new ones. Old
+// ones that cannot have a second name for so long are copied.
+TEST(FileSet, ShowsAllOldOrAllNewFilesWhicheverFlushFails) {
+  for (const int hard_link_error : {0, EPERM, EMLINK}) {
+    std::size_t old_ones = 0, new_ones = 0;
+    for (bool is_written = false; !is_written;) {
+      const TemporaryDirectory directory;
+      for (const char* name : {"a", "b"}) directory.write(name, "old");
+      const auto shown = [&] {
+        std::string files;
+        for (const std::string name : {"a", "b", "c"}) {
+          if (std::filesystem::exists(directory.file(name)))
+            files += name + ": " + read_file(directory.file(name)) + " ";
+        }
+        return files;
+      };
+      const std::string all_old = "a: old b: old ", all_new = "a: new c: new ";
+      test::FaultyDisk disk;
+      disk.hard_link_error = hard_link_error;
+      disk.at_flush = [&](const std::filesystem::path&) {
+        EXPECT_TRUE(shown() == all_old || shown() == all_new) << shown();
+      };
+      try {
+        FileSet files(directory.path());
+        files.add("a", "new");
+        files.add("c", "new");
+        files.remove("b");
+        // Flushes that a disk does not have go well. The one after them fails, if there is one.
+        disk.flush_errors.assign(old_ones + new_ones, EINVAL);
+        disk.flush_errors.push_back(EIO);
+        files.commit();
+        is_written = true;
+      } catch (const FileError& error) {
+        EXPECT_TRUE(contains(error.what(), "Input/output error"));
+      }
+      const bool is_old = shown() == all_old;
+      EXPECT_EQ(shown(), is_old ? all_old : all_new);
+      EXPECT_EQ(directory.names(), is_old ? (Names{"a", "b"}) : (Names{"a", "c"}));
+      ASSERT_FALSE(is_old && (is_written || new_ones > 0));
+      ++(is_old ? old_ones : new_ones);
+      ASSERT_LT(old_ones + new_ones, 100U) << "that many flushes are never needed";
+    }
+    EXPECT_GE(old_ones, hard_link_error == 0 ? 4U : 6U) << "before the turn";
+    EXPECT_GE(new_ones, 3U) << "after it, and without a failure";
+  }
+}
+
+TEST(FileSet, LeavesNoDescriptorOpen) {
+  const TemporaryDirectory directory;
+  const auto before = test::count_open_files();
+  {
+    FileSet files(directory.path());
+    files.add("a", "new");
+    files.commit();
+  }
+  EXPECT_EQ(test::count_open_files(), before);
 }
 
 // The first file that such a program opens is descriptor 0. In a child, as it might wait for its own lock.
@@ -268,9 +329,10 @@ TEST(FileSet, OneWritesAtATime) {
   EXPECT_EQ(directory.names(), Names{"new"});
 }
 
-TEST(FileSet, WhoWaitsCanBeCancelled) {
+TEST(FileSet, WhoWaitsCanBeCancelledAndHasNothingLeftOpen) {
   const TemporaryDirectory directory;
   const FileSet first(directory.path());
+  const auto before = test::count_open_files();
   std::atomic<bool> cancelled = false;
   std::thread canceller([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -278,6 +340,7 @@ TEST(FileSet, WhoWaitsCanBeCancelled) {
   });
   EXPECT_THROW(with_cancellation(cancelled, [&] { const FileSet second(directory.path()); }), Cancelled);
   canceller.join();
+  EXPECT_EQ(test::count_open_files(), before);
 }
 
 }  // namespace

@@ -4,10 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cerrno>
+#include <deque>
 #include <filesystem>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "gridmerge/io/file_error.hpp"
+#include "io/faulty_disk.hpp"
+#include "io/support.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge {
@@ -28,6 +34,42 @@ TEST(MadeDirectories, AreGoneWithItUnlessSomethingIsInThem) {
     directory.write("a/b/c", "");
   }
   EXPECT_TRUE(std::filesystem::exists(inner));
+}
+
+std::string error_of(const std::filesystem::path& directory) {
+  return test::message_of<FileError>([&] { const MadeDirectories made(directory); });
+}
+
+TEST(MadeDirectories, ThatCannotBeMadeAreAnError) {
+  const test::TemporaryDirectory directory;
+  directory.write("file", "");
+  EXPECT_EQ(error_of(directory.file("file/a")),
+            directory.file("file/a") + ": cannot be created: Not a directory");
+}
+
+TEST(MadeDirectories, ThatMayNotLastAreAnErrorAndAreGone) {
+  const test::TemporaryDirectory directory;
+  const std::string inner = directory.file("a/b");
+  test::FaultyDisk disk;
+  for (const std::deque<int>& errors : {std::deque<int>{EIO}, {EINVAL, EIO}}) {  // of either's parent
+    disk.flush_errors = errors;
+    EXPECT_EQ(error_of(inner), inner + ": cannot be created: Input/output error");
+    EXPECT_EQ(directory.names(), std::vector<std::string>{});
+  }
+  // What another program has removed again need not last; what was there before is not flushed anew.
+  disk.flush_errors = {ENOENT, ENOENT, EIO};
+  const MadeDirectories made(inner), there(inner);
+  EXPECT_EQ(disk.flush_errors.size(), 1U);
+}
+
+TEST(MadeDirectories, LastFromTheOutermostOn) {
+  const test::TemporaryDirectory directory;
+  std::vector<std::filesystem::path> flushed;
+  test::FaultyDisk disk;
+  disk.at_flush = [&](const std::filesystem::path& path) { flushed.push_back(path); };
+  const MadeDirectories made(directory.file("a/b"));
+  const std::filesystem::path outer = std::filesystem::canonical(directory.path());
+  EXPECT_EQ(flushed, (std::vector<std::filesystem::path>{outer, outer / "a"}));
 }
 
 TEST(CheckDirectory, LeavesNothingAndNamesWhatIsInTheWay) {

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <exception>
+#include <filesystem>
+#include <iterator>
 #include <string>
 
 namespace gridmerge::test {
@@ -23,6 +26,12 @@ std::string message_of(const Call& call) {
 inline testing::AssertionResult contains(const std::string& text, const std::string& part) {
   if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
   return testing::AssertionFailure() << "\"" << text << "\" does not contain \"" << part << "\"";
+}
+
+/// How many files the program has open, always counted with the one that this opens.
+inline std::ptrdiff_t count_open_files() {
+  const std::filesystem::directory_iterator files("/proc/self/fd");
+  return std::distance(begin(files), end(files));
 }
 
 }  // namespace gridmerge::test
