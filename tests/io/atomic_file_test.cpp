@@ -116,6 +116,25 @@ TEST(SpoolFile, IsCopiedAfterACallThatASignalHadEnded) {
       testing::ExitedWithCode(0), "");
 }
 
+// Where nothing failed, an errno that a signal has left says nothing. In a child, as it might go on for ever.
+TEST(SpoolFile, ThatADiskHasLostPartOfIsAnError) {
+  const TemporaryDirectory directory;
+  const int next = ::dup(STDOUT_FILENO);
+  ::close(next);
+  SpoolFile spool(directory.file("a"));  // takes the number that was free
+  spool.append("all of it");
+  ASSERT_EQ(::ftruncate(next, 3), 0);
+  StagedFile staged(directory.file("a"));
+  EXPECT_EXIT(
+      {
+        ::alarm(10);
+        errno = EINTR;
+        const std::string error = test::message_of<FileError>([&] { spool.copy_to(staged); });
+        ::_exit(error == directory.file("a") + ": cannot be written: Input/output error" ? 0 : 1);
+      },
+      testing::ExitedWithCode(0), "");
+}
+
 TEST(AtomicFile, DisappearsWithoutCommit) {
   const TemporaryDirectory directory;
   {
@@ -270,13 +289,13 @@ TEST(AtomicFile, RemovesWhatAKilledProgramHasLeftWithoutStandardInputToo) {
 
 TEST(AtomicFile, LeavesNoDescriptorOpen) {
   const TemporaryDirectory directory;
-  const auto count_open = [] {
-    std::error_code error;
-    return names_in("/proc/self/fd", error).size();
-  };
-  const std::size_t before = count_open();
+  const auto before = test::count_open_files();
   write_file_atomically(directory.file("a"), "new");
-  EXPECT_EQ(count_open(), before);
+  {
+    SpoolFile spool(directory.file("b"));
+    spool.append("new");
+  }
+  EXPECT_EQ(test::count_open_files(), before);
 }
 
 TEST(AtomicFile, WhatIsAppendedToAFlushedFileIsFlushedAsWell) {

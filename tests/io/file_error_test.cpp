@@ -20,6 +20,7 @@ TEST(FileError, StaysOnOneLineWhateverTheNames) {
                          "31m")
                    .what(),
                "\\x9b31m");
+  EXPECT_STREQ(FileError("\x1f\xc2\x80\xc2\x9f").what(), "\\x1f\\x80\\x9f") << "the last ones";
 }
 
 TEST(FileError, CutsTheMiddleOutOfMoreThanTenThousandBytes) {
@@ -31,6 +32,9 @@ TEST(FileError, CutsTheMiddleOutOfMoreThanTenThousandBytes) {
 
 TEST(FileError, LeavesOtherTextAlone) {
   EXPECT_STREQ(FileError("Küche – 台所.yaml\xc2").what(), "Küche – 台所.yaml\xc2");
+  // The first ones behind each range of controls, the second of which is a space that no line is broken at.
+  EXPECT_STREQ(FileError(" ~\xc2\xa0!").what(), " ~\xc2\xa0!");
+  EXPECT_STREQ(FileError("\xc3\x80").what(), "\xc3\x80") << "a letter with the second byte of a control";
 }
 
 }  // namespace

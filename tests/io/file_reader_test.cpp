@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/file_reader.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/time.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <csignal>
 #include <filesystem>
 #include <limits>
 #include <string>
 
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/io/file_error.hpp"
+#include "io/support.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge::internal {
@@ -61,6 +68,67 @@ TEST_F(FileReaderTest, SaysWhatIsNoFile) {
   // A user may name a pipe; another file may not, and is not waited for.
   EXPECT_THROW(FileReader(pipe, NamedBy::file), FileError);
   EXPECT_EQ(FileReader(written("abc"), NamedBy::file).read_all(3), "abc");
+}
+
+TEST_F(FileReaderTest, WhatItHoldsAndNothingAtAllNeedNoFile) {
+  const std::string folder = directory.file("folder");
+  std::filesystem::create_directory(folder);
+  EXPECT_EQ(FileReader(folder).read_up_to(0), "");
+  FileReader reader(written("abc"));
+  reader.read_up_to(2);
+  const std::atomic<bool> cancelled = true;
+  with_cancellation(cancelled, [&] { EXPECT_EQ(reader.read_up_to(2), "ab"); });
+  EXPECT_THROW(with_cancellation(cancelled, [&] { reader.read_up_to(3); }), Cancelled);
+}
+
+TEST_F(FileReaderTest, LeavesNoDescriptorOpen) {
+  const std::string path = written("abc"), pipe = directory.file("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const auto before = test::count_open_files();
+  FileReader(path).read_all(3);
+  EXPECT_THROW(FileReader(path).read_all(2), FileError);
+  EXPECT_THROW(FileReader(pipe, NamedBy::file), FileError);
+  EXPECT_EQ(test::count_open_files(), before);
+}
+
+TEST_F(FileReaderTest, ReadsInAProgramWithoutStandardInput) {
+  const std::string path = written("abc");
+  const int input = ::dup(STDIN_FILENO);
+  ::close(STDIN_FILENO);  // the next file that is opened is descriptor 0
+  std::string bytes;
+  EXPECT_NO_THROW(bytes = FileReader(path).read_all(3));
+  ::dup2(input, STDIN_FILENO);
+  ::close(input);
+  EXPECT_EQ(bytes, "abc");
+}
+
+int end_of_pipe = -1;
+volatile std::sig_atomic_t signals = 0;
+
+// Each signal ends the call that waits; the third one brings what it waits for.
+extern "C" void write_at_last(int) {
+  signals = signals + 1;
+  if (signals == 3 && ::write(end_of_pipe, "abc", 3) != 3) ::_exit(1);
+}
+
+TEST_F(FileReaderTest, WaitsOnAfterASignal) {
+  const std::string path = directory.file("pipe");
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  end_of_pipe = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(end_of_pipe, 0);
+  FileReader reader(path);
+  struct sigaction action {
+  }, before{};
+  action.sa_handler = write_at_last;
+  ::sigaction(SIGALRM, &action, &before);
+  const itimerval every{{0, 10'000}, {0, 10'000}}, never{};
+  ::setitimer(ITIMER_REAL, &every, nullptr);
+  std::string bytes;
+  EXPECT_NO_THROW(bytes = reader.read_up_to(3));
+  ::setitimer(ITIMER_REAL, &never, nullptr);
+  ::sigaction(SIGALRM, &before, nullptr);
+  ::close(end_of_pipe);
+  EXPECT_EQ(bytes, "abc");
 }
 
 }  // namespace
