@@ -125,10 +125,9 @@ MapImage decode_bmp(std::string_view text, std::size_t max_pixels) {
   const Header header = read_header(bytes);
   check_image_size(header.width, header.height, max_pixels);
   const std::vector<std::uint16_t> palette = read_palette(bytes, header);
-  // Rows are filled up to whole words. Neither factor can exceed 32 bits by much.
+  // Rows are filled up to whole words. With sizes of 31 bits and an offset of 32, no sum exceeds 64 bits.
   const std::uint64_t row_bytes = (header.width * header.bits + 31) / 32 * 4;
-  if (header.raster > bytes.size() || row_bytes * header.height > bytes.size() - header.raster)
-    throw ParseError("the image data end early");
+  if (header.raster + row_bytes * header.height > bytes.size()) throw ParseError("the image data end early");
 
   MapImage image;
   image.width = static_cast<int>(header.width);
