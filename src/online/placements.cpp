@@ -38,11 +38,10 @@ const RobotGroup* group_of(const std::vector<RobotGroup>& groups, const std::str
   return group == groups.end() ? nullptr : &*group;
 }
 
+// What contradicted a pair that lies together no more is dropped by the next proposal.
 void Placements::forget(const std::string& robot) {
   for (RobotGroup& group : groups_) group.robots.erase(robot);
   std::erase_if(groups_, [](const RobotGroup& group) { return group.robots.size() < 2; });
-  std::erase_if(contradictions_,
-                [&](const auto& one) { return one.first.first == robot || one.first.second == robot; });
 }
 
 /// Robots that lie in no group of a partial proposal, but lay with some that do, lie there as they did.

@@ -237,8 +237,6 @@ void TeamSolver::remove(const std::string& name) {
     names_.erase(*robot->second.id);
   }
   placements_.forget(name);
-  left_out_.erase(name);
-  fresh_.erase(name);
   restarted_.erase(name);
   told_robots_.erase(name);
   robots_.erase(robot);

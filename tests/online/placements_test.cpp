@@ -144,6 +144,26 @@ TEST(Placements, WhoIsForgottenLiesNowhere) {
   EXPECT_EQ(distance_of(placements, "b"), 20.0);
 }
 
+TEST(Placements, WhoIsForgottenTakesWhatWasSaidAgainstHimAlong) {
+  Placements placements(3);
+  const auto propose = [&](double distance) {
+    placements.propose({pair_at(distance), pair_at(7.0, "c", "d")}, kAll, kExtents, kFull);
+    return distance_of(placements, "b");
+  };
+  for (const std::string robot : {"a", "b"}) {
+    for (const double distance : {10.0, 15.0, 15.0}) propose(distance);
+    placements.forget(robot);
+    EXPECT_EQ(propose(10.0), 10.0) << "contradicts nothing";
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(propose(15.0), 10.0) << robot << " is confirmed anew";
+    EXPECT_EQ(propose(15.0), 15.0) << robot;
+    placements.forget(robot);
+  }
+  // What others say of each other stands.
+  for (const double distance : {10.0, 15.0, 15.0}) propose(distance);
+  placements.forget("c");
+  EXPECT_EQ(propose(15.0), 15.0);
+}
+
 /// Whatever is proposed, each robot lies in one group at most, of two robots or more, and what is conclusive
 /// is what there is.
 TEST(Placements, AnyProposalsLeaveGroupsApart) {

@@ -406,6 +406,7 @@ TEST(TeamSolver, AnAnswerThatIsMadeAgainHasNoPosesOfMapsThatAreGone) {
   answer = solver.solve(Effort::full);
   EXPECT_EQ(answer.problem, "");
   EXPECT_TRUE(has_event(answer, TeamEvent::Kind::left, "anna"));
+  EXPECT_FALSE(has_event(answer, TeamEvent::Kind::restarted, "bert")) << "who is gone";
   expect_consistent(answer);
 }
 
