@@ -161,6 +161,15 @@ TEST_F(DrawnChanges, OfWallsAreMuchSooner) {
   EXPECT_NE(status_of(hear(map), "bert").T_world_map, status_of(before_, "bert").T_world_map);
 }
 
+TEST_F(DrawnChanges, FollowOneAnother) {
+  hear(refurnished(explorers_.map(1, 5)));
+  const OccupancyGrid map = refurnished(explorers_.map(1, 5), 6);
+  const TeamAnswer answer = hear(map);
+  EXPECT_EQ(answer.merge->maps.at(1)->cells, map.cells) << "the newest counts";
+  EXPECT_FALSE(answer.settled);
+  expect_drawn(answer);
+}
+
 TEST_F(DrawnChanges, ThatAreTakenBackLeaveNothingToDo) {
   EXPECT_FALSE(hear(refurnished(explorers_.map(1, 5))).settled);
   const TeamAnswer answer = hear(explorers_.map(1, 5));

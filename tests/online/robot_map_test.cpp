@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "explorers.hpp"
 #include "grid/equal_grids.hpp"
@@ -79,6 +80,23 @@ RC_GTEST_PROP(RobotMap, ChangesAreThoseOfACountCellByCell, ()) {
   const bool goes_on =
       known_after == 0.0 ? known_before == 0.0 : both >= 0.5 * known_before && equal >= 0.9 * both;
   RC_ASSERT(change.other_frame == !goes_on);
+}
+
+/// The limits themselves are allowed.
+TEST(RobotMap, GoesOnWhereHalfIsKnownStillAndNineTenthsOfThatAreTheSame) {
+  const OccupancyGrid before = make_grid(20, 1, 1.0, {}, Cell::free);
+  const auto is_other_frame = [&](std::ptrdiff_t kept, std::ptrdiff_t changed) {
+    OccupancyGrid after = make_grid(20, 1, 1.0);
+    std::fill_n(after.cells.begin(), kept, Cell::free);
+    std::fill_n(after.cells.begin(), changed, Cell::occupied);
+    return change_between(before, after).other_frame;
+  };
+  EXPECT_FALSE(is_other_frame(10, 0));
+  EXPECT_TRUE(is_other_frame(9, 0));
+  EXPECT_FALSE(is_other_frame(10, 1));
+  EXPECT_TRUE(is_other_frame(10, 2));
+  EXPECT_FALSE(is_other_frame(20, 2));
+  EXPECT_TRUE(is_other_frame(20, 3));
 }
 
 TEST(RobotMap, BlankMapsBeginAnything) {

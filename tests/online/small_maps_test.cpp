@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <numbers>
+#include <optional>
+#include <string>
 
 #include "online/solver.hpp"
 #include "solver_news.hpp"
@@ -63,6 +65,34 @@ TEST(TeamOfSmallMaps, SearchesTheMapOfARobotThatLiesNowhereSooner) {
   };
   EXPECT_FALSE(is_searched_without(9)) << "of 100";
   EXPECT_TRUE(is_searched_without(11));
+}
+
+/// A user who says where a robot is need not say it as often as maps do that say so.
+TEST(TeamOfSmallMaps, TakesAPoseThatIsSaidAtOnce) {
+  TeamSolver solver({});
+  solver.take(two_fixed(floor_of(9), floor_of(8), {2.0, 0.0, 0.0}));
+  ASSERT_EQ(status_of(solver.solve(Effort::full), "bert").T_world_map, (SE2{2.0, 0.0, 0.0}));
+  News news;
+  news["bert"].known_pose = KnownPose{{30.0, 0.0, 0.0}, 0.0, 0.0, true};
+  solver.take(news);
+  EXPECT_EQ(status_of(solver.solve(Effort::soon), "bert").T_world_map, (SE2{30.0, 0.0, 0.0}));
+  // Taken back, it says nothing any more: a floor without walls lies nowhere by itself.
+  news["bert"].known_pose = std::optional<KnownPose>();
+  solver.take(news);
+  EXPECT_NE(status_of(solver.solve(Effort::soon), "bert").state, RobotState::placed);
+}
+
+TEST(TeamOfSmallMaps, LooksAtFourPairsAgainUntilTheNextAnswer) {
+  TeamSolver solver({});
+  News news;  // of strangers: each of the ten pairs is looked at again
+  for (unsigned building = 1; building <= 5; ++building)
+    news[std::to_string(building)] =
+        map_news(test::map_part(test::draw_building(building), {0, 0, 5, 5}, {}), static_cast<int>(building));
+  solver.take(news);
+  solver.solve(Effort::soon);
+  int answers = 0;
+  for (; !solver.is_complete(); ++answers) solver.solve(Effort::further);
+  EXPECT_EQ(answers, 3) << "with four, four and two of them";
 }
 
 TEST(TeamOfSmallMaps, SaysHowFarTheCellsOfAMapHaveJumped) {
