@@ -229,6 +229,44 @@ TEST(Team, HoldsAKnownPoseFromWhenItIsToldUntilItIsTakenBack) {
   EXPECT_EQ(team.answer()->components.at(0).anchor, "anna");
 }
 
+TEST(Team, HeedsNoAgeOfARobotThatWasNotHeard) {
+  TeamOptions options;
+  options.quiet = 0ms;
+  Team team(options);
+  team.hear_age("anna", TeamTime{});
+  team.hear("anna", make_grid(3, 3, 0.05));
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  ASSERT_EQ(team.answer()->robots.size(), 1u);
+  EXPECT_NE(team.answer()->robots[0].heard_first, TeamTime{});
+  team.hear_age("bert", TeamTime{});
+  team.hear_age("anna", TeamTime{});
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  ASSERT_EQ(team.answer()->robots.size(), 1u) << "nobody has heard bert";
+  EXPECT_EQ(team.answer()->robots[0].heard_first, TeamTime{});
+}
+
+TEST(Team, KeepsTheNewestThousandEventsThatNobodyTakes) {
+  TeamOptions options;
+  options.quiet = 0ms;
+  std::vector<std::string> told;
+  Team team(options, [&](const std::shared_ptr<const TeamAnswer>& answer) {
+    for (const TeamEvent& event : answer->events) told.push_back(event.text);
+  });
+  team.hear("anna", make_grid(3, 3, 0.05, {}, Cell::free));
+  team.hear("bert", make_grid(4, 4, 0.05, {}, Cell::free));
+  team.set_known_pose("anna", KnownPose{{}, 0.0, 0.0, true});
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  for (int answers = 0; answers < 2000 && told.size() <= 1000; ++answers) {
+    team.set_known_pose("bert", KnownPose{{3.0 * (answers % 2), 0.0, 0.0}, 0.0, 0.0, true});
+    ASSERT_TRUE(team.wait_until_settled(kLong));  // and nothing is told meanwhile
+  }
+  ASSERT_GT(told.size(), 1000u);
+  std::vector<std::string> taken;
+  for (const TeamEvent& event : team.take_events()) taken.push_back(event.text);
+  told.erase(told.begin(), told.end() - 1000);
+  EXPECT_EQ(taken, told);
+}
+
 TEST(Team, SaysNothingOfWhereAForgottenMapLay) {
   const Explorers explorers;
   TeamOptions options;
