@@ -58,6 +58,21 @@ TEST_F(NodeTest, EndsOnceAllAreMerged) {
   EXPECT_TRUE(comes_true([&] { return peer->take_map("/merged_map").has_value(); }));
 }
 
+TEST_F(NodeTest, WaitsForARobotThatIsNamed) {
+  options.once = true;
+  options.wait = 4.0;
+  options.robots = {{"left", "/tb1/map"}, {"right", "/tb2/map"}, {"late", "/tb3/map"}};
+  options.patterns = {};
+  const auto began = std::chrono::steady_clock::now();
+  start();
+  const MapTopic left = peer->maps("/tb1/map");
+  const MapTopic right = peer->maps("/tb2/map");
+  left.publish(map_of(0, "l"));
+  right.publish(map_of(1, "r"));
+  EXPECT_EQ(node->end(), RosNode::End::merged) << node->lines();
+  EXPECT_GE(std::chrono::steady_clock::now() - began, std::chrono::seconds(4));
+}
+
 TEST_F(NodeTest, EndsOnceNotAllCanBeMerged) {
   options.once = true;
   options.wait = 30.0;
