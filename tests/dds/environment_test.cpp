@@ -2,8 +2,15 @@
 #include "dds/environment.hpp"
 
 #include <gtest/gtest.h>
+#include <net/if.h>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <cstring>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -158,6 +165,33 @@ TEST(RosEnvironment, WaitsForNoPipe) {
        {file, "file://" + file, xml + "," + file, folder.file("none"), xml, std::string("<"),
         std::string(","), "<a>" + pipe + "</a>", "<a/>" + pipe, "<" + pipe + ","})
     EXPECT_EQ(read({{"CYCLONEDDS_URI", uri}}).cyclone_uri, uri);
+}
+
+/// Sets the loopback interface of a network of its own up, with the address that it always has. Whether that
+/// could be done.
+bool set_loopback_up() {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  ifreq request{};
+  std::strncpy(request.ifr_name, "lo", IFNAMSIZ - 1);
+  request.ifr_flags = IFF_UP;
+  return ::ioctl(socket, SIOCSIFFLAGS, &request) == 0;
+}
+
+/// As in a container without a network, which has the loopback interface alone.
+TEST(RosEnvironment, LoopbackIsNoNetwork) {
+  enum Outcome { none, found, cannot_be_tried };
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const bool is_apart = ::unshare(CLONE_NEWNET) == 0 || ::unshare(CLONE_NEWUSER | CLONE_NEWNET) == 0;
+    if (!is_apart || !set_loopback_up()) ::_exit(cannot_be_tried);
+    ::_exit(has_network() ? found : none);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == cannot_be_tried) GTEST_SKIP() << "no network of its own can be made here";
+  EXPECT_EQ(WEXITSTATUS(status), none);
 }
 
 TEST(RosEnvironment, WaitsForNoPipeOfRevokedCertificates) {
