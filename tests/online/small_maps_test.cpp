@@ -10,6 +10,7 @@
 
 #include "online/solver.hpp"
 #include "solver_news.hpp"
+#include "support/effort.hpp"
 
 namespace gridmerge::internal {
 namespace {
@@ -83,16 +84,17 @@ TEST(TeamOfSmallMaps, TakesAPoseThatIsSaidAtOnce) {
 }
 
 TEST(TeamOfSmallMaps, LooksAtFourPairsAgainUntilTheNextAnswer) {
+  const unsigned robots = test::repeats(5U, 4U);
   TeamSolver solver({});
-  News news;  // of strangers: each of the ten pairs is looked at again
-  for (unsigned building = 1; building <= 5; ++building)
+  News news;  // of strangers: each of the ten (or six) pairs is looked at again
+  for (unsigned building = 1; building <= robots; ++building)
     news[std::to_string(building)] =
-        map_news(test::map_part(test::draw_building(building), {0, 0, 5, 5}, {}), static_cast<int>(building));
+        map_news(test::map_part(test::draw_building(building), {0, 0, 3, 3}, {}), static_cast<int>(building));
   solver.take(news);
   solver.solve(Effort::soon);
   int answers = 0;
   for (; !solver.is_complete(); ++answers) solver.solve(Effort::further);
-  EXPECT_EQ(answers, 3) << "with four, four and two of them";
+  EXPECT_EQ(answers, robots == 5U ? 3 : 2) << "with four, four and two of them (or four and two)";
 }
 
 TEST(TeamOfSmallMaps, SaysHowFarTheCellsOfAMapHaveJumped) {
