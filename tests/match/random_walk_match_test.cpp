@@ -152,6 +152,15 @@ TEST(MatchByRandomWalk, MapsWithNothingKnownHaveNoHypothesis) {
   EXPECT_EQ(match_by_random_walk(unknown, unknown, quick()).verdict, Verdict::refused);
 }
 
+TEST(MatchByRandomWalk, RefusesInvalidMapsWhateverTheyKnow) {
+  for (const OccupancyGrid& map : {building(), make_grid(30, 20, 0.1)}) {
+    OccupancyGrid invalid = map;
+    invalid.resolution = 0.0;
+    EXPECT_THROW(match_by_random_walk(invalid, map, quick()), std::invalid_argument);
+    EXPECT_THROW(match_by_random_walk(map, invalid, quick()), std::invalid_argument);
+  }
+}
+
 TEST(MatchByRandomWalk, RefusesOptionsThatMakeNoSense) {
   const auto refused = [&](auto change) {
     RandomWalkMatchOptions options = quick();
