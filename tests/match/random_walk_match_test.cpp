@@ -146,6 +146,25 @@ TEST(MatchByRandomWalk, KeepsTheBestOfItsWalks) {
     EXPECT_LE(result.hypotheses[i].score, result.hypotheses[i - 1].score);
 }
 
+/// One walk for each lock term from the best start, then one for each from the next one.
+TEST(MatchByRandomWalk, EachLockTermHasItsWalkFromEachStart) {
+  const OccupancyGrid other = downsample(test::draw_building(4), 2);
+  const auto last_of_four = [&](std::size_t lock_terms) {
+    RandomWalkMatchOptions options = quick();
+    options.walk.patience = 30;
+    options.walk.seed = 7;
+    options.restarts = 4;
+    options.c_locks.assign(lock_terms, 0.01);
+    SE2 last;
+    options.on_walk = [&](int, double, const RandomWalkResult& walk) { last = walk.T_fixed_moving; };
+    match_by_random_walk(building(), other, options);
+    return last;
+  };
+  EXPECT_EQ(last_of_four(2), last_of_four(3)) << "from the second start";
+  EXPECT_NE(last_of_four(2), last_of_four(4)) << "from the first one";
+  EXPECT_NE(last_of_four(2), last_of_four(1)) << "from the fourth one";
+}
+
 TEST(MatchByRandomWalk, MapsWithNothingKnownHaveNoHypothesis) {
   const OccupancyGrid unknown = make_grid(30, 20, 0.1);
   EXPECT_TRUE(match_by_random_walk(building(), unknown, quick()).hypotheses.empty());
