@@ -26,8 +26,8 @@ namespace {
 /// Every call, or under a sanitizer one of some.
 constexpr int kStep = test::repeats(1, 9);
 
-/// So that the program starts no thread. Unlike std::thread::hardware_concurrency(), this heeds what taskset
-/// and containers allow.
+/// Whether the program may run on one core only, and starts no thread then. This heeds taskset and the cores
+/// that a container has, unlike std::thread::hardware_concurrency().
 bool may_use_one_core_only() {
   cpu_set_t cores;
   CPU_ZERO(&cores);

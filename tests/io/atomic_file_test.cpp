@@ -11,11 +11,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <vector>
 
-#include "io/directory_names.hpp"
 #include "io/faulty_disk.hpp"
 #include "io/file_size_limit.hpp"
 #include "io/spool_file.hpp"

@@ -120,6 +120,7 @@ TEST_F(FileReaderTest, WaitsOnAfterASignal) {
   struct sigaction action {
   }, before{};
   action.sa_handler = write_at_last;
+  signals = 0;
   ::sigaction(SIGALRM, &action, &before);
   const itimerval every{{0, 10'000}, {0, 10'000}}, never{};
   ::setitimer(ITIMER_REAL, &every, nullptr);

@@ -235,6 +235,7 @@ TEST(PoseJudge, SettlesOnTheCellsThatAgreeMost) {
     const SE2& found = settled.hypothesis.T_fixed_moving;
     EXPECT_NEAR(found.x, 0.0, 1e-9);
     EXPECT_NEAR(found.y, 0.0, 1e-9);
+    EXPECT_NEAR(found.theta, 0.0, 1e-12);
   }
 }
 

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <set>
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
+#include "gridmerge/grid/se2.hpp"
 #include "merge/coverage.hpp"
 
 namespace gridmerge::internal {

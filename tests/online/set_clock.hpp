@@ -9,4 +9,13 @@ namespace gridmerge::test {
 /// long something takes are not.
 extern std::atomic<long> clock_is_off_by;
 
+/// Sets that clock while it exists.
+class SetClock {
+ public:
+  explicit SetClock(long seconds) { clock_is_off_by = seconds; }
+  ~SetClock() { clock_is_off_by = 0; }
+  SetClock(const SetClock&) = delete;
+  SetClock& operator=(const SetClock&) = delete;
+};
+
 }  // namespace gridmerge::test

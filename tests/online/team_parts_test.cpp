@@ -99,7 +99,7 @@ TEST(PartsOfMaps, MakeNoRobotOlderWhoseClockIsSetBack) {
   team.hear("anna", floor_of(3));
   const TeamTime first = heard_first();
   EXPECT_GE(first, now);
-  test::clock_is_off_by = -3600;
+  const test::SetClock set_back(-3600);
   const bool is_set_back = std::chrono::system_clock::now() < now;
   EXPECT_TRUE(team.hear_part("anna", 0, 0, floor_of(1, Cell::occupied)));
   EXPECT_EQ(heard_first(), first);
@@ -107,7 +107,6 @@ TEST(PartsOfMaps, MakeNoRobotOlderWhoseClockIsSetBack) {
   EXPECT_EQ(heard_first(), first);
   team.hear_age("anna", now - 1s);  // another one's word does
   EXPECT_EQ(heard_first(), now - 1s);
-  test::clock_is_off_by = 0;
   EXPECT_TRUE(is_set_back);
 }
 
