@@ -108,6 +108,15 @@ TEST(ScaledVerdict, NamesLittleOverlapOnlyWhereMoreOfItWouldDo) {
   bent.overlap = 0.3;
   EXPECT_EQ(reason_of(bent), Reason::too_little_overlap);
 
+  PoseFigures loose = clear_pose().figures;  // of which the rest would hold what slides
+  loose.walls_met_locally = 0.6;
+  loose.wall_lines = 9.0;
+  loose.held = 0.2 * loose.held_most;
+  loose.overlap = 0.3;
+  EXPECT_EQ(reason_of(loose), Reason::too_little_overlap);
+  loose.overlap = 0.98;
+  EXPECT_EQ(reason_of(loose), Reason::contradiction);
+
   PoseFigures hopeless = chance_pose().figures;
   hopeless.wall_lines = 1.0;
   hopeless.walls_met_locally = 0.2;
