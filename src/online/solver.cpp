@@ -26,7 +26,6 @@ constexpr double kDrawnOnly = 0.02;
 
 MergeOptions without_progress(MergeOptions options) {
   options.progress = nullptr;
-  options.match.progress = nullptr;
   return options;
 }
 

@@ -170,6 +170,17 @@ TEST_F(DrawnChanges, FollowOneAnother) {
   expect_drawn(answer);
 }
 
+TEST_F(DrawnChanges, OfAllMapsAreDrawnAtOnce) {
+  News news;
+  const auto& names = before_.merge->names;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    news[names[i]] = map_news(refurnished(*before_.merge->maps[i]), static_cast<int>(i));
+  solver_.take(news);
+  const TeamAnswer answer = solver_.solve(Effort::soon);
+  EXPECT_FALSE(answer.settled);
+  expect_drawn(answer);
+}
+
 TEST_F(DrawnChanges, ThatAreTakenBackLeaveNothingToDo) {
   EXPECT_FALSE(hear(refurnished(explorers_.map(1, 5))).settled);
   const TeamAnswer answer = hear(explorers_.map(1, 5));

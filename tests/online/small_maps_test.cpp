@@ -97,6 +97,22 @@ TEST(TeamOfSmallMaps, LooksAtFourPairsAgainUntilTheNextAnswer) {
   EXPECT_EQ(answers, robots == 5U ? 3 : 2) << "with four, four and two of them (or four and two)";
 }
 
+/// A team works on without an end: nobody is told how far single merges and matches are.
+TEST(TeamOfSmallMaps, TellsNoProgress) {
+  int told = 0;
+  TeamOptions options;
+  options.merge.progress = [&](std::size_t, std::size_t) { ++told; };
+  options.merge.match.progress = [&](double) { ++told; };
+  TeamSolver solver(options);
+  News news;
+  for (unsigned building = 1; building <= 2; ++building)
+    news[std::to_string(building)] =
+        map_news(test::map_part(test::draw_building(building), {0, 0, 5, 5}, {}), static_cast<int>(building));
+  solver.take(news);
+  ASSERT_EQ(solver.solve(Effort::full).robots.size(), 2u);
+  EXPECT_EQ(told, 0);
+}
+
 TEST(TeamOfSmallMaps, SaysHowFarTheCellsOfAMapHaveJumped) {
   OccupancyGrid map = floor_of(1);
   map.origin = {9.95, -0.05, 0.0};  // all of it lies around (10, 0)
