@@ -18,6 +18,11 @@ const OccupancyGrid& building() {
   return map;
 }
 
+const OccupancyGrid& other_building() {
+  static const OccupancyGrid map = downsample(test::draw_building(4), 2);
+  return map;
+}
+
 RandomWalkMatchOptions quick() {
   RandomWalkMatchOptions options;
   options.walk.patience = 400;
@@ -50,12 +55,11 @@ TEST(MatchByRandomWalk, AcceptsByTheAcceptanceIndexAlone) {
   EXPECT_EQ(same.probability, 1.0);
   EXPECT_NEAR(same.overlap, 1.0, 1e-12);
 
-  const MatchResult other = match_by_random_walk(building(), downsample(test::draw_building(4), 2), options);
+  const MatchResult other = match_by_random_walk(building(), other_building(), options);
   EXPECT_EQ(other.verdict, Verdict::refused);
   EXPECT_EQ(other.probability, other.acceptance_index);
   options.accept_acceptance_index = other.acceptance_index;
-  EXPECT_EQ(match_by_random_walk(building(), downsample(test::draw_building(4), 2), options).verdict,
-            Verdict::accepted);
+  EXPECT_EQ(match_by_random_walk(building(), other_building(), options).verdict, Verdict::accepted);
 }
 
 TEST(MatchByRandomWalk, AHandfulOfCellsIsNotEnough) {
@@ -75,19 +79,17 @@ TEST(MatchByRandomWalk, AHandfulOfCellsIsNotEnough) {
 
 /// Cells that differ are common ones, too.
 TEST(MatchByRandomWalk, CellsThatDifferAreComparedAsWell) {
-  const OccupancyGrid other = downsample(test::draw_building(4), 2);
   RandomWalkMatchOptions options = quick();
   options.accept_acceptance_index = 0.0;
-  const MatchResult found = match_by_random_walk(building(), other, options);
+  const MatchResult found = match_by_random_walk(building(), other_building(), options);
   ASSERT_GT(found.disagreement, 0);
   options.least_common_cells = found.agreement + found.disagreement;
-  EXPECT_EQ(match_by_random_walk(building(), other, options).verdict, Verdict::accepted);
+  EXPECT_EQ(match_by_random_walk(building(), other_building(), options).verdict, Verdict::accepted);
   options.least_common_cells += 1;
-  EXPECT_EQ(match_by_random_walk(building(), other, options).reason, Reason::too_little_overlap);
+  EXPECT_EQ(match_by_random_walk(building(), other_building(), options).reason, Reason::too_little_overlap);
 }
 
 TEST(MatchByRandomWalk, TheFirstWalkHasTheSeedItselfAndTheOthersSeedsOfTheirOwn) {
-  const OccupancyGrid other = downsample(test::draw_building(4), 2);
   RandomWalkMatchOptions options = quick();
   options.walk.patience = 60;
   options.walk.seed = 7;
@@ -95,23 +97,22 @@ TEST(MatchByRandomWalk, TheFirstWalkHasTheSeedItselfAndTheOthersSeedsOfTheirOwn)
   options.restarts = 3;
   std::vector<SE2> ends;
   options.on_walk = [&](int, double, const RandomWalkResult& walk) { ends.push_back(walk.T_fixed_moving); };
-  match_by_random_walk(building(), other, options);
+  match_by_random_walk(building(), other_building(), options);
   ASSERT_EQ(ends.size(), 3U);
   RandomWalkOptions alone = options.walk;
   alone.c_lock = options.c_locks.front();
-  EXPECT_EQ(ends[0], random_walk(building(), other, *options.start_pose, alone).T_fixed_moving);
+  EXPECT_EQ(ends[0], random_walk(building(), other_building(), *options.start_pose, alone).T_fixed_moving);
   options.walk.seed = 8;
-  match_by_random_walk(building(), other, options);
+  match_by_random_walk(building(), other_building(), options);
   for (std::size_t i = 0; i < ends.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) EXPECT_NE(ends[i], ends[j]) << i << " " << j;
 }
 
 TEST(MatchByRandomWalk, ListsDistinctHypothesesAndNoMoreThanAskedFor) {
-  const OccupancyGrid other = downsample(test::draw_building(4), 2);
   RandomWalkMatchOptions options = quick();
   options.walk.patience = 100;
   options.restarts = 12;
-  const MatchResult all = match_by_random_walk(building(), other, options);
+  const MatchResult all = match_by_random_walk(building(), other_building(), options);
   ASSERT_GT(all.hypotheses.size(), 1U);
   const Point2 middle{9.0, 6.5};
   for (std::size_t i = 0; i < all.hypotheses.size(); ++i) {
@@ -124,11 +125,10 @@ TEST(MatchByRandomWalk, ListsDistinctHypothesesAndNoMoreThanAskedFor) {
     }
   }
   options.max_hypotheses = 1;
-  EXPECT_EQ(match_by_random_walk(building(), other, options).hypotheses.size(), 1U);
+  EXPECT_EQ(match_by_random_walk(building(), other_building(), options).hypotheses.size(), 1U);
 }
 
 TEST(MatchByRandomWalk, KeepsTheBestOfItsWalks) {
-  const OccupancyGrid other = downsample(test::draw_building(4), 2);
   RandomWalkMatchOptions options = quick();
   options.restarts = 4;
   options.c_locks = {0.0, 0.01};
@@ -139,7 +139,7 @@ TEST(MatchByRandomWalk, KeepsTheBestOfItsWalks) {
     c_locks.push_back(c_lock);
     best = std::max(best, result.similarity.acceptance_index());
   };
-  const MatchResult result = match_by_random_walk(building(), other, options);
+  const MatchResult result = match_by_random_walk(building(), other_building(), options);
   EXPECT_EQ(c_locks, (std::vector<double>{0.0, 0.01, 0.0, 0.01}));
   EXPECT_EQ(result.acceptance_index, best);
   for (std::size_t i = 1; i < result.hypotheses.size(); ++i)
@@ -148,7 +148,6 @@ TEST(MatchByRandomWalk, KeepsTheBestOfItsWalks) {
 
 /// One walk for each lock term from the best start, then one for each from the next one.
 TEST(MatchByRandomWalk, EachLockTermHasItsWalkFromEachStart) {
-  const OccupancyGrid other = downsample(test::draw_building(4), 2);
   const auto last_of_four = [&](std::size_t lock_terms) {
     RandomWalkMatchOptions options = quick();
     options.walk.patience = 30;
@@ -157,7 +156,7 @@ TEST(MatchByRandomWalk, EachLockTermHasItsWalkFromEachStart) {
     options.c_locks.assign(lock_terms, 0.01);
     SE2 last;
     options.on_walk = [&](int, double, const RandomWalkResult& walk) { last = walk.T_fixed_moving; };
-    match_by_random_walk(building(), other, options);
+    match_by_random_walk(building(), other_building(), options);
     return last;
   };
   EXPECT_EQ(last_of_four(2), last_of_four(3)) << "from the second start";

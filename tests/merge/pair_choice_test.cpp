@@ -156,15 +156,21 @@ TEST(PairChoice, FewerPairsMakeTheSameMapsWhateverTheOrderAndTheThreads) {
   EXPECT_EQ(other.not_compared->expected_joins, result.not_compared->expected_joins);
 }
 
+/// A store of the fleet's maps, each in a frame of its own: every `step`th one from `first` on.
+internal::MapStore store_of(const Fleet& fleet, std::size_t first = 0, std::size_t step = 1) {
+  internal::MapStore store;
+  for (std::size_t i = first; i < fleet.maps.size(); i += step)
+    store.add(std::make_unique<const internal::MapStore::Input>(
+                  std::make_shared<const OccupancyGrid>(fleet.maps[i])),
+              std::nullopt);
+  return store;
+}
+
 /// A group's signature tells with which maps it may share a place: others are not worth a match.
 TEST(PairChoice, OfMeetingsThoseAreWorthAMatchThatMayMakeNearlyAllJoins) {
   const Fleet fleet(24);
-  internal::MapStore store;
-  std::vector<internal::MapStore::MapId> maps;
-  for (std::size_t i = 1; i < fleet.maps.size(); i += 2)
-    maps.push_back(store.add(std::make_unique<const internal::MapStore::Input>(
-                                 std::make_shared<const OccupancyGrid>(fleet.maps[i])),
-                             std::nullopt));
+  const internal::MapStore store = store_of(fleet, 1, 2);
+  const std::vector<internal::MapStore::MapId> maps = store.ids();
   internal::PairChoice choice(0.9);
   choice.prepare(store, maps);
   std::vector<std::unique_ptr<PreparedMap>> groups;
@@ -179,20 +185,19 @@ TEST(PairChoice, OfMeetingsThoseAreWorthAMatchThatMayMakeNearlyAllJoins) {
 /// Where the first looks say the same of all pairs, signatures say which of them get a second one.
 TEST(PairChoice, PairsThatSignaturesExpectToJoinGetASecondLook) {
   const Fleet fleet(20);
-  internal::MapStore store;
-  for (const OccupancyGrid& map : fleet.maps)
-    store.add(std::make_unique<const internal::MapStore::Input>(std::make_shared<const OccupancyGrid>(map)),
-              std::nullopt);
+  const internal::MapStore store = store_of(fleet);
   const std::vector<internal::MapStore::MapId> maps = store.in_canonical_order();
   internal::PairChoice choice(0.9);
   choice.prepare(store, maps);
   internal::PairLooks looks{MatchOptions{}};
+  std::vector<internal::Signature> signatures;
+  for (const internal::MapStore::MapId id : maps)
+    signatures.push_back(internal::make_signature(store.at(id).prepared.known()));
   std::vector<internal::PairChoice::Pair> apart;
   std::map<internal::PairChoice::Pair, double> log_odds;
   for (std::size_t a = 0; a < maps.size(); ++a) {
-    const internal::Signature moving = internal::make_signature(store.at(maps[a]).prepared.known());
     for (std::size_t b = a + 1; b < maps.size(); ++b) {
-      const internal::Signature fixed = internal::make_signature(store.at(maps[b]).prepared.known());
+      const internal::Signature &moving = signatures[a], &fixed = signatures[b];
       apart.emplace_back(maps[a], maps[b]);
       log_odds[apart.back()] = internal::log_odds_of_joining(internal::compare(fixed, moving), fixed, moving);
       looks.hand_in(apart.back(), looks.first_search(), MatchResult{});

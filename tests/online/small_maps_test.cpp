@@ -83,14 +83,19 @@ TEST(TeamOfSmallMaps, TakesAPoseThatIsSaidAtOnce) {
   EXPECT_NE(status_of(solver.solve(Effort::soon), "bert").state, RobotState::placed);
 }
 
+/// So many robots in buildings of their own, the names of which count from 1.
+News strangers(unsigned robots, double side) {
+  News news;
+  for (unsigned building = 1; building <= robots; ++building)
+    news[std::to_string(building)] = map_news(
+        test::map_part(test::draw_building(building), {0, 0, side, side}, {}), static_cast<int>(building));
+  return news;
+}
+
 TEST(TeamOfSmallMaps, LooksAtFourPairsAgainUntilTheNextAnswer) {
   const unsigned robots = test::repeats(5U, 4U);
   TeamSolver solver({});
-  News news;  // of strangers: each of the ten (or six) pairs is looked at again
-  for (unsigned building = 1; building <= robots; ++building)
-    news[std::to_string(building)] =
-        map_news(test::map_part(test::draw_building(building), {0, 0, 3, 3}, {}), static_cast<int>(building));
-  solver.take(news);
+  solver.take(strangers(robots, 3.0));  // each of the ten (or six) pairs is looked at again
   solver.solve(Effort::soon);
   int answers = 0;
   for (; !solver.is_complete(); ++answers) solver.solve(Effort::further);
@@ -104,11 +109,7 @@ TEST(TeamOfSmallMaps, TellsNoProgress) {
   options.merge.progress = [&](std::size_t, std::size_t) { ++told; };
   options.merge.match.progress = [&](double) { ++told; };
   TeamSolver solver(options);
-  News news;
-  for (unsigned building = 1; building <= 2; ++building)
-    news[std::to_string(building)] =
-        map_news(test::map_part(test::draw_building(building), {0, 0, 5, 5}, {}), static_cast<int>(building));
-  solver.take(news);
+  solver.take(strangers(2, 5.0));
   ASSERT_EQ(solver.solve(Effort::full).robots.size(), 2u);
   EXPECT_EQ(told, 0);
 }

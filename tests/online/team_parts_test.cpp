@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gridmerge/online/team.hpp"
+#include "patience.hpp"
 #include "scarce_memory.hpp"
 #include "set_clock.hpp"
 
@@ -18,18 +19,11 @@ namespace gridmerge {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr auto kLong = 600s;  // no test fails because a machine is slow
+using test::impatient;
+using test::kLong;
 
 OccupancyGrid floor_of(int side, Cell cell = Cell::free) {
   return make_grid(side, side, 0.05, {}, cell);
-}
-
-/// That finds out all at once.
-TeamOptions impatient() {
-  TeamOptions options;
-  options.quiet = 0ms;
-  return options;
 }
 
 TEST(PartsOfMaps, AreDrawnIntoAMapThatStillWaits) {

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "explorers.hpp"
+#include "patience.hpp"
 #include "scarce_memory.hpp"
 #include "support/effort.hpp"
 
@@ -22,8 +23,8 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::Explorers;
-
-constexpr auto kLong = 600s;  // no test fails because a machine is slow
+using test::impatient;
+using test::kLong;
 
 const std::vector<std::string> kNames{"anna", "bert", "carl", "dora"};
 
@@ -230,9 +231,7 @@ TEST(Team, HoldsAKnownPoseFromWhenItIsToldUntilItIsTakenBack) {
 }
 
 TEST(Team, HeedsNoAgeOfARobotThatWasNotHeard) {
-  TeamOptions options;
-  options.quiet = 0ms;
-  Team team(options);
+  Team team(impatient());
   team.hear_age("anna", TeamTime{});
   team.hear("anna", make_grid(3, 3, 0.05));
   ASSERT_TRUE(team.wait_until_settled(kLong));
@@ -246,10 +245,8 @@ TEST(Team, HeedsNoAgeOfARobotThatWasNotHeard) {
 }
 
 TEST(Team, KeepsTheNewestThousandEventsThatNobodyTakes) {
-  TeamOptions options;
-  options.quiet = 0ms;
   std::vector<std::string> told;
-  Team team(options, [&](const std::shared_ptr<const TeamAnswer>& answer) {
+  Team team(impatient(), [&](const std::shared_ptr<const TeamAnswer>& answer) {
     for (const TeamEvent& event : answer->events) told.push_back(event.text);
   });
   team.hear("anna", make_grid(3, 3, 0.05, {}, Cell::free));
