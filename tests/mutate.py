@@ -105,6 +105,7 @@ class Room:
         self.copy = folder / "source"
         self.build = folder / "build"
         self.target = f"gridmerge_{name}_test"
+        self.sources = sources_of(name)
         self.jobs = jobs
         listed = subprocess.run(
             ["git", "ls-files", "-z", "-co", "--exclude-standard"],
@@ -170,7 +171,8 @@ class Room:
         self.limits = (30 + 5 * sum(quick.values()), 30 + 5 * seconds_of_all)
 
     def object_of(self, path):
-        (found,) = self.build.glob(f"src/CMakeFiles/*/{pathlib.Path(path).relative_to('src')}.o")
+        listed_in = "src" if self.sources.startswith("src/") else self.sources  # where CMakeLists.txt is
+        (found,) = self.build.glob(f"{listed_in}/CMakeFiles/*/{pathlib.Path(path).relative_to(listed_in)}.o")
         return found
 
     def try_change(self, change):
@@ -202,7 +204,7 @@ class Room:
 
     def changes(self, seed):
         found = []
-        for file in sorted((self.copy / "src" / self.name).rglob("*.cpp")):
+        for file in sorted((self.copy / self.sources).rglob("*.cpp")):
             found += changes_of(str(file.relative_to(self.copy)), file.read_text())
         random.Random(seed).shuffle(found)
         return found
@@ -216,9 +218,14 @@ class Room:
         return f"{change.path}:{number}: {' '.join(line.split())}"
 
 
+def sources_of(room):
+    """The folder of the code that the tests in tests/`room` are for."""
+    return "apps/gridmerge" if room == "cli" else f"src/{room}"
+
+
 def rooms_with_tests():
-    rooms = (folder.name for folder in (PROJECT / "src").iterdir())
-    return sorted(room for room in rooms if (PROJECT / "tests" / room / "CMakeLists.txt").exists())
+    rooms = (tests.parent.name for tests in PROJECT.glob("tests/*/CMakeLists.txt"))
+    return sorted(room for room in rooms if (PROJECT / sources_of(room)).is_dir())
 
 
 def measure(room, seconds, seed):
@@ -245,7 +252,7 @@ def measure(room, seconds, seed):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("rooms", metavar="ROOM", nargs="*", help="of src/; all that have tests unless told")
+    parser.add_argument("rooms", metavar="ROOM", nargs="*", help="of src/, or cli: apps/gridmerge; all that have tests unless told")
     parser.add_argument(
         "--seconds", type=int, default=600, help="for each room, after its build (default: %(default)s)"
     )

@@ -303,7 +303,8 @@ def save(grid: OccupancyGrid, path: str | os.PathLike[str], *, probabilities: bo
     """Writes a map for map_server: the YAML `path`, and beside it the image of the same name but for .pgm.
 
     Loading gives the same cells, resolution and origin. With `probabilities` the mode is raw and the probabilities
-    are kept, rounded to a percent; ValueError if there are none.
+    are kept to within a percent; ValueError if there are none. The thresholds in the YAML are then those that tell the
+    cells apart. A map whose cells do not follow from its probabilities gets other cells.
     Raises FileError, an OSError, when a file cannot be written; then the old ones are as they were.
     """
     if not isinstance(grid, OccupancyGrid):

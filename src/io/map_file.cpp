@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -17,6 +15,7 @@
 #include "io/interpret.hpp"
 #include "io/map_yaml.hpp"
 #include "io/pnm.hpp"
+#include "io/raw_pixels.hpp"
 
 namespace gridmerge {
 
@@ -127,28 +126,12 @@ std::vector<std::uint8_t> to_pixels(const OccupancyGrid& grid) {
   return pixels;
 }
 
-// Occupancies in percent, top row first.
-std::vector<std::uint8_t> to_percentages(const OccupancyGrid& grid) {
-  constexpr std::uint8_t kUnknown = 255;
-  std::vector<std::uint8_t> pixels;
-  pixels.reserve(grid.cells.size());
-  for (int row = grid.height - 1; row >= 0; --row) {
-    for (int column = 0; column < grid.width; ++column) {
-      const float probability = grid.probability[grid.index(column, row)];
-      pixels.push_back(std::isnan(probability) ? kUnknown
-                                               : static_cast<std::uint8_t>(std::lround(
-                                                     100.0F * std::clamp(probability, 0.0F, 1.0F))));
-    }
-  }
-  return pixels;
-}
-
 void check_name(const std::filesystem::path& yaml) {
   if (yaml.extension() != ".yaml" && yaml.extension() != ".yml")
     throw FileError(yaml, "cannot be written: a map's name must end in .yaml or .yml");
 }
 
-void add_files(FileSet& files, const OccupancyGrid& grid, MapMode mode,
+void add_files(FileSet& files, const OccupancyGrid& grid, MapMode mode, const OccupancyThresholds& thresholds,
                const std::vector<std::uint8_t>& pixels, const std::filesystem::path& yaml_name) {
   check_name(yaml_name);
   const std::string image_name = std::filesystem::path(yaml_name).replace_extension(".pgm").string();
@@ -156,6 +139,8 @@ void add_files(FileSet& files, const OccupancyGrid& grid, MapMode mode,
     MapYaml yaml;
     yaml.image = image_name;
     yaml.mode = mode;
+    yaml.occupied_thresh = thresholds.occupied;
+    yaml.free_thresh = thresholds.free;
     yaml.resolution = grid.resolution;
     yaml.origin = grid.origin;
     return format_map_yaml(yaml);
@@ -208,14 +193,15 @@ void save_probability_map(const OccupancyGrid& grid, const std::filesystem::path
 
 void internal::add_map(FileSet& files, const OccupancyGrid& grid, const std::filesystem::path& yaml_name) {
   validate(grid);
-  add_files(files, grid, MapMode::trinary, to_pixels(grid), yaml_name);
+  add_files(files, grid, MapMode::trinary, {}, to_pixels(grid), yaml_name);
 }
 
 void internal::add_probability_map(FileSet& files, const OccupancyGrid& grid,
                                    const std::filesystem::path& yaml_name) {
   validate(grid);
   if (grid.probability.empty()) throw std::invalid_argument("the map has no probabilities");
-  add_files(files, grid, MapMode::raw, to_percentages(grid), yaml_name);
+  const RawPixels raw = to_raw_pixels(grid);
+  add_files(files, grid, MapMode::raw, raw.thresholds, raw.pixels, yaml_name);
 }
 
 }  // namespace gridmerge

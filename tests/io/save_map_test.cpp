@@ -7,8 +7,11 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "grid/generators.hpp"
+#include "gridmerge/grid/message_values.hpp"
 #include "gridmerge/io/map_file.hpp"
 #include "io/file_size_limit.hpp"
 #include "io/png_builder.hpp"
@@ -76,19 +79,114 @@ TEST(SaveProbabilityMap, WritesPercentsWithTheTopRowFirst) {
   EXPECT_EQ(directory.names(), (std::vector<std::string>{"fused.pgm", "fused.yaml"}));
 }
 
-TEST(SaveProbabilityMap, LoadsAgainRoundedToAPercent) {
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+// Cells and probabilities in one row.
+OccupancyGrid row_of(const std::vector<std::pair<Cell, float>>& cells) {
+  OccupancyGrid grid = make_grid(static_cast<int>(cells.size()), 1, 0.05);
+  grid.cells.clear();
+  for (const auto& [cell, probability] : cells) {
+    grid.cells.push_back(cell);
+    grid.probability.push_back(probability);
+  }
+  return grid;
+}
+
+struct SavedRow {
+  OccupancyGrid loaded;
+  std::string yaml;
+};
+
+SavedRow save_and_load(const OccupancyGrid& grid) {
   const TemporaryDirectory directory;
-  OccupancyGrid grid = small_grid();
-  const float unknown = std::numeric_limits<float>::quiet_NaN();
-  grid.probability = {0.994F, 0.096F, unknown, 0.004F, 0.5F, 0.646F};
   save_probability_map(grid, directory.file("a.yaml"));
-  const OccupancyGrid loaded = load_map(directory.file("a.yaml")).grid;
-  EXPECT_EQ(loaded.cells, (std::vector<Cell>{Cell::occupied, Cell::free, Cell::unknown, Cell::free,
-                                             Cell::unknown, Cell::occupied}));
-  ASSERT_EQ(loaded.probability.size(), 6U);
+  return {load_map(directory.file("a.yaml")).grid, test::read_file(directory.file("a.yaml"))};
+}
+
+// The cells are the same, and the probabilities at most a percent off.
+void expect_kept(const OccupancyGrid& grid, const std::string& thresholds) {
+  const SavedRow saved = save_and_load(grid);
+  EXPECT_EQ(saved.loaded.cells, grid.cells);
+  EXPECT_TRUE(contains(saved.yaml, thresholds)) << saved.yaml;
+  ASSERT_EQ(saved.loaded.probability.size(), grid.probability.size());
+  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+    if (std::isnan(grid.probability[i])) continue;
+    EXPECT_NEAR(saved.loaded.probability[i], grid.probability[i], 0.01 + 1e-6) << i;
+  }
+}
+
+const std::string kUsual = "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+
+TEST(SaveProbabilityMap, KeepsCellsOnTheirSideOfTheUsualThresholds) {
+  expect_kept(row_of({{Cell::free, 0.0F},
+                      {Cell::free, 0.1959F},
+                      {Cell::unknown, 0.1961F},
+                      {Cell::unknown, 0.6499F},
+                      {Cell::occupied, 0.6501F},
+                      {Cell::occupied, 1.0F},
+                      {Cell::unknown, kUnknown}}),
+              kUsual);
+}
+
+TEST(SaveProbabilityMap, KeepsWhatMergingCallsFree) {
+  expect_kept(
+      row_of(
+          {{Cell::free, 0.02F}, {Cell::free, 0.4988F}, {Cell::occupied, 0.5012F}, {Cell::unknown, kUnknown}}),
+      "occupied_thresh: 0.51\nfree_thresh: 0.5\n");
+}
+
+TEST(SaveProbabilityMap, FindsThresholdsForWhateverTellsTheCellsApart) {
+  expect_kept(row_of({{Cell::free, 0.25F}, {Cell::unknown, 0.5F}, {Cell::occupied, 0.625F}}),
+              "occupied_thresh: 0.57\nfree_thresh: 0.37\n");
+  // Without a cell of one kind.
+  expect_kept(row_of({{Cell::unknown, 0.0F}, {Cell::unknown, 1.0F}}), "");
+  expect_kept(row_of({{Cell::free, 1.0F}}), "");
+  expect_kept(row_of({{Cell::occupied, 0.0F}}), "");
+  expect_kept(row_of({{Cell::free, 0.0F}, {Cell::occupied, 0.001F}}), "");
+  expect_kept(row_of({{Cell::free, 0.999F}, {Cell::occupied, 1.0F}}), "");
+}
+
+TEST(SaveProbabilityMap, GivesAKnownCellWithoutAProbabilityThatOfItsKind) {
+  const OccupancyGrid loaded =
+      save_and_load(row_of({{Cell::free, kUnknown}, {Cell::occupied, kUnknown}, {Cell::unknown, kUnknown}}))
+          .loaded;
+  EXPECT_EQ(loaded.cells, (std::vector<Cell>{Cell::free, Cell::occupied, Cell::unknown}));
+  EXPECT_EQ(loaded.probability[0], 0.0F);
+  EXPECT_EQ(loaded.probability[1], 1.0F);
   EXPECT_TRUE(std::isnan(loaded.probability[2]));
-  for (const std::size_t i : {0U, 1U, 3U, 4U, 5U})
-    EXPECT_NEAR(loaded.probability[i], grid.probability[i], 0.005) << i;
+}
+
+TEST(SaveProbabilityMap, KeepsProbabilitiesWhereNoThresholdsTellTheCellsApart) {
+  // Free where it is more probably occupied; and no percentage lies between 0.301 and 0.304.
+  for (const auto& cells : {std::vector<std::pair<Cell, float>>{{Cell::free, 0.7F}, {Cell::occupied, 0.3F}},
+                            {{Cell::free, 0.301F}, {Cell::unknown, 0.302F}, {Cell::occupied, 0.304F}}}) {
+    const OccupancyGrid grid = row_of(cells);
+    const SavedRow saved = save_and_load(grid);
+    EXPECT_TRUE(contains(saved.yaml, kUsual)) << saved.yaml;
+    for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+      EXPECT_NEAR(saved.loaded.probability[i], grid.probability[i], 0.005) << i;
+      EXPECT_EQ(saved.loaded.cells[i],
+                cell_of_percentage(static_cast<int>(std::lround(100.0F * saved.loaded.probability[i]))));
+    }
+  }
+}
+
+RC_GTEST_PROP(SaveProbabilityMap, KeepsCellsThatFollowFromAnyTwoThresholds, ()) {
+  const double free = *rc::gen::inRange(0, 1000) / 1000.0,
+               occupied = std::min(1.0, free + 0.02 + *rc::gen::inRange(0, 1000) / 1000.0);
+  std::vector<std::pair<Cell, float>> cells;
+  for (const int thousandths :
+       *rc::gen::nonEmpty(rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 1001)))) {
+    const double probability = thousandths / 1000.0;
+    const Cell cell = probability >= occupied ? Cell::occupied
+                      : probability <= free   ? Cell::free
+                                              : Cell::unknown;
+    cells.emplace_back(cell, static_cast<float>(probability));
+  }
+  const OccupancyGrid grid = row_of(cells), loaded = save_and_load(grid).loaded;
+  RC_ASSERT(loaded.cells == grid.cells);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    RC_ASSERT(std::abs(loaded.probability[i] - grid.probability[i]) <= 0.01F + 1e-6F);
 }
 
 TEST(SaveProbabilityMap, NeedsProbabilities) {
