@@ -63,7 +63,8 @@ Evaluation evaluate_files(const EvaluateCommandOptions& options) {
                         [&] { return matcher(fixed, moving); });
   };
   engine.merger = [&](const std::vector<OccupancyGrid>& maps) {
-    if (options.search.up_the_tree()) return merge_up_tree(maps, engine.matcher);
+    if (options.search.up_the_tree())
+      return merge_up_tree(maps, engine.matcher, {.threads = options.common.threads});
     MergeOptions joint;
     joint.match = match_options(options.common, options.search);
     const std::string all_pairs =

@@ -122,7 +122,8 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
   const MergeOptions engine = merge_options(options, console);
   try {
     if (options.search.up_the_tree())
-      return merge_up_tree_named(maps, options, matcher, {engine.resolution, engine.progress});
+      return merge_up_tree_named(maps, options, matcher,
+                                 {engine.resolution, engine.progress, options.common.threads});
     tell_of_all_pairs(options, maps.size(), engine, console);
     return cached.merge(maps, engine, known_poses);
   } catch (const std::invalid_argument& error) {  // the maps are valid, so it is about the merged one

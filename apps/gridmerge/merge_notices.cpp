@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
-#include "grid/equal_grids.hpp"
 #include "grid/thread_count.hpp"
 #include "gridmerge/bag/bag.hpp"
+#include "merge/copies.hpp"
 #include "merge/pair_choice.hpp"
 
 namespace gridmerge::cli {
@@ -35,8 +36,16 @@ void tell_of_copies(const GivenMaps& maps, const SearchOptions& search, bool is_
   std::vector<std::string> twice;   // named before
   std::vector<std::string> copies;  // of another file's cells
   std::set<MapIdentity> named;
+  std::vector<CellCounts> counts;
+  for (const OccupancyGrid& grid : maps.grids) counts.push_back(count_cells(grid));
+  // Of those alone that may be copies.
+  std::map<std::size_t, PreparedMap> prepared;
+  const auto given = [&](std::size_t i) {
+    return GivenMap{maps.grids[i], prepared.try_emplace(i, maps.grids[i]).first->second};
+  };
   const auto is_copy = [&](std::size_t i, std::size_t j) {
-    return has_equal_cells(maps.grids[i], maps.grids[j]) && !(maps.known_poses[i] && maps.known_poses[j]);
+    return counts[i].occupied == counts[j].occupied && counts[i].free == counts[j].free &&
+           !(maps.known_poses[i] && maps.known_poses[j]) && is_given_twice(given(i), given(j));
   };
   for (std::size_t i = 0; i < maps.names.size(); ++i) {
     const std::optional<MapIdentity> identity = map_identity(maps.names[i]);
@@ -45,7 +54,7 @@ void tell_of_copies(const GivenMaps& maps, const SearchOptions& search, bool is_
     for (std::size_t j = 0; j < i && !original && !is_twice; ++j) {
       if (is_copy(i, j)) original = j;
     }
-    if (!(is_twice || original) || count_cells(maps.grids[i]).known() == 0) continue;
+    if (!(is_twice || original) || counts[i].known() == 0) continue;
     if (is_twice) {
       twice.push_back(maps.names[i]);
     } else {

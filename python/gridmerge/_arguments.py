@@ -7,8 +7,11 @@ import math
 import numbers
 import operator
 import os
-from collections.abc import Callable
-from typing import TypeAlias
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
 
 from . import _core
 
@@ -27,7 +30,7 @@ def number(name: str, value: object) -> float:
     except OverflowError:
         converted = math.inf
     if not math.isfinite(converted):
-        raise ValueError(f"{name}: must be finite, is {value}")
+        raise ValueError(f"{name}: must be finite, is {_shown(value)}")
     return converted
 
 
@@ -59,7 +62,7 @@ def index(name: str, value: object, what: str = "a whole number") -> int:
 def whole(name: str, value: object, least: int, most: int) -> int:
     converted = index(name, value)
     if not least <= converted <= most:
-        raise ValueError(f"{name}: must be between {least} and {most}, is {converted}")
+        raise ValueError(f"{name}: must be between {least} and {most}, is {_shown(converted)}")
     return converted
 
 
@@ -94,7 +97,10 @@ def path(name: str, value: object) -> bytes:
     """A path as the file system spells it."""
     if not isinstance(value, (str, os.PathLike)):
         raise TypeError(f"{name}: must be a path, is {kind_of(value)}")
-    converted = os.fsencode(value)
+    try:
+        converted = os.fsencode(value)
+    except UnicodeEncodeError as error:
+        raise ValueError(f"{name}: {value!r} is no path: {error.reason}") from None
     if not converted:
         raise ValueError(f"{name}: is an empty path")
     if b"\0" in converted:
@@ -113,9 +119,45 @@ def text(name: str, value: object) -> str:
     return value
 
 
+def map_name(name: str, value: object) -> str:
+    """What a map is to be called: text that every file of a merge can hold."""
+    converted = text(name, value)
+    if not converted:
+        raise ValueError(f"{name}: is empty")
+    if "\0" in converted:
+        raise ValueError(f"{name}: cannot hold a null character")
+    return converted
+
+
 def to_bytes(text: str) -> bytes:
     """Text as the engine holds it: names of files may be any bytes, which os.fsdecode() makes surrogates of."""
     return text.encode("utf-8", "surrogateescape")
+
+
+def array(name: str, value: object, dtype: type[np.generic] | None = None) -> NDArray[Any]:
+    """What numpy makes of it: numbers of a regular shape."""
+    try:
+        return np.asarray(value, dtype=dtype)
+    except TypeError as error:
+        raise TypeError(f"{name}: cannot be read as an array: {error}") from None
+    except (ValueError, OverflowError) as error:
+        raise ValueError(f"{name}: cannot be read as an array: {error}") from None
+
+
+def several(name: str, value: object, what: str) -> list[Any]:
+    """The items of a sequence or of an array, which is no text."""
+    if not isinstance(value, (Sequence, np.ndarray)) or isinstance(value, (str, bytes)):
+        raise TypeError(f"{name}: must be {what}, is {kind_of(value)}")
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        raise TypeError(f"{name}: must be {what}, is a single value")
+    return list(value)
+
+
+def _shown(value: object) -> str:
+    try:
+        return str(value)
+    except ValueError:  # Python writes no more digits
+        return "a number of more than 4000 digits"
 
 
 def progress(value: object) -> Progress | None:

@@ -69,6 +69,11 @@ def recorded_maps(path: str | os.PathLike[str], topic: str | None = None) -> Ite
     from ._grid import OccupancyGrid
 
     file, name = split_name(path, topic)
+    if is_ros1(file):
+        raise _core.FileError(
+            f"{os.fsdecode(file)}: is a bag of ROS 1, of which load() takes the last map; rosbags-convert makes a bag "
+            "of ROS 2 of it, whose maps are taken one after another"
+        )
     recording = _core.open_recording(file, _arguments.to_bytes(name))
 
     def maps() -> Iterator[RecordedMap]:
@@ -87,15 +92,15 @@ def split_name(path: str | os.PathLike[str], topic: str | None) -> tuple[bytes, 
     wanted = _arguments.text("topic", topic)
     if not wanted:
         raise ValueError("topic: is empty")
-    if named and named != wanted:
+    if named and named.lstrip("/") != wanted.lstrip("/"):
         raise ValueError(f"topic: is {wanted!r}, but the path names {named!r}")
     return file, wanted
 
 
-def topic_of(source: str) -> str:
-    """The topic that a map's source names, without its first slash, or ""."""
-    _, topic = _core.parse_map_name(os.fsencode(source))
-    return topic.lstrip("/")
+def file_and_topic_of(source: str) -> tuple[str, str]:
+    """The file that a map's source names, and the topic, without its first slash, or ""."""
+    file, topic = _core.parse_map_name(os.fsencode(source))
+    return os.fsdecode(file), topic.lstrip("/")
 
 
 def is_ros1(file: bytes) -> bool:

@@ -30,7 +30,7 @@ class Deformation:
         Raises ValueError for another shape, fewer than 4 rows or columns, numbers that are not finite, and shifts that
         differ so much that the map may fold.
         """
-        given = np.ascontiguousarray(shifts, dtype=np.float64)
+        given = np.ascontiguousarray(_arguments.array("shifts", shifts, np.float64))
         if given.ndim != 3 or given.shape[2] != 2:
             raise ValueError(f"shifts: must be of shape (rows, columns, 2), is {given.shape}")
         rows, columns, _ = given.shape
@@ -108,7 +108,7 @@ class Deformation:
         )
 
     def __hash__(self) -> int:
-        return hash((self.frame, self.spacing, self.shifts.tobytes()))
+        return hash((self.frame, self.spacing, (self.shifts + 0.0).tobytes()))  # without -0.0, which equals 0.0
 
     def __reduce__(self) -> tuple[type[Deformation], tuple[Transform, float, NDArray[np.float64]]]:
         return Deformation, (self.frame, self.spacing, self.shifts)
@@ -121,7 +121,7 @@ class Deformation:
 
 
 def to_points(points: ArrayLike) -> NDArray[np.float64]:
-    given = np.ascontiguousarray(points, dtype=np.float64)
+    given = _arguments.array("points", points, np.float64)
     if given.ndim == 0 or given.shape[-1] != 2:
         raise ValueError(f"points: must be of shape (..., 2), is {given.shape}")
-    return given
+    return np.ascontiguousarray(given)

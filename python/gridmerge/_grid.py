@@ -152,10 +152,12 @@ class OccupancyGrid:
         files = self._core.files
         if not files or self._source is None:
             return None
+        given, topic = _bag.file_and_topic_of(self._source)
         file = os.fsdecode(files[0])
-        if len(files) > 1 and os.path.basename(file) == "metadata.yaml":  # of a bag that is a folder
+        metadata = "metadata.yaml"
+        if os.path.basename(file) == metadata and os.path.basename(given) != metadata:  # of a bag that is a folder
             file = os.path.dirname(file)
-        return file, _bag.topic_of(self._source)
+        return file, topic
 
     def to_numpy(self, *, probabilities: bool | None = None) -> NDArray[np.int8]:
         """The values of nav_msgs/OccupancyGrid: a new int8 array of shape (height, width), row 0 at the bottom.
@@ -251,6 +253,12 @@ class OccupancyGrid:
 
     def _repr_html_(self) -> str:
         return _html.grid_html(self)
+
+    def __copy__(self) -> OccupancyGrid:
+        return self
+
+    def __deepcopy__(self, memo: object) -> OccupancyGrid:
+        return self  # as it cannot be changed
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (

@@ -26,6 +26,9 @@ class InitialPose:
     sd_theta: float = 0.1
     """Standard deviation of theta [rad]."""
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "transform", to_transform("transform", self.transform))
+
 
 MapKey: TypeAlias = SupportsIndex | str | os.PathLike[str]
 """A map by its index, its name, or the path that it was loaded from."""
@@ -99,7 +102,7 @@ def to_known_poses(
 
 def to_core(pose: InitialPose | PoseLike, name: str, fixed: bool) -> CoreKnown:
     if not isinstance(pose, InitialPose):
-        pose = InitialPose(pose)
+        pose = InitialPose(to_transform(name, pose))
     x, y, theta = to_transform(name, pose.transform)
     sd = _arguments.number(f"{name}.sd", pose.sd)
     sd_theta = _arguments.number(f"{name}.sd_theta", pose.sd_theta)

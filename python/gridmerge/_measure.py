@@ -202,7 +202,11 @@ def measure_poses(
     ``disagreement``, ``omega``, ``acceptance_index`` and ``undefined_terms``: how many of psi's four distances are
     undefined and count as 0. All four are at a pose that puts the maps too far apart to be measured.
     """
-    at = [to_pose(f"poses[{i}]", pose) for i, pose in enumerate(poses)]
+    try:
+        given = list(poses)
+    except TypeError:
+        raise TypeError(f"poses: must be several poses, is {_arguments.kind_of(poses)}") from None
+    at = [to_pose(f"poses[{i}]", pose) for i, pose in enumerate(given)]
     raw = _core.measure_poses(
         to_map("fixed", fixed)._core, to_map("moving", moving)._core, at, _arguments.threads(threads)
     )

@@ -105,7 +105,8 @@ def merge(
         raise ValueError("executor: needs the strategy 'joint': a tree's matches wait for each other")
     if cache is not None and up_the_tree:
         raise ValueError("cache: needs the strategy 'joint'")
-    chosen = choose_plan(grids, plan, plan_scale, up_the_tree, fix is not None, search)
+    threads = _arguments.threads(threads)
+    chosen = choose_plan(grids, plan, plan_scale, up_the_tree, fix is not None, search, threads)
     # The program may go to another directory before it saves.
     more_inputs: tuple[bytes, ...] = (
         (os.fsencode(os.path.abspath(init)),) if isinstance(init, (str, os.PathLike)) else ()
@@ -123,7 +124,7 @@ def merge(
         merged = _core.merge(
             [grid._core for grid in grids],
             known,
-            _arguments.threads(threads),
+            threads,
             checked_accept,
             max_false_joins,
             max_missed,
@@ -135,8 +136,8 @@ def merge(
         )
     else:
         merger = _core.Merger(
-            _arguments.threads(threads),
-            _core.DEFAULT_ACCEPT if checked_accept is None else checked_accept,
+            threads,
+            to_joint_accept(accept),
             max_false_joins,
             max_missed,
             resolution,
@@ -159,14 +160,19 @@ def merge(
             drawing._core,
             _arguments.to_bytes(drawing.source or drawing.frame_id or "plan"),
             scales,
-            _arguments.threads(threads),
+            threads,
             checked_accept,
             max_false_joins,
             resolution,
             search,
         )
         more_inputs += tuple(drawing._core.files)
-    return to_merge_result(merged, grids, called, more_inputs)
+    return to_merge_result(merged, grids, called, more_inputs, to_joint_accept(accept))
+
+
+def to_joint_accept(accept: float | None) -> float:
+    """From which probability on maps are joined."""
+    return _core.DEFAULT_ACCEPT if accept is None else _arguments.share("accept", accept)
 
 
 def warn_of_all_pairs(max_missed: float, maps: int) -> None:
@@ -181,19 +187,24 @@ def warn_of_all_pairs(max_missed: float, maps: int) -> None:
         )
 
 
+def own_names(grids: Sequence[OccupancyGrid], numbers: Iterable[int]) -> list[str]:
+    """What to call maps that nobody has named: by their files, their frames, or these numbers."""
+    frames = [grid.frame_id for grid in grids]
+    return [
+        # A frame that several maps are said to be in names none of them.
+        grid.source or (frame if frame and frames.count(frame) == 1 else f"map {number}")
+        for grid, frame, number in zip(grids, frames, numbers, strict=True)
+    ]
+
+
 def to_names(names: Sequence[str] | None, grids: Sequence[OccupancyGrid]) -> list[str]:
     if names is None:
-        frames = [grid.frame_id for grid in grids]
-        return [
-            # A frame that several maps are said to be in names none of them.
-            grid.source or (frame if frame and frames.count(frame) == 1 else f"map {i}")
-            for i, (grid, frame) in enumerate(zip(grids, frames, strict=True))
-        ]
+        return own_names(grids, range(len(grids)))
     if isinstance(names, (str, bytes)) or not isinstance(names, Iterable):
         raise TypeError(f"names: must be a sequence of strings, is {_arguments.kind_of(names)}")
     called = list(names)
     for i, name in enumerate(called):
-        _arguments.text(f"names[{i}]", name)
+        _arguments.map_name(f"names[{i}]", name)
     if len(called) != len(grids):
         raise ValueError(f"names: there are {len(called)} for {len(grids)} maps")
     return called

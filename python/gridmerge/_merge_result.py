@@ -196,6 +196,7 @@ class MergeResult:
     """Which maps hang on the plan, and how; None if none was given."""
     _core: _core.Merged = field(repr=False, compare=False)
     _more_inputs: tuple[bytes, ...] = field(repr=False, compare=False)
+    _accept: float = field(repr=False, compare=False)
 
     @property
     def complete(self) -> bool:
@@ -215,7 +216,7 @@ class MergeResult:
         return _html.merge_html(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _unpickle, (self.maps, self.names, self._core.state(), self._more_inputs)
+        return _unpickle, (self.maps, self.names, self._core.state(), self._more_inputs, self._accept)
 
     def save(self, directory: str | os.PathLike[str]) -> None:
         """Writes the files that `gridmerge merge` writes: merged.yaml and merged.pgm (and merged_2.yaml and so on for
@@ -256,18 +257,27 @@ class MergeResult:
 
 
 def _unpickle(
-    grids: Sequence[OccupancyGrid], names: Sequence[str], state: bytes, more_inputs: tuple[bytes, ...]
+    grids: Sequence[OccupancyGrid],
+    names: Sequence[str],
+    state: bytes,
+    more_inputs: tuple[bytes, ...],
+    accept: float,
 ) -> MergeResult:
     merged = _core.Merged.from_state([grid._core for grid in grids], state)
-    return to_merge_result(merged, grids, names, more_inputs)
+    return to_merge_result(merged, grids, names, more_inputs, accept)
 
 
 def to_merge_result(
-    merged: _core.Merged, grids: Sequence[OccupancyGrid], names: Sequence[str], more_inputs: tuple[bytes, ...]
+    merged: _core.Merged,
+    grids: Sequence[OccupancyGrid],
+    names: Sequence[str],
+    more_inputs: tuple[bytes, ...],
+    accept: float,
 ) -> MergeResult:
+    """`more_inputs`: files that save() and export() must not write over. `accept`: that the maps were merged with."""
     return MergeResult(
         components=tuple(_to_component(merged, i, names) for i in range(merged.component_count)),
-        joins=tuple(_to_join(join) for join in merged.joins),
+        joins=tuple(_to_join(join, accept) for join in merged.joins),
         left_out=tuple(to_left_out(one, names) for one in merged.left_out),
         maps=tuple(grids),
         names=tuple(names),
@@ -277,6 +287,7 @@ def to_merge_result(
         plan=None if merged.plan is None else to_plan_placement(merged.plan, names),
         _core=merged,
         _more_inputs=more_inputs,
+        _accept=accept,
     )
 
 
@@ -313,7 +324,7 @@ def _to_open_way(way: _core.OpenWay) -> OpenWay:
     return OpenWay(way.fixed, way.moving, Transform(*way.transform), way.probability)
 
 
-def _to_join(join: _core.Join) -> Join:
+def _to_join(join: _core.Join, accept: float) -> Join:
     return Join(
         **pair_pose(join),
         fixed=join.fixed,
@@ -321,5 +332,5 @@ def _to_join(join: _core.Join) -> Join:
         outcome=cast(JoinOutcome, join.outcome),
         used=join.used,
         reason=None if join.reason == "none" else cast(Reason, join.reason),
-        match=to_match_result(join.match),
+        match=to_match_result(join.match, accept),
     )

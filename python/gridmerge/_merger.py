@@ -16,7 +16,7 @@ from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map
 from ._known_poses import CoreKnown, InitialPose, to_core
 from ._match import to_joint_search
-from ._merge import to_output_resolution, to_transform, warn_of_all_pairs
+from ._merge import own_names, to_joint_accept, to_output_resolution, to_transform, warn_of_all_pairs
 from ._merge_result import MergeResult, to_merge_result
 from ._repr import count
 from ._transform import PoseLike, Transform
@@ -36,7 +36,7 @@ class Merger:
         self,
         *,
         threads: int = 0,
-        accept: float = _core.DEFAULT_ACCEPT,
+        accept: float | None = None,
         max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
         max_missed: float = _core.DEFAULT_MAX_MISSED,
         output_resolution: float | None = None,
@@ -47,7 +47,7 @@ class Merger:
         self._set_up(
             (
                 _arguments.threads(threads),
-                _arguments.share("accept", accept),
+                to_joint_accept(accept),
                 _arguments.not_negative("max_false_joins", max_false_joins),
                 _arguments.share("max_missed", max_missed),
                 to_output_resolution(output_resolution),
@@ -59,7 +59,7 @@ class Merger:
     def _set_up(self, options: tuple[int, float, float, float, float, str, str]) -> None:
         self._options = options
         self._core = _core.Merger(*options)
-        self._maps: dict[int, tuple[OccupancyGrid, str]] = {}
+        self._maps: dict[int, tuple[OccupancyGrid, str | None]] = {}  # with the names that they were given
         self._poses: dict[int, CoreKnown] = {}  # that are known, of the engine's maps
         self._posed: set[int] = set()  # of which the user has given one
         self._files: set[int] = set()  # that were given as paths
@@ -85,7 +85,7 @@ class Merger:
         """
         grid = to_map("map", map)
         if name is not None:
-            _arguments.text("name", name)
+            _arguments.map_name("name", name)
         known = None if pose is None else to_core(pose, "pose", bool(fixed))
         holds = fixed and pose is None
         with self._alone():
@@ -104,9 +104,7 @@ class Merger:
                 self._holder = map_id
             if known is not None:
                 self._posed.add(map_id)
-            taken = {called for _, called in self._maps.values()}
-            frame = grid.frame_id if grid.frame_id not in taken else None
-            self._maps[map_id] = (grid, name or grid.source or frame or f"map {map_id}")
+            self._maps[map_id] = (grid, name)
             self._note_file(map_id, map)
         return map_id
 
@@ -182,9 +180,10 @@ class Merger:
                 _executor.match_due(matching, [(self._core, shared)], told)
             merged = self._core.solve(None if executor is not None else kept, told)
             grids = [grid for grid, _ in self._maps.values()]
-            names = [name for _, name in self._maps.values()]
+            own = own_names(grids, self._maps)
+            names = [given or name for (_, given), name in zip(self._maps.values(), own, strict=True)]
         _cache.close(kept)
-        return to_merge_result(merged, grids, names, ())
+        return to_merge_result(merged, grids, names, (), self._options[1])
 
     def __getstate__(self) -> dict[str, Any]:
         with self._alone():
@@ -201,7 +200,7 @@ class Merger:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self._set_up(state["options"])
-        maps: dict[int, tuple[OccupancyGrid, str]] = state["maps"]
+        maps: dict[int, tuple[OccupancyGrid, str | None]] = state["maps"]
         gone = OccupancyGrid(np.full((1, 1), -1, np.int8), 1.0)  # holds the ids of maps that were removed
         for map_id in range(state["next"]):
             grid = maps[map_id][0] if map_id in maps else gone
@@ -237,8 +236,8 @@ class Merger:
         finally:
             self._use.release()
 
-    def _known(self, map_id: object) -> tuple[int, str]:
-        """The id and the name of a map that is in it."""
+    def _known(self, map_id: object) -> tuple[int, str | None]:
+        """The id of a map that is in it, and the name that it was given."""
         known = _arguments.index("map_id", map_id)
         if known not in self._maps:
             raise KeyError(f"there is no map {known}")

@@ -77,18 +77,26 @@ def read_message(message: object, name: str = "") -> Content:
         raise ValueError(
             f"{prefix}data: has {values.size} values, but info.width * info.height is {width * height}"
         )
+    if values.ndim > 1 and values.shape != (height, width):
+        raise ValueError(
+            f"{prefix}data: is of shape {values.shape}, but (info.height, info.width) is {(height, width)}"
+        )
     return Content(values.reshape(height, width), resolution, origin, fields.frame_id())
 
 
 def to_fields(content: Content, stamp: Stamp | None) -> dict[str, Any]:
     """The fields of a message as plain values."""
+    return {**_fields_but_data(content, stamp), "data": content.values.reshape(-1).tolist()}
+
+
+def _fields_but_data(content: Content, stamp: Stamp | None) -> dict[str, Any]:
     height, width = content.values.shape
     x, y, theta = content.origin
-    no_time = {"sec": 0, "nanosec": 0}
+    time = {"sec": 0, "nanosec": 0} if stamp is None else stamp
     return {
-        "header": {"stamp": no_time if stamp is None else stamp, "frame_id": content.frame_id},
+        "header": {"stamp": time, "frame_id": content.frame_id},
         "info": {
-            "map_load_time": no_time if stamp is None else stamp,
+            "map_load_time": dict(time) if isinstance(time, dict) else time,
             "resolution": content.resolution,
             "width": width,
             "height": height,
@@ -97,13 +105,12 @@ def to_fields(content: Content, stamp: Stamp | None) -> dict[str, Any]:
                 "orientation": {"x": 0.0, "y": 0.0, "z": math.sin(0.5 * theta), "w": math.cos(0.5 * theta)},
             },
         },
-        "data": content.values.reshape(-1).tolist(),
     }
 
 
 def fill_message(message: Any, content: Content, stamp: Stamp | None) -> Any:
     """Sets the fields of an empty message, and returns it."""
-    fields = to_fields(content, stamp)
+    fields = _fields_but_data(content, stamp)
     if stamp is None:
         del fields["header"]["stamp"], fields["info"]["map_load_time"]
     # What rclpy holds such data in; rospy takes it as well.

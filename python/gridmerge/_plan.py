@@ -88,6 +88,7 @@ def choose_plan(
     up_the_tree: bool,
     is_fixed: bool,
     search: str,
+    threads: int,
 ) -> tuple[OccupancyGrid, tuple[float, float]] | None:
     """The plan and its range of scales, as merge() takes them; none if there is none."""
     if plan is None:
@@ -103,7 +104,7 @@ def choose_plan(
         scales = _arguments.scales("plan_scale", scale, search)
     drawing = to_map("plan", plan)
     try:
-        _core.validate_plan([grid._core for grid in grids], drawing._core)
+        _core.validate_plan([grid._core for grid in grids], drawing._core, threads)
     except ValueError as error:
         raise ValueError(f"plan: {error}") from None
     return drawing, scales

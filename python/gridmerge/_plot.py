@@ -55,7 +55,7 @@ def plot_component(result: MergeResult, component: int, ax: Axes | None) -> Axes
         _draw(axes, grid, member.transform, colour, tint=_TINT)
         corners.append(_corners(grid, member.transform))
         red, green, blue = (value / 255.0 for value in colour)
-        handles.append(Patch(color=(red, green, blue), label=member.name))
+        handles.append(Patch(color=(red, green, blue), label=_literal(member.name)))
     _show(axes, corners)
     # Beside the maps, which fill the axes.
     axes.legend(
@@ -118,6 +118,11 @@ def _draw_walk(axes: Axes, walk: Walk) -> None:
     axes.set_xlabel("proposals")
     axes.set_ylabel("Delta")
     axes.legend(loc="upper right", fontsize="small")
+
+
+def _literal(text: str) -> str:
+    """What matplotlib shows as this text: between two dollars it would read a formula."""
+    return text.replace("$", r"\$")
 
 
 def _axes(ax: Axes | None) -> Axes:

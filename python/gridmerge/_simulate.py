@@ -192,23 +192,22 @@ def simulate(
 def _checked_starts(starts: object) -> list[tuple[float, float]]:
     if starts is None:
         return []
-    if not isinstance(starts, (Sequence, np.ndarray)) or isinstance(starts, (str, bytes)):
-        raise TypeError(f"starts: must be a sequence of points, is {_arguments.kind_of(starts)}")
-    return [_two_numbers(f"starts[{i}]", start) for i, start in enumerate(starts)]
+    points = _arguments.several("starts", starts, "a sequence of points")
+    return [_two_numbers(f"starts[{i}]", start) for i, start in enumerate(points)]
 
 
 def _checked_headings(headings: object) -> list[float]:
     if headings is None:
         return []
-    if not isinstance(headings, (Sequence, np.ndarray)) or isinstance(headings, (str, bytes)):
-        raise TypeError(f"headings: must be a sequence of angles, is {_arguments.kind_of(headings)}")
-    return [_arguments.number(f"headings[{i}]", heading) for i, heading in enumerate(headings)]
+    angles = _arguments.several("headings", headings, "a sequence of angles")
+    return [_arguments.number(f"headings[{i}]", heading) for i, heading in enumerate(angles)]
 
 
 def _two_numbers(name: str, values: object) -> tuple[float, float]:
-    if not isinstance(values, (Sequence, np.ndarray)) or isinstance(values, (str, bytes)) or len(values) != 2:
+    numbers = _arguments.several(name, values, "two numbers")
+    if len(numbers) != 2:
         raise TypeError(f"{name}: must be two numbers, is {values!r}")
-    first, second = values
+    first, second = numbers
     return _arguments.number(name, first), _arguments.number(name, second)
 
 

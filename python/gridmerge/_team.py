@@ -10,9 +10,9 @@ from ._grid import MapLike, OccupancyGrid
 from ._inputs import to_map
 from ._known_poses import InitialPose, to_core
 from ._match import Reason, to_joint_search
-from ._merge import to_output_resolution
+from ._merge import to_joint_accept, to_output_resolution
 from ._merge_result import MergeResult, to_merge_result
-from ._repr import count, short_pose
+from ._repr import count, short_pose, shortened
 from ._transform import PoseLike, Transform
 
 RobotState: TypeAlias = Literal["waiting", "placed", "left_out"]
@@ -64,7 +64,8 @@ class TeamComponent:
     """All their maps, fused."""
 
     def __repr__(self) -> str:
-        return f"TeamComponent({', '.join(self.robots)}: {self.grid.width} x {self.grid.height} cells)"
+        robots = ", ".join(map(shortened, self.robots))
+        return f"TeamComponent({robots}: {self.grid.width} x {self.grid.height} cells)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +132,7 @@ class Team:
         self,
         *,
         threads: int = 0,
-        accept: float = _core.DEFAULT_ACCEPT,
+        accept: float | None = None,
         max_false_joins: float = _core.DEFAULT_MAX_FALSE_JOINS,
         output_resolution: float | None = None,
         search: str = "exhaustive",
@@ -142,7 +143,7 @@ class Team:
     ) -> None:
         options = _core.TeamOptions()
         options.threads = _arguments.threads(threads)
-        options.accept = _arguments.share("accept", accept)
+        options.accept = to_joint_accept(accept)
         options.max_false_joins = _arguments.not_negative("max_false_joins", max_false_joins)
         options.output_resolution = to_output_resolution(output_resolution)
         options.set_search(to_joint_search(search))
@@ -151,6 +152,8 @@ class Team:
         options.quiet = _arguments.not_negative("quiet", quiet)
         options.max_robots = _arguments.whole("max_robots", max_robots, 1, 1_000_000)
         self._core = _core.Team(options)
+        self._accept = options.accept
+        self._files: set[bytes] = set()  # of every map that was heard: a result may still hold one that is gone
 
     def __repr__(self) -> str:
         return f"Team({self.answer()!r})"
@@ -161,7 +164,9 @@ class Team:
         A map that differs too much from the one before is that of a robot which started anew in another frame: what was
         known of its pose is forgotten.
         """
-        self._core.hear(_arguments.text("robot", robot), to_map("map", map)._core)
+        name, core = _name("robot", robot), to_map("map", map)._core
+        self._core.hear(name, core)
+        self._files.update(core.files)
 
     def hear_part(self, robot: str, column: int, row: int, part: MapLike) -> bool:
         """New cells of a rectangle of the robot's newest map, with cell (column, row) at its lower left corner.
@@ -169,35 +174,39 @@ class Team:
         The part's resolution and origin play no role. False, and nothing changes, where there is no map that holds the
         rectangle.
         """
-        return bool(
-            self._core.hear_part(
-                _arguments.text("robot", robot),
-                _arguments.whole("column", column, 0, 2**31 - 1),
-                _arguments.whole("row", row, 0, 2**31 - 1),
-                to_map("part", part)._core,
-            )
+        name, core = _name("robot", robot), to_map("part", part)._core
+        is_in_place = self._core.hear_part(
+            name,
+            _arguments.whole("column", column, 0, 2**31 - 1),
+            _arguments.whole("row", row, 0, 2**31 - 1),
+            core,
         )
+        self._files.update(core.files)
+        return bool(is_in_place)
 
     def hear_age(self, robot: str, heard_first: float) -> None:
         """Another node of the same team has heard the robot since then: RobotStatus.heard_first of its answer.
 
         Nodes that tell each other agree on frames, though they heard robots in another order.
         """
-        self._core.hear_age(
-            _arguments.text("robot", robot), _arguments.not_negative("heard_first", heard_first)
-        )
+        self._core.hear_age(_name("robot", robot), _arguments.not_negative("heard_first", heard_first))
 
     def forget(self, robot: str) -> None:
         """The robot is gone, and its map with it.
 
         From now on answer() gives no pose that is of this map; the merged map goes without it from the next answer on.
         """
-        self._core.forget(_arguments.text("robot", robot))
+        self._core.forget(_name("robot", robot))
 
     def set_known_pose(self, robot: str, pose: InitialPose | PoseLike | None, *, fixed: bool = False) -> None:
-        """What is known of where a robot's map lies, heard or not yet; None for nothing any more."""
+        """What is known of where a robot's map lies, heard or not yet; None for nothing any more.
+
+        ValueError for `fixed` without a pose: a team's frame is that of the robot which was heard first.
+        """
+        if pose is None and fixed:
+            raise ValueError("fixed: needs a pose")
         known = None if pose is None else to_core(pose, "pose", bool(fixed))
-        self._core.set_known_pose(_arguments.text("robot", robot), known)
+        self._core.set_known_pose(_name("robot", robot), known)
 
     def answer(self) -> TeamAnswer:
         """The newest."""
@@ -207,10 +216,11 @@ class Team:
         """The newest answer as merge() would give it: to plot, save and export, with the figures behind each join.
 
         Names are the robots', of those with maps, in the order in which they came. While the answer holds a change
-        back, its joins can already say otherwise.
+        back, its joins can already say otherwise. No file that a map was heard from is written over.
         """
         merged, names = self._core.merged()
-        return to_merge_result(merged, [OccupancyGrid._of(grid) for grid in merged.maps], names, ())
+        files = tuple(sorted(self._files))
+        return to_merge_result(merged, [OccupancyGrid._of(grid) for grid in merged.maps], names, files, self._accept)
 
     def take_events(self) -> tuple[TeamEvent, ...]:
         """What has changed since this was called last, oldest first: the events of every answer, those too that nobody
@@ -229,6 +239,11 @@ class Team:
                 return True
             if left <= 0.0:
                 return False
+
+
+def _name(name: str, value: object) -> bytes:
+    """A robot's name as the engine takes it."""
+    return _arguments.to_bytes(_arguments.map_name(name, value))
 
 
 def _to_event(event: _core.TeamEvent) -> TeamEvent:

@@ -40,7 +40,7 @@ class Transform:
     @classmethod
     def from_matrix(cls, matrix: ArrayLike) -> Transform:
         """Of a 3x3 matrix for homogeneous coordinates. Raises ValueError unless it is rigid (to 1e-6)."""
-        return _from_array("matrix", np.asarray(matrix))
+        return _from_array("matrix", _arguments.array("matrix", matrix))
 
     @property
     def matrix(self) -> NDArray[np.float64]:
@@ -58,7 +58,7 @@ class Transform:
 
         Raises ValueError for another shape.
         """
-        given = np.asarray(points, dtype=np.float64)
+        given = _arguments.array("points", points, np.float64)
         if given.ndim == 0 or given.shape[-1] != 2:
             raise ValueError(f"points: must be of shape (..., 2), is {given.shape}")
         c, s = math.cos(self.theta), math.sin(self.theta)
@@ -87,11 +87,13 @@ def to_transform(name: str, value: object) -> Transform:
         return value
     if isinstance(value, np.ndarray) and value.ndim == 2:
         return _from_array(name, value)
-    if not isinstance(value, (Sequence, np.ndarray)) or isinstance(value, (str, bytes)) or len(value) != 3:
-        raise TypeError(f"{name}: must be (x, y, theta), a Transform or a 3x3 matrix")
-    x, y, theta = value
-    if all(isinstance(row, (Sequence, np.ndarray)) for row in (x, y, theta)):
-        return _from_array(name, np.asarray(value))
+    what = "(x, y, theta), a Transform or a 3x3 matrix"
+    values = _arguments.several(name, value, what)
+    if len(values) != 3:
+        raise TypeError(f"{name}: must be {what}")
+    x, y, theta = values
+    if all(isinstance(row, (Sequence, np.ndarray)) for row in values):
+        return _from_array(name, _arguments.array(name, value))
     return Transform(
         _arguments.number(f"{name}.x", x),
         _arguments.number(f"{name}.y", y),

@@ -80,23 +80,31 @@ std::vector<std::tuple<nb::str, nb::str, std::uint64_t>> topics_of(const nb::byt
 std::pair<Map, nb::str> draw_map(const nb::bytes& path,
                                  const std::vector<std::pair<bool, nb::bytes>>& messages) {
   const std::filesystem::path file = to_string(path);
+  std::vector<std::pair<bool, std::string_view>> contents;  // of bytes that the caller holds
+  for (const auto& [is_update, message] : messages)
+    contents.emplace_back(is_update, std::string_view(message.c_str(), message.size()));
   internal::GrowingMap map(LoadOptions{}.max_cells);
-  internal::blaming(file, [&] {
-    for (const auto& [is_update, message] : messages) {
-      const std::string_view bytes(message.c_str(), message.size());
-      is_update ? map.take_update(bytes) : map.take_map(bytes);
-    }
-  });
-  if (!map.is_there()) throw FileError(file, "has no map with cells on that topic");
   LoadedMap loaded;
-  loaded.grid = map.grid();
-  loaded.warnings = map.warnings(loaded.grid);
-  loaded.files = {file};
+  {
+    const OthersRun meanwhile;
+    internal::blaming(file, [&] {
+      for (const auto& [is_update, bytes] : contents)
+        is_update ? map.take_update(bytes) : map.take_map(bytes);
+    });
+    if (!map.is_there()) throw FileError(file, "has no map with cells on that topic");
+    loaded.grid = map.grid();
+    loaded.warnings = map.warnings(loaded.grid);
+    loaded.files = {file};
+  }
   return {to_map(std::move(loaded)), to_str(map.frame_id())};
 }
 
 std::pair<nb::bytes, nb::str> parse_name(const nb::bytes& name) {
-  const MapName parts = parse_map_name(to_string(name));
+  const std::string text = to_string(name);
+  const MapName parts = [&] {
+    const OthersRun meanwhile;
+    return parse_map_name(text);
+  }();
   const std::string file = parts.file.string();
   return {nb::bytes(file.data(), file.size()), to_str(parts.topic)};
 }
@@ -111,7 +119,13 @@ void bind_bag(nb::module_& module) {
   module.def("draw_map", &draw_map, nb::arg("path"), nb::arg("messages"));
   module.def("parse_map_name", &parse_name, nb::arg("name"));
   module.def(
-      "is_bag", [](const nb::bytes& path) { return is_bag(to_string(path)); }, nb::arg("path"));
+      "is_bag",
+      [](const nb::bytes& path) {
+        const std::filesystem::path file = to_string(path);
+        const OthersRun meanwhile;
+        return is_bag(file);
+      },
+      nb::arg("path"));
 }
 
 }  // namespace gridmerge::python

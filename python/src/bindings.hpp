@@ -48,6 +48,7 @@ Map to_map(LoadedMap loaded);
 
 /// Text that the library gives: names of files are any bytes, and come back as os.fsdecode() gives them.
 nb::str to_str(const std::string& text);
+std::vector<nb::str> to_strs(const std::vector<std::string>& texts);
 
 /// Paths and names come as os.fsencode() gives them.
 inline std::string to_string(const nb::bytes& bytes) {

@@ -29,13 +29,6 @@ void announce(Cache& cache, double accept) {
   cache.matches().announce(accept);
 }
 
-// Paths in them are any bytes.
-std::vector<nb::str> take_warnings(Cache& cache) {
-  std::vector<nb::str> warnings;
-  for (const std::string& warning : cache.take_warnings()) warnings.push_back(to_str(warning));
-  return warnings;
-}
-
 std::string key_of(const std::string& fixed, const std::string& moving, const std::string& search,
                    double accept, std::size_t max_hypotheses) {
   MatchOptions options;
@@ -53,7 +46,7 @@ void bind_cache(nb::module_& module) {
       .def("keep", &keep, nb::arg("key"), nb::arg("match"))
       .def("announce", &announce, nb::arg("accept"))
       .def("counted", &Cache::counted)
-      .def("take_warnings", &take_warnings);
+      .def("take_warnings", [](Cache& cache) { return to_strs(cache.take_warnings()); });
   module.def("match_key", &key_of, nb::arg("fixed"), nb::arg("moving"), nb::arg("search"), nb::arg("accept"),
              nb::arg("max_hypotheses"));
 }

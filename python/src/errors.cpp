@@ -12,6 +12,13 @@ nb::str to_str(const std::string& text) {
       PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "surrogateescape"));
 }
 
+std::vector<nb::str> to_strs(const std::vector<std::string>& texts) {
+  std::vector<nb::str> strs;
+  strs.reserve(texts.size());
+  for (const std::string& text : texts) strs.push_back(to_str(text));
+  return strs;
+}
+
 namespace {
 
 void raise(PyObject* type, const char* message) {

@@ -42,7 +42,7 @@ EvaluateOptions make_options(const MatchOptions& match_options, bool up_the_tree
     return result;
   };
   options.merger = [=, matcher = options.matcher](const std::vector<OccupancyGrid>& maps) {
-    if (up_the_tree) return merge_up_tree(maps, matcher);
+    if (up_the_tree) return merge_up_tree(maps, matcher, {.threads = match_options.threads});
     MergeOptions joint;
     joint.match = match_options;
     Merger merger(maps, joint);
@@ -208,12 +208,7 @@ void bind_evaluate(nb::module_& module) {
       .def_prop_ro("seconds", [](const Evaluated& it) { return summarize_times(it.evaluation.matches); })
       .def_prop_ro("matches", [](const Evaluated& it) { return it.evaluation.matches; })
       .def_prop_ro("set_outcomes", [](const Evaluated& it) { return it.evaluation.sets; })
-      .def_prop_ro("warnings",
-                   [](const Evaluated& it) {
-                     std::vector<nb::str> warnings;
-                     for (const std::string& warning : it.warnings) warnings.push_back(to_str(warning));
-                     return warnings;
-                   })
+      .def_prop_ro("warnings", [](const Evaluated& it) { return to_strs(it.warnings); })
       .def("to_json", [](const Evaluated& it) { return to_str(evaluation_json(it.evaluation)); })
       .def("summary", [](const Evaluated& it) { return to_str(summary_table(it.evaluation, it.accept)); });
   bind_truth(module);

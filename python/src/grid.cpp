@@ -205,12 +205,7 @@ void bind_grid(nb::module_& module) {
                      const CellCounts counts = count_cells(*map.grid);
                      return std::tuple(counts.unknown, counts.free, counts.occupied);
                    })
-      .def_prop_ro("warnings",
-                   [](const Map& map) {
-                     std::vector<nb::str> warnings;
-                     for (const std::string& warning : map.warnings) warnings.push_back(to_str(warning));
-                     return warnings;
-                   })
+      .def_prop_ro("warnings", [](const Map& map) { return to_strs(map.warnings); })
       .def_prop_ro("files",
                    [](const Map& map) {
                      std::vector<nb::bytes> files;

@@ -48,7 +48,12 @@ void bind_io(nb::module_& module) {
       .def_ro("sd", &InitialPose::sd_position)
       .def_ro("sd_theta", &InitialPose::sd_theta);
   module.def(
-      "read_initial_poses", [](const nb::bytes& path) { return read_initial_poses(to_string(path)); },
+      "read_initial_poses",
+      [](const nb::bytes& path) {
+        const std::filesystem::path file = to_string(path);
+        const OthersRun meanwhile;
+        return read_initial_poses(file);
+      },
       nb::arg("path"));
 }
 

@@ -17,8 +17,6 @@ namespace gridmerge::python {
 
 using namespace internal;
 
-namespace {
-
 std::vector<OccupancyGrid> grids_of(const std::vector<Map>& maps) {
   std::vector<OccupancyGrid> grids;
   grids.reserve(maps.size());
@@ -29,6 +27,8 @@ std::vector<OccupancyGrid> grids_of(const std::vector<Map>& maps) {
   return grids;
 }
 
+namespace {
+
 MergeResult merge_grids(const std::vector<OccupancyGrid>& grids,
                         const std::vector<std::optional<KnownPose>>& known_poses, const MergeOptions& options,
                         bool up_the_tree) {
@@ -37,7 +37,7 @@ MergeResult merge_grids(const std::vector<OccupancyGrid>& grids,
   const auto matcher = [&](const OccupancyGrid& fixed, const OccupancyGrid& moving) {
     return match(fixed, moving, options.match);
   };
-  return merge_up_tree(grids, matcher, {options.resolution, options.progress});
+  return merge_up_tree(grids, matcher, {options.resolution, options.progress, options.match.threads});
 }
 
 Merged merge_maps(std::vector<Map> maps, const std::vector<std::optional<Known>>& known, int threads,
@@ -134,6 +134,7 @@ void bind_results(nb::module_& module) {
       .def_prop_ro("transform", [](const OpenWay& way) { return to_pose(way.T_fixed_moving); })
       .def_ro("probability", &OpenWay::probability);
   nb::class_<Merged>(module, "Merged")
+      .def("__deepcopy__", [](const nb::object& merged, const nb::object& /*memo*/) { return merged; })
       .def_prop_ro("maps", [](const Merged& merged) { return merged.maps; })
       .def_prop_ro("component_count", [](const Merged& merged) { return merged.result->components.size(); })
       .def(

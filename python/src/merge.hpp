@@ -17,6 +17,9 @@ struct Merged {
   std::shared_ptr<const OccupancyGrid> plan = {};  // none if it has none, or was read
 };
 
+/// The maps as the engine takes them. Takes long without the interpreter's lock only. Throws Cancelled.
+std::vector<OccupancyGrid> grids_of(const std::vector<Map>& maps);
+
 /// x, y [m] and theta [rad] of a map in the world, their standard deviations, and whether it is fixed there.
 using Known = std::tuple<Pose, double, double, bool>;
 

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "gridmerge/grid/execution.hpp"
 #include "merge.hpp"
 #include "worker.hpp"
 
@@ -11,12 +12,6 @@ namespace gridmerge::python {
 using namespace internal;
 
 namespace {
-
-std::vector<OccupancyGrid> grids_of(const std::vector<Map>& maps) {
-  std::vector<OccupancyGrid> grids;
-  for (const Map& map : maps) grids.push_back(*map.grid);
-  return grids;
-}
 
 Merged place(const Merged& merged, const Map& plan, const nb::bytes& name, std::pair<double, double> scales,
              int threads, std::optional<double> accept, double max_false_joins, double output_resolution,
@@ -29,9 +24,8 @@ Merged place(const Merged& merged, const Map& plan, const nb::bytes& name, std::
   PlanOptions plan_options;
   plan_options.scales = {scales.first, scales.second};
   plan_options.name = to_string(name);
-  const std::vector<OccupancyGrid> grids = grids_of(merged.maps);
   MergeResult result = compute_in_worker(nb::none(), [&](const Report&) {
-    return place_on_plan(grids, *plan.grid, *merged.result, options, plan_options);
+    return place_on_plan(grids_of(merged.maps), *plan.grid, *merged.result, options, plan_options);
   });
   return {merged.maps, std::make_shared<const MergeResult>(std::move(result)), plan.grid};
 }
@@ -56,8 +50,11 @@ void bind_plan(nb::module_& module) {
       .def_ro("parts", &PlanPlacement::parts);
   module.def(
       "validate_plan",
-      [](const std::vector<Map>& maps, const Map& plan) { validate_plan(grids_of(maps), *plan.grid); },
-      nb::arg("maps"), nb::arg("plan"));
+      [](const std::vector<Map>& maps, const Map& plan, int threads) {
+        const OthersRun meanwhile;
+        with_threads(threads, [&] { validate_plan(grids_of(maps), *plan.grid); });
+      },
+      nb::arg("maps"), nb::arg("plan"), nb::arg("threads"));
   module.def("place_on_plan", &place, nb::arg("merged"), nb::arg("plan"), nb::arg("name"), nb::arg("scales"),
              nb::arg("threads"), nb::arg("accept").none(), nb::arg("max_false_joins"),
              nb::arg("output_resolution"), nb::arg("search"));

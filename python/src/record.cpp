@@ -10,12 +10,13 @@ namespace gridmerge::python {
 namespace {
 
 /// The names of the maps, and the merge without maps.
-std::pair<std::vector<std::string>, Merged> read_record(const nb::bytes& path) {
+std::pair<std::vector<nb::str>, Merged> read_record(const nb::bytes& path) {
   const std::filesystem::path given = to_string(path);
-  const OthersRun meanwhile;
-  MergeRecord record =
-      std::filesystem::is_directory(given) ? read_merge_record(given) : read_transforms(given);
-  return {std::move(record.names), {{}, std::make_shared<const MergeResult>(std::move(record.result))}};
+  MergeRecord record = [&] {
+    const OthersRun meanwhile;
+    return std::filesystem::is_directory(given) ? read_merge_record(given) : read_transforms(given);
+  }();
+  return {to_strs(record.names), {{}, std::make_shared<const MergeResult>(std::move(record.result))}};
 }
 
 }  // namespace

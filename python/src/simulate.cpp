@@ -164,6 +164,7 @@ void bind_results(nb::module_& module) {
       .def_prop_ro("tier", [](const SimulatedPair& pair) { return std::string(1, pair.tier); })
       .def_ro("shared_wall", &SimulatedPair::shared_wall);
   nb::class_<Dataset>(module, "Dataset")
+      .def("__deepcopy__", [](const nb::object& dataset, const nb::object& /*memo*/) { return dataset; })
       .def("building",
            [](const Dataset& dataset) {
              const OthersRun meanwhile;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -45,51 +46,69 @@ std::chrono::duration<double> time_of(const char* name, double seconds) {
 
 class PythonTeam {
  public:
-  explicit PythonTeam(const TeamOptions& options) : team_(options) {}
+  explicit PythonTeam(const TeamOptions& options) : team_(std::make_unique<Team>(options)) {}
+  PythonTeam(const PythonTeam&) = delete;
+  PythonTeam& operator=(const PythonTeam&) = delete;
+  ~PythonTeam() {
+    // It would wait for a thread that a forked process does not have.
+    if (fork_count() != made_after_forks_) (void)team_.release();
+  }
 
   // Without the interpreter's lock: a map takes a while to copy.
-  void hear(const std::string& robot, const Map& map) {
+  void hear(const nb::bytes& robot, const Map& map) {
+    const std::string name = to_string(robot);
     const OthersRun meanwhile;
-    team_.hear(robot, *map.grid);
+    team().hear(name, *map.grid);
   }
 
-  bool hear_part(const std::string& robot, int column, int row, const Map& part) {
+  bool hear_part(const nb::bytes& robot, int column, int row, const Map& part) {
+    const std::string name = to_string(robot);
     const OthersRun meanwhile;
-    return team_.hear_part(robot, column, row, *part.grid);
+    return team().hear_part(name, column, row, *part.grid);
   }
 
-  void hear_age(const std::string& robot, double seconds) {
+  void hear_age(const nb::bytes& robot, double seconds) {
     const auto since = time_of("heard_first", seconds);
-    team_.hear_age(robot, TeamTime(std::chrono::duration_cast<TeamTime::duration>(since)));
+    team().hear_age(to_string(robot), TeamTime(std::chrono::duration_cast<TeamTime::duration>(since)));
   }
 
-  void forget(const std::string& robot) { team_.forget(robot); }
+  void forget(const nb::bytes& robot) { team().forget(to_string(robot)); }
 
-  void set_known_pose(const std::string& robot, const std::optional<Known>& known) {
-    team_.set_known_pose(robot, to_known_pose(known));
+  void set_known_pose(const nb::bytes& robot, const std::optional<Known>& known) {
+    team().set_known_pose(to_string(robot), to_known_pose(known));
   }
 
-  std::vector<TeamEvent> take_events() { return team_.take_events(); }
+  std::vector<TeamEvent> take_events() { return team().take_events(); }
 
-  Answer answer() const { return team_.answer(); }
+  Answer answer() const { return team().answer(); }
 
-  std::pair<Merged, std::vector<std::string>> merged() const {
-    const OthersRun meanwhile;
-    const Answer answer = team_.answer();
+  /// With the robots' names.
+  std::pair<Merged, std::vector<nb::str>> merged() const {
     Merged merged;
-    for (const auto& map : answer->merge->maps) merged.maps.push_back({map, {}, {}});
-    merged.result = std::make_shared<const MergeResult>(merge_result(*answer));
-    return {std::move(merged), answer->merge->names};
+    const Answer answer = team().answer();
+    {
+      const OthersRun meanwhile;
+      for (const auto& map : answer->merge->maps) merged.maps.push_back({map, {}, {}});
+      merged.result = std::make_shared<const MergeResult>(merge_result(*answer));
+    }
+    return {std::move(merged), to_strs(answer->merge->names)};
   }
 
   bool wait_until_settled(double seconds) const {
     const auto longest = std::chrono::duration_cast<std::chrono::milliseconds>(time_of("seconds", seconds));
     const OthersRun meanwhile;
-    return team_.wait_until_settled(longest);
+    return team().wait_until_settled(longest);
   }
 
  private:
-  Team team_;
+  Team& team() const {
+    if (fork_count() != made_after_forks_)
+      throw std::runtime_error("the Team is in the process that this one was forked from: make another one");
+    return *team_;
+  }
+
+  int made_after_forks_ = fork_count();
+  std::unique_ptr<Team> team_;
 };
 
 double seconds_of(TeamTime time) {
@@ -143,10 +162,10 @@ void bind_team(nb::module_& module) {
       .def_rw("confirmations", &TeamOptions::confirmations)
       .def_rw("max_robots", &TeamOptions::max_robots);
   nb::class_<RobotStatus>(module, "RobotStatus")
-      .def_ro("name", &RobotStatus::name)
+      .def_prop_ro("name", [](const RobotStatus& robot) { return to_str(robot.name); })
       .def_prop_ro("state", [](const RobotStatus& robot) { return gridmerge::name_of(robot.state); })
       .def_prop_ro("reason", [](const RobotStatus& robot) { return gridmerge::name_of(robot.reason); })
-      .def_ro("why", &RobotStatus::why)
+      .def_prop_ro("why", [](const RobotStatus& robot) { return to_str(robot.why); })
       .def_ro("component", &RobotStatus::component)
       .def_prop_ro("transform", [](const RobotStatus& robot) { return to_pose(robot.T_world_map); })
       .def_ro("probability", &RobotStatus::probability)
@@ -154,11 +173,11 @@ void bind_team(nb::module_& module) {
       .def_prop_ro("heard_first", [](const RobotStatus& robot) { return seconds_of(robot.heard_first); });
   nb::class_<TeamEvent>(module, "TeamEvent")
       .def_prop_ro("kind", [](const TeamEvent& event) { return name_of(event.kind); })
-      .def_ro("robot", &TeamEvent::robot)
-      .def_ro("text", &TeamEvent::text);
+      .def_prop_ro("robot", [](const TeamEvent& event) { return to_str(event.robot); })
+      .def_prop_ro("text", [](const TeamEvent& event) { return to_str(event.text); });
   nb::class_<ComponentOf>(module, "TeamComponent")
-      .def_prop_ro("anchor", [](const ComponentOf& one) { return one.component().anchor; })
-      .def_prop_ro("robots", [](const ComponentOf& one) { return one.component().robots; })
+      .def_prop_ro("anchor", [](const ComponentOf& one) { return to_str(one.component().anchor); })
+      .def_prop_ro("robots", [](const ComponentOf& one) { return to_strs(one.component().robots); })
       .def_prop_ro("map", [](const ComponentOf& one) {
         return Map{one.component().map, {}, {}};
       });
@@ -169,7 +188,7 @@ void bind_team(nb::module_& module) {
       .def_prop_ro("components", &components_of)
       .def_prop_ro("seconds", [](const HeldAnswer& held) { return held.answer->seconds; })
       .def_prop_ro("settled", [](const HeldAnswer& held) { return held.answer->settled; })
-      .def_prop_ro("problem", [](const HeldAnswer& held) { return held.answer->problem; });
+      .def_prop_ro("problem", [](const HeldAnswer& held) { return to_str(held.answer->problem); });
   nb::class_<PythonTeam>(module, "Team")
       .def(nb::init<const TeamOptions&>(), nb::arg("options"))
       .def("hear", &PythonTeam::hear, nb::arg("robot"), nb::arg("map"))

@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -46,6 +47,9 @@ class Worker {
     return ended_;
   }
 
+  /// Whether its thread is in the process that this one was forked from.
+  bool is_elsewhere() const { return fork_count() != made_after_forks_; }
+
  private:
   void run(const std::function<void(const Report&)>& work);
 
@@ -55,6 +59,7 @@ class Worker {
   std::condition_variable end_;
   bool ended_ = false;
   std::exception_ptr failure_;
+  int made_after_forks_ = fork_count();
   std::thread thread_;
 };
 
@@ -123,9 +128,18 @@ class AtWork {
 };
 
 // Never destroyed: threads that sleep for ever may still be told of in it.
+AtWork* all_work = new AtWork;
+
 AtWork& at_work() {
-  static auto* const one = new AtWork;
-  return *one;
+  return *all_work;
+}
+
+int forks = 0;
+
+// In a process that was just forked. A thread that is not here may have held the mutex of what was at work.
+void forget_all_work() {
+  ++forks;
+  all_work = new AtWork;
 }
 
 Worker::Worker(const std::function<void(const Report&)>& work) {
@@ -142,6 +156,10 @@ Worker::Worker(const std::function<void(const Report&)>& work) {
 
 Worker::~Worker() {
   cancelled_ = true;
+  if (is_elsewhere()) {
+    thread_.detach();
+    return;
+  }
   {
     const OthersRun meanwhile;
     thread_.join();
@@ -150,6 +168,8 @@ Worker::~Worker() {
 }
 
 bool Worker::wait_a_moment() {
+  if (is_elsewhere())
+    throw std::runtime_error("the process was forked during the work, and the copy has no threads at it");
   const OthersRun meanwhile;
   std::unique_lock lock(mutex_);
   return end_.wait_for(lock, kLookEvery, [this] { return ended_; });
@@ -206,6 +226,10 @@ void stop_all_work() {
 
 }  // namespace
 
+int fork_count() {
+  return forks;
+}
+
 OthersRun::OthersRun() {
   const bool may_come_back = at_work().leave_lock();
   state_ = PyEval_SaveThread();
@@ -234,6 +258,8 @@ void run_in_worker(const nb::object& progress, const std::function<void(const Re
 
 void bind_worker(nb::module_& /*module*/) {
   nb::module_::import_("atexit").attr("register")(nb::cpp_function(&stop_all_work));
+  nb::module_::import_("os").attr("register_at_fork")(nb::arg("after_in_child") =
+                                                          nb::cpp_function(&forget_all_work));
 }
 
 }  // namespace gridmerge::python

@@ -34,6 +34,10 @@ using Report = std::function<void(double)>;
 /// Python object.
 void run_in_worker(const nb::object& progress, const std::function<void(const Report&)>& work);
 
+/// How often a process has been forked to become this one, since the package was loaded. A forked process has
+/// none of the threads that the one before had begun: what owns some has to look.
+int fork_count();
+
 /// The same of work that has a result.
 template <typename Work>
 auto compute_in_worker(const nb::object& progress, Work&& work) {

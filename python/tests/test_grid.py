@@ -79,6 +79,22 @@ def test_a_map_in_mode_raw_and_its_values_are_equal(tmp_path: Path) -> None:
     np.testing.assert_array_equal(loaded.to_numpy(), made.to_numpy())
 
 
+def test_a_merged_map_and_its_probabilities_are_kept(robots: list[str], tmp_path: Path) -> None:
+    merged = gridmerge.merge(robots[:2]).components[0].grid
+    gridmerge.save(merged, tmp_path / "map.yaml", probabilities=True)
+    loaded = gridmerge.load(tmp_path / "map.yaml")
+    np.testing.assert_array_equal(loaded.cells, merged.cells)
+    assert loaded.probability is not None and merged.probability is not None
+    np.testing.assert_allclose(loaded.probability, merged.probability, atol=0.0101)
+    assert loaded.warnings == ()
+
+
+def test_a_copy_of_what_cannot_be_changed_is_itself(robots: list[str]) -> None:
+    grid = gridmerge.load(robots[0])
+    assert copy.copy(grid) is grid
+    assert copy.deepcopy(grid) is grid
+
+
 def test_saving_and_loading_keeps_all(tmp_path: Path, team: gridmerge.Simulation) -> None:
     grid = gridmerge.OccupancyGrid(
         random_map(np.random.default_rng(1), np.array([-1, 0, 100], dtype=np.int8)),

@@ -2,8 +2,11 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import json
+import os
 import pickle
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -228,6 +231,67 @@ def test_fixed_maps_are_told_as_any_others_are(robots: list[str]) -> None:
         assert gridmerge.merge(robots[:2], fix=one).components == alone
 
 
+def test_a_merger_names_maps_as_merge_does(robots: list[str]) -> None:
+    messages = [gridmerge.load(robot).to_msg(frame_id="map") for robot in robots[:2]]
+    merger = gridmerge.Merger(accept=None)
+    for message in messages:
+        merger.add(message)
+    assert merger.solve().names == gridmerge.merge(messages).names == ("map 0", "map 1")
+    merger.update(1, gridmerge.load(robots[1]).to_msg(frame_id="other"))
+    assert merger.solve().names == ("map", "other")
+
+
+def test_a_map_goes_by_the_file_that_it_is_of_now(robots: list[str], tmp_path: Path) -> None:
+    merger = gridmerge.Merger()
+    ids = [merger.add(robot) for robot in robots[:2]]
+    named = merger.add(robots[2], name="the third")
+    later = tmp_path / "later.yaml"
+    gridmerge.save(gridmerge.load(robots[0]), later)
+    merger.update(ids[0], later)
+    merger.grow(named, later)
+    merger = pickle.loads(pickle.dumps(merger))
+    result = merger.solve()
+    assert result.names == (str(later), robots[1], "the third")
+    result.save(tmp_path / "merged")
+    assert gridmerge.read_transforms(tmp_path / "merged").components[0].members[0].name == str(later)
+
+
+def test_a_map_may_be_called_as_the_metadata_of_a_bag(robots: list[str], tmp_path: Path) -> None:
+    odd = tmp_path / "metadata.yaml"
+    gridmerge.save(gridmerge.load(robots[0]), odd)
+    maps = [odd, robots[1]]
+    plain = gridmerge.merge(maps, fix=os.path.join(tmp_path, ".", "metadata.yaml"))
+    assert len(plain.components) == 1
+    with ThreadPoolExecutor(1) as executor:
+        apart = gridmerge.merge(maps, executor=executor)
+    assert apart.components == gridmerge.merge(maps).components
+
+
+def test_explanations_heed_what_was_accepted_from(robots: list[str], elsewhere: str) -> None:
+    alone = gridmerge.match(robots[0], elsewhere, accept=0.5)
+    merged = gridmerge.merge([robots[0], elsewhere], accept=0.5)
+    assert merged.joins[0].match.explanation == alone.explanation
+    assert alone.explanation != gridmerge.match(robots[0], elsewhere).explanation
+    assert pickle.loads(pickle.dumps(merged)).joins == merged.joins
+    merger = gridmerge.Merger(accept=0.5)
+    for path in (robots[0], elsewhere):
+        merger.add(path)
+    assert merger.solve().joins[0].match.explanation == alone.explanation
+
+
+def test_a_result_can_be_copied_deeply(robots: list[str]) -> None:
+    result = gridmerge.merge(robots[:2])
+    assert copy.deepcopy(result) == result
+    fields = dataclasses.asdict(result)
+    assert fields["names"] == result.names
+    assert fields["maps"][0] is result.maps[0]  # which nobody can change
+
+
+def test_poses_are_compared_whatever_they_were_given_as() -> None:
+    assert gridmerge.InitialPose(np.eye(3)) == gridmerge.InitialPose((0, 0, 0))
+    assert gridmerge.InitialPose(np.eye(3)) != gridmerge.InitialPose((1, 0, 0))
+
+
 def test_names_of_maps(robots: list[str]) -> None:
     grids = [gridmerge.load(path) for path in robots]
     assert gridmerge.merge(grids).names == tuple(robots)
@@ -369,6 +433,9 @@ def test_plots(robots: list[str], elsewhere: str) -> None:
         result.plot(component=1)
     assert gridmerge.merge([robots[0], elsewhere]).plot().get_title() == "no two maps fit together"
     gridmerge.load(robots[0]).plot().figure.canvas.draw()
+    # Between two dollars a formula would stand.
+    drawn = gridmerge.merge(robots[:2], names=["$x_$", "b"]).plot()
+    drawn.figure.canvas.draw()
 
 
 def test_a_plot_puts_maps_where_their_members_lie(robots: list[str]) -> None:

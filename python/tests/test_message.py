@@ -5,6 +5,7 @@ import array
 import json
 import math
 import pickle
+import tracemalloc
 from types import SimpleNamespace as Fields
 from typing import Any
 
@@ -265,7 +266,7 @@ def test_maps_are_called_by_their_frames() -> None:
     for frame in ("a", "a", "b"):
         merger.add(named(frame, 0.1))
     merger.add(named("c", 0.1), name="d")
-    assert merger.solve().names == ("a", "map 1", "b", "d")
+    assert merger.solve().names == ("map 0", "map 1", "b", "d")
 
 
 def test_a_frame_goes_with_its_map() -> None:
@@ -286,3 +287,32 @@ def test_a_dict_that_lacks_a_field() -> None:
         gridmerge.match(fields, GRID)
     with pytest.raises(TypeError, match=r"^maps: must be a sequence of maps, is of type dict"):
         gridmerge.merge(fields)
+
+
+def test_the_times_of_a_message_are_two(robots: list[str]) -> None:
+    for stamp in (None, {"sec": 3, "nanosec": 0}):
+        message = gridmerge.load(robots[0]).to_msg(stamp=stamp)
+        message["header"]["stamp"]["sec"] = 5
+        assert message["info"]["map_load_time"]["sec"] != 5
+
+
+def test_a_message_of_a_class_is_made_without_a_list_of_its_cells() -> None:
+    grid = gridmerge.OccupancyGrid(np.zeros((1500, 1500), dtype=np.int8), 0.05)
+    empty = Fields(header=Fields(), info=Fields(origin=Fields(position=Fields(), orientation=Fields())))
+    tracemalloc.start()
+    try:
+        grid.to_msg(lambda: empty)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 4 * 1500 * 1500  # [bytes]; a list takes eight for each cell
+
+
+def test_data_of_two_dimensions_has_the_shape_of_the_map() -> None:
+    values = np.arange(12, dtype=np.int8).reshape(3, 4)
+    message = gridmerge.OccupancyGrid(values, 0.05).to_msg()
+    for data in (values, values.tolist()):
+        np.testing.assert_array_equal(gridmerge.OccupancyGrid.from_msg({**message, "data": data}).to_numpy(), values)
+    for data in (values.T.copy(), values.reshape(4, 3).tolist(), values.reshape(1, 3, 4)):
+        with pytest.raises(ValueError, match=r"^data: is of shape"):
+            gridmerge.OccupancyGrid.from_msg({**message, "data": data})

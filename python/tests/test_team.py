@@ -30,6 +30,45 @@ def grids_at(simulation: gridmerge.Simulation, step: int) -> list[gridmerge.Occu
     return [(*one.earlier, one.grid)[step] for one in simulation.maps]
 
 
+def test_no_file_that_was_heard_is_written_over(robots: list[str], tmp_path: Path) -> None:
+    team = gridmerge.Team(quiet=0.1)
+    for name, robot in zip(("merged.yaml", "other.yaml"), robots, strict=False):
+        gridmerge.save(gridmerge.load(robot), tmp_path / name)
+        team.hear(name, tmp_path / name)
+    assert team.wait_until_settled(600.0)
+    kept = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    for name in ("merged.yaml", "other.yaml"):  # nor where newer maps of the robots have taken their places
+        team.hear(name, gridmerge.load(robots[2]))
+    team.forget("other.yaml")
+    for result in (team.merge_result(), pickle.loads(pickle.dumps(team.merge_result()))):
+        with pytest.raises(gridmerge.FileError, match="is an input"):
+            result.save(tmp_path)
+        with pytest.raises(gridmerge.FileError, match="is an input"):
+            result.export("geojson", tmp_path / "other.yaml")
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == kept
+
+
+def test_robots_are_called_what_files_may_be(robots: list[str]) -> None:
+    team = gridmerge.Team(quiet=0.1)
+    names = ["tb\udcff", "a\nb\x1b[31m"]  # the first as os.fsdecode() gives it
+    for name, robot in zip(names, robots, strict=False):
+        team.hear(name, robot)
+        team.hear_age(name, 1.0)
+        team.set_known_pose(name, None)
+        assert not team.hear_part(name, 10**6, 0, robot)
+    assert team.wait_until_settled(600.0)
+    answer = team.answer()
+    assert [robot.name for robot in answer.robots] == sorted(names)
+    assert [one.robots for one in answer.components] == [tuple(sorted(names))]
+    assert answer.components[0].anchor in names
+    assert set(team.merge_result().names) == set(names)
+    assert {event.robot for event in team.take_events()} == set(names)
+    assert repr(answer.components[0]).isprintable()
+    team.forget(names[0])
+    assert team.wait_until_settled(600.0)
+    assert [robot.name for robot in team.answer().robots] == [names[1]]
+
+
 def test_steps_grow(explored: gridmerge.Simulation) -> None:
     for one in explored.maps:
         known = [np.count_nonzero(grid.cells) for grid in (*one.earlier, one.grid)]

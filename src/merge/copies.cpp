@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "grid/equal_grids.hpp"
 #include "grid/longer_side.hpp"
+#include "grid/quarter_turned.hpp"
 #include "grid/seen_from.hpp"
 #include "gridmerge/merge/fuse.hpp"
 #include "merge/joins.hpp"
@@ -52,6 +54,16 @@ Join join_of_copies(std::size_t fixed, std::size_t moving, const SE2& T_fixed_mo
   return make_join(fixed, moving, std::move(match));
 }
 
+/// How many quarters a map was turned by when it was prepared: 0 to 3.
+int quarters_of(const GivenMap& map) {
+  const double theta = map.grid.origin.theta - map.prepared.known().origin.theta;
+  return (static_cast<int>(std::lround(theta / (0.5 * std::numbers::pi))) % 4 + 4) % 4;
+}
+
+bool looks_the_same_turned(const OccupancyGrid& map) {
+  return has_equal_cells(map, quarter_turned(map, 1)) || has_equal_cells(map, quarter_turned(map, 2));
+}
+
 Member* find_member(MergeResult& result, std::size_t map, Component*& of) {
   for (Component& component : result.components) {
     for (Member& member : component.members) {
@@ -84,6 +96,11 @@ void hold_by_first(Component& component, const std::vector<Copy>& copies,
 bool is_copy(const PreparedMap& a, const PreparedMap& b) {
   return a.counts().occupied > 0 && a.counts().occupied == b.counts().occupied &&
          a.counts().free == b.counts().free && has_equal_cells(a.known(), b.known());
+}
+
+bool is_given_twice(const GivenMap& a, const GivenMap& b) {
+  if (!is_copy(a.prepared, b.prepared)) return false;
+  return quarters_of(a) == quarters_of(b) || !looks_the_same_turned(a.prepared.known());
 }
 
 SE2 between_copies(const PreparedMap& a, const PreparedMap& b) {

@@ -23,6 +23,18 @@ struct Copy {
 /// Whether two maps hold the same cells, walls among them. O(cells) if they do, mostly O(1) if not.
 GRIDMERGE_INTERNAL_EXPORT bool is_copy(const PreparedMap& a, const PreparedMap& b);
 
+/// A map as it was given, and prepared.
+struct GivenMap {
+  const OccupancyGrid& grid;
+  const PreparedMap& prepared;
+};
+
+/// Whether two maps are one that was given twice: copies of which the cells say how they lie to each other.
+/// Those of one picture do. Those of a picture and of the same one turned by quarters do unless the picture
+/// looks the same from two sides: it lies on its turned copy in several ways then, none better than another.
+/// O(cells) for copies, mostly O(1) for others.
+GRIDMERGE_INTERNAL_EXPORT bool is_given_twice(const GivenMap& a, const GivenMap& b);
+
 /// From b's frame to a's, where the two hold the same cells.
 SE2 between_copies(const PreparedMap& a, const PreparedMap& b);
 

@@ -87,13 +87,22 @@ std::vector<MapStore::MapId> MapStore::in_canonical_order() const {
 std::vector<Copy> MapStore::find_copies(const std::vector<MapId>& maps) const {
   const std::vector<std::size_t> index = places_of(maps);
   std::vector<Copy> copies;
-  std::size_t original = 0;
-  for (std::size_t i = 1; i < maps.size(); ++i) {
-    const PreparedMap &first = at(maps[original]).prepared, &next = at(maps[i]).prepared;
-    if (!is_copy(first, next)) {
-      original = i;
+  std::vector<std::size_t> originals;  // with the same cells: several where these look the same when turned
+  const auto given = [&](std::size_t i) {
+    const Input& input = at(maps[i]);
+    return GivenMap{*input.grid, input.prepared};
+  };
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    if (!originals.empty() && !is_copy(given(originals.front()).prepared, given(i).prepared))
+      originals.clear();
+    const auto original = std::find_if(originals.begin(), originals.end(), [&](std::size_t other) {
+      return is_given_twice(given(other), given(i));
+    });
+    if (original == originals.end()) {
+      originals.push_back(i);
     } else if (!known_poses_.contains(maps[i])) {
-      copies.push_back({index[i], index[original], between_copies(first, next)});
+      copies.push_back(
+          {index[i], index[*original], between_copies(given(*original).prepared, given(i).prepared)});
     }
   }
   return copies;

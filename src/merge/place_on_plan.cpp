@@ -143,6 +143,39 @@ Reason reason_of(const MergePart& part, const std::optional<PlanWay>& way, doubl
   return is_sure ? Reason::over_budget : Reason::contradicts_others;
 }
 
+MergeResult hang_on_plan(const std::vector<OccupancyGrid>& maps, const OccupancyGrid& plan,
+                         MergeResult merged, const MergeOptions& options, const PlanOptions& plan_options) {
+  const PreparedMap drawn(with_enclosed_free(plan));
+  PlanInputs inputs(maps.size());
+  parallel_for(maps.size(), [&](std::size_t i) {
+    inputs[i] = std::make_shared<const MapStore::Input>(std::make_shared<const OccupancyGrid>(maps[i]));
+  });
+  std::vector<MergePart> parts = parts_of(merged, inputs);
+  Hanger hanger(drawn, merged, options, plan_options, parts);
+  const std::vector<std::optional<PlanWay>> ways = hanger.find();
+  PlanPlacement placement{plan_options.name, 1.0, {}, plan.resolution};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    PlanPart told;
+    for (const Member& member : parts[i].members) told.maps.push_back(member.map);
+    if (ways[i]) {
+      told.T_plan_first = ways[i]->T_plan_part * parts[i].members.front().T_component_map;
+      told.scale = ways[i]->scale;
+      told.probability = ways[i]->probability;
+    }
+    told.reason =
+        hanger.is_hung(i) ? Reason::none : reason_of(parts[i], ways[i], options.match.accept_probability);
+    if (told.on_plan()) placement.scale = ways[i]->scale;
+    placement.parts.push_back(std::move(told));
+  }
+  std::vector<OnPlan> hung;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (hanger.is_hung(i)) hung.push_back({&parts[i], *ways[i]});
+  }
+  merged.plan = std::move(placement);
+  join_on_plan(hung, inputs, options.resolution, merged);
+  return merged;
+}
+
 }  // namespace
 
 void validate_plan(const std::vector<OccupancyGrid>& maps, const OccupancyGrid& plan) {
@@ -159,41 +192,15 @@ void validate_plan(const std::vector<OccupancyGrid>& maps, const OccupancyGrid& 
 
 MergeResult place_on_plan(const std::vector<OccupancyGrid>& maps, const OccupancyGrid& plan,
                           MergeResult merged, const MergeOptions& options, const PlanOptions& plan_options) {
-  validate_merge(maps, options.resolution);
-  validate_plan(maps, plan);
-  check(maps, merged);
-  plan_match_options(options, plan_options.scales);
-  const PreparedMap drawn(with_enclosed_free(plan));
+  MergeResult placed;
   with_threads(options.match.threads, [&] {
-    PlanInputs inputs(maps.size());
-    parallel_for(maps.size(), [&](std::size_t i) {
-      inputs[i] = std::make_shared<const MapStore::Input>(std::make_shared<const OccupancyGrid>(maps[i]));
-    });
-    std::vector<MergePart> parts = parts_of(merged, inputs);
-    Hanger hanger(drawn, merged, options, plan_options, parts);
-    const std::vector<std::optional<PlanWay>> ways = hanger.find();
-    PlanPlacement placement{plan_options.name, 1.0, {}, plan.resolution};
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      PlanPart told;
-      for (const Member& member : parts[i].members) told.maps.push_back(member.map);
-      if (ways[i]) {
-        told.T_plan_first = ways[i]->T_plan_part * parts[i].members.front().T_component_map;
-        told.scale = ways[i]->scale;
-        told.probability = ways[i]->probability;
-      }
-      told.reason =
-          hanger.is_hung(i) ? Reason::none : reason_of(parts[i], ways[i], options.match.accept_probability);
-      if (told.on_plan()) placement.scale = ways[i]->scale;
-      placement.parts.push_back(std::move(told));
-    }
-    std::vector<OnPlan> hung;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      if (hanger.is_hung(i)) hung.push_back({&parts[i], *ways[i]});
-    }
-    merged.plan = std::move(placement);
-    join_on_plan(hung, inputs, options.resolution, merged);
+    validate_merge(maps, options.resolution);
+    validate_plan(maps, plan);
+    check(maps, merged);
+    plan_match_options(options, plan_options.scales);
+    placed = hang_on_plan(maps, plan, std::move(merged), options, plan_options);
   });
-  return merged;
+  return placed;
 }
 
 }  // namespace gridmerge

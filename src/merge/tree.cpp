@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "gridmerge/grid/execution.hpp"
 #include "merge/joins.hpp"
 
 namespace gridmerge {
@@ -139,9 +140,13 @@ class PairwiseTree {
 MergeResult merge_up_tree(const std::vector<OccupancyGrid>& maps, const Matcher& matcher,
                           const TreeOptions& options) {
   validate_merge(maps, options.resolution);
-  PairwiseTree tree(maps, matcher, options);
-  tree.climb();
-  return tree.result();
+  MergeResult result;
+  with_threads(options.threads, [&] {
+    PairwiseTree tree(maps, matcher, options);
+    tree.climb();
+    result = tree.result();
+  });
+  return result;
 }
 
 }  // namespace gridmerge

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // merge --init and --fix.
 #include "fixture.hpp"
+#include "grid/quarter_turned.hpp"
+#include "gridmerge/io/map_file.hpp"
 
 namespace gridmerge::test {
 namespace {
@@ -33,6 +35,17 @@ TEST_F(KnownPoses, FixTakesOneMapAndNoticesACopy) {
   EXPECT_NE(warned.find("copies, which count once: " + copy + " (of " + left + ")\n"), std::string::npos)
       << warned;
   EXPECT_NE(warned.find("given twice, and counted once: " + right + "\n"), std::string::npos) << warned;
+  // Turned, and on a larger sheet, it is that map all the same.
+  const OccupancyGrid turned = internal::quarter_turned(load_map(left).grid, 1);
+  OccupancyGrid sheet = make_grid(turned.width + 20, turned.height + 20, turned.resolution, turned.origin);
+  for (int row = 0; row < turned.height; ++row)
+    for (int column = 0; column < turned.width; ++column)
+      sheet.at(column + 10, row + 10) = turned.at(column, row);
+  const std::string saved = directory.file("turned.yaml");
+  save_map(sheet, saved);
+  const std::string of_turned = run({"merge", left, right, saved, "-o", output}).err;
+  EXPECT_NE(of_turned.find("copies, which count once: " + saved + " (of " + left + ")\n"), std::string::npos)
+      << of_turned;
   const std::string help = run({"merge", "--help"}).out;
   EXPECT_NE(help.find("--fix MAP "), std::string::npos) << help;
   EXPECT_EQ(help.find("--fix MAP ..."), std::string::npos) << help;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../similarity/random_grid.hpp"
+#include "grid/quarter_turned.hpp"
 #include "merge/joins.hpp"
 
 namespace gridmerge::internal {
@@ -35,6 +36,26 @@ TEST(Copies, HoldTheSameCellsAndHaveWalls) {
   EXPECT_FALSE(is_copy(map, PreparedMap(changed))) << "as many cells of each kind, elsewhere";
   const OccupancyGrid floor = make_grid(10, 10, 0.1, {}, Cell::free);
   EXPECT_FALSE(is_copy(PreparedMap(floor), PreparedMap(floor))) << "nothing tells floors apart";
+}
+
+TEST(Copies, AreOneMapGivenTwiceIfTheCellsSayHowTheyLie) {
+  const auto is_twice = [](const OccupancyGrid& a, const OccupancyGrid& b) {
+    const PreparedMap prepared_a(a), prepared_b(b);
+    return is_given_twice({a, prepared_a}, {b, prepared_b});
+  };
+  const OccupancyGrid map = some_map(1, {1.0, 2.0, 3.0});
+  OccupancyGrid moved = map;
+  moved.origin = {-4.0, 0.5, -2.9};
+  EXPECT_TRUE(is_twice(map, moved));
+  EXPECT_FALSE(is_twice(map, some_map(2)));
+  OccupancyGrid twofold = make_grid(6, 4, 0.1, {0.5, 0.0, 1.0}, Cell::free);
+  twofold.at(0, 0) = twofold.at(5, 3) = twofold.at(2, 0) = twofold.at(3, 3) = Cell::occupied;
+  for (const int quarters : {1, 2, 3})
+    EXPECT_TRUE(is_twice(map, quarter_turned(moved, quarters))) << quarters;
+  for (const int quarters : {1, 3})
+    EXPECT_FALSE(is_twice(twofold, quarter_turned(twofold, quarters))) << quarters;
+  for (const int quarters : {0, 2})
+    EXPECT_TRUE(is_twice(twofold, quarter_turned(twofold, quarters))) << "one picture";
 }
 
 TEST(Copies, LieWhereTheirCellsLieOnEachOther) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -114,6 +116,21 @@ bool always(const Maps&, const Maps&) {
 }
 bool never(const Maps&, const Maps&) {
   return false;
+}
+
+TEST(MergeUpTree, TakesNoMoreThreadsThanItMay) {
+  World world(3);
+  int most = 0;
+  const auto note_threads = [&](const Maps&, const Maps&) {
+    most = std::max(most, tbb::this_task_arena::max_concurrency());
+    return true;
+  };
+  TreeOptions options;
+  options.threads = 1;
+  world.merge_if(note_threads, options);
+  EXPECT_EQ(most, 1);
+  options.threads = -1;
+  EXPECT_THROW(world.merge_if(note_threads, options), std::invalid_argument);
 }
 
 TEST(MergeUpTree, OfNothingIsNothing) {

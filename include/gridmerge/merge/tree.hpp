@@ -22,7 +22,9 @@ struct TreeOptions {
   double resolution = 0.0;
   /// Called after every comparison with the number of finished ones and of those to be expected in all if
   /// nothing more joined (a join changes the latter), from the calling thread.
-  std::function<void(std::size_t, std::size_t)> progress;
+  std::function<void(std::size_t, std::size_t)> progress = {};
+  /// As MatchOptions::threads: of what is done beside the comparisons. Throws std::invalid_argument below 0.
+  int threads = 0;
 };
 
 /// Merges `maps` pairwise up a binary tree (Birk & Carpin 2006): (0 + 1), (2 + 3), then their results.

@@ -32,6 +32,16 @@ def numbered(name: str, component: int) -> str:
     return name if component == 0 else f"{name}_{component + 1}"
 
 
+def by_topic(robots: Mapping[str, str]) -> dict[str, str]:
+    """Robots by their topics. Raises ValueError, naming the parameter, for a topic of two robots."""
+    names: dict[str, str] = {}
+    for name, topic in robots.items():
+        if topic in names:
+            raise ValueError(f"robots: {topic} is the map of two robots, {names[topic]!r} and {name!r}")
+        names[topic] = name
+    return names
+
+
 class Selection:
     """The topics that are maps of robots.
 
@@ -40,6 +50,8 @@ class Selection:
         namespace: a text that the namespace has to have in it.
         robots: topics by names; where there are any, there are no others.
         merged: the node's own topic of merged maps, which with its numbers is nobody's map.
+
+    Raises ValueError for a topic of two robots.
     """
 
     def __init__(
@@ -48,7 +60,7 @@ class Selection:
         self._map_topic = map_topic
         self._updates_topic = updates_topic
         self._namespace = namespace
-        self._robots = {topic: name for name, topic in robots.items()}
+        self._robots = by_topic(robots)
         self._is_own: Callable[[str], object] = re.compile(
             re.escape(merged) + r"(_[2-9]|_[1-9][0-9]+)?\Z"
         ).match

@@ -44,6 +44,7 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
             self.declare_parameter(parameter.name, default, description)
         self.add_on_set_parameters_callback(self._on_set_parameters)
         self._settings: Settings | None = None
+        self._selection: Selection | None = None
         self._team: Team | None = None
         self._robots: Robots | None = None
         self._publishers_of_team: Publishers | None = None
@@ -99,7 +100,16 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
     def _configure(self) -> None:
         settings = read_settings({one.name: self.get_parameter(one.name).value for one in PARAMETERS})
         check_topic(self.resolve_topic_name(settings.merged_map_topic))
+        # Two names of topics may be one only in the node's namespace.
+        selection = Selection(
+            settings.robot_map_topic,
+            settings.robot_map_updates_topic,
+            settings.robot_namespace,
+            {name: self.resolve_topic_name(topic) for name, topic in settings.robots},
+            self.resolve_topic_name(settings.merged_map_topic),
+        )
         self._settings = settings
+        self._selection = selection
         self._team = Team(
             threads=settings.threads,
             accept=settings.accept,
@@ -123,14 +133,8 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
         settings, robots = self._settings, self._robots
         assert settings is not None and robots is not None
         merged = self.resolve_topic_name(settings.merged_map_topic)
-        selection = Selection(
-            settings.robot_map_topic,
-            settings.robot_map_updates_topic,
-            settings.robot_namespace,
-            {name: self.resolve_topic_name(topic) for name, topic in settings.robots},
-            merged,
-        )
-        self._subscriptions_of_team = MapSubscriptions(self, selection, robots, self._known_pose)
+        assert self._selection is not None
+        self._subscriptions_of_team = MapSubscriptions(self, self._selection, robots, self._known_pose)
         # A clock that stands or jumps, as that of a simulation may, must not hold the work up.
         clock = Clock(clock_type=ClockType.STEADY_TIME)
         work = [(1.0 / settings.discovery_rate, self._discover), (_ANSWERS_EVERY, self._look_for_answers)]
@@ -154,7 +158,7 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
         self._rest()
         if self._publishers_of_team is not None:
             self._publishers_of_team.close()
-        self._settings = self._team = self._robots = self._publishers_of_team = None
+        self._settings = self._selection = self._team = self._robots = self._publishers_of_team = None
         self._forget_answers()
 
     def _forget_answers(self) -> None:

@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from gridmerge_ros.names import check_name, check_topic
+from gridmerge_ros.names import by_topic, check_name, check_topic
 
 Value = bool | int | float | str | tuple[str, ...]
 
@@ -215,7 +215,6 @@ def _robots(entries: tuple[str, ...], map_topic: str) -> tuple[tuple[str, str], 
             raise ValueError(f"robots: {error}") from None
         if name in robots:
             raise ValueError(f"robots: names {name!r} twice")
-        if topic in robots.values():
-            raise ValueError(f"robots: {topic} is the map of two robots")
         robots[name] = topic
+    by_topic(robots)
     return tuple(robots.items())

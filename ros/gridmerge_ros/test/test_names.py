@@ -71,6 +71,11 @@ def test_robots_by_name_are_all() -> None:
     assert one.updates_of("/somewhere/grid") == "/somewhere/grid_updates"
 
 
+def test_a_topic_is_the_map_of_one_robot() -> None:
+    with pytest.raises(ValueError, match=r"^robots: /x/map is the map of two robots, 'a' and 'b'$"):
+        selection("nothing", {"a": "/x/map", "b": "/x/map"})
+
+
 @pytest.mark.parametrize(
     "topic", ["", "map", "/", "//map", "/tb1//map", "/1/map", "/tb1/map/", "/a b", "/é", "/" + "x" * 300]
 )
