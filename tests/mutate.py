@@ -252,7 +252,12 @@ def measure(room, seconds, seed):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("rooms", metavar="ROOM", nargs="*", help="of src/, or cli: apps/gridmerge; all that have tests unless told")
+    parser.add_argument(
+        "rooms",
+        metavar="ROOM",
+        nargs="*",
+        help="of src/, or cli: apps/gridmerge; all that have tests if none is given",
+    )
     parser.add_argument(
         "--seconds", type=int, default=600, help="for each room, after its build (default: %(default)s)"
     )
