@@ -123,7 +123,7 @@ def plot_cost(rows: list[dict], label: str, path: pathlib.Path) -> None:
         marker="o",
     )
     axes.set_xlabel(label)
-    axes.set_ylabel("median seconds a match", color="#0072b2")
+    axes.set_ylabel("median seconds per match", color="#0072b2")
     axes.set_ylim(bottom=0)
     memory = axes.twinx()
     memory.plot(values, [float(row["peak MB"]) for row in rows], color="#d55e00", marker="s")

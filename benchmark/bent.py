@@ -89,7 +89,7 @@ def place(member: dict, points: np.ndarray) -> np.ndarray:
 
 
 def read_map(path: Path) -> tuple[np.ndarray, float, tuple[float, float]]:
-    """Whether a cell is occupied, row 0 at the bottom; metres a cell; the lower-left corner."""
+    """Whether a cell is occupied, row 0 at the bottom; metres per cell; the lower-left corner."""
     entries = dict(line.split(": ", 1) for line in path.read_text().splitlines() if ": " in line)
     picture = path.parent / entries["image"]
     if picture.suffix == ".pgm":

@@ -9,12 +9,12 @@ usage: benchmark/live.py GRIDMERGE explore [--robots N] [--teams N] [--steps N]
 
 Runs in an environment that has rclpy and the package gridmerge: ./dev benchmark --live makes it.
 
-explore: teams of robots publish their maps once a second, at N moments of their ways. A line for each team says:
+explore: teams of robots publish their maps once per second, at N moments of their ways. A line for each team says:
 - how long after the first maps that merge() joins were sent the node has joined some;
 - how many robots lay wrongly at any time, and how many lost their place after they had 0.98 or more;
 - whether the last /merged_map is that of merge(), to the cell.
 
-hour: robots that explore, stand, repeat their maps, and start anew in another frame every ten minutes, once a second
+hour: robots that explore, stand, repeat their maps, and start anew in another frame every ten minutes, once per second
 each and --speed times as fast. What the node takes in time and memory must be that of the first ten minutes.
 
 large: two robots' maps of 4000 x 4000 cells, of one building of 170 m. Then the second one changes in a hundredth of
@@ -368,7 +368,7 @@ def main() -> None:
     parser.add_argument("what", choices=("explore", "hour", "large"))
     parser.add_argument("--robots", type=int, default=6)
     parser.add_argument("--teams", type=int, default=6)
-    parser.add_argument("--steps", type=int, default=12, help="moments of the robots' ways, one a second")
+    parser.add_argument("--steps", type=int, default=12, help="moments of the robots' ways, one per second")
     parser.add_argument("--speed", type=float, default=20.0, help="seconds of the hour per second")
     parser.add_argument("--repeats", type=int, default=5)
     arguments = parser.parse_args()

@@ -6,7 +6,7 @@ usage: benchmark/plans.py --gridmerge GRIDMERGE --output DIR [--data DATA] [--li
 
 Writes DIR/plans.md and DIR/plans.tsv. Plans of simulated buildings are drawn at scales of their own: as maps, as
 lines and on white paper. Where DATA has them, real maps of E5 and HIH are laid on their architects' layouts, with
-marks as the truth, and on each other's. N unrelated pairs at most, 200 unless told, and half as many simulated ones.
+marks as the truth, and on each other's. N unrelated pairs at most, 200 if not given, and half as many simulated ones.
 A map is right if its scale is within 3 % and it lies within 1.5 m (root mean square, of its marks or its known cells).
 """
 

@@ -90,7 +90,7 @@ def cropped(grid: Grid) -> Grid:
 
 
 def centres(grid: Grid, mask: np.ndarray) -> np.ndarray:
-    """Where the cells of `mask` are [m], one a row."""
+    """Where the cells of `mask` are [m], one per row."""
     rows, columns = np.nonzero(mask)
     return np.column_stack(
         [grid.x + (columns + 0.5) * grid.resolution, grid.y + (rows + 0.5) * grid.resolution]

@@ -30,7 +30,7 @@ class View:
     angle: float
     width: float
     height: float
-    scale: float  # pixels a metre
+    scale: float  # pixels per metre
 
     @property
     def size(self) -> tuple[int, int]:

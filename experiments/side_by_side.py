@@ -64,7 +64,7 @@ def laser(seed: int) -> dict:
     }
 
 
-# Each group: its name, metres a cell, the real maps, and the options of the simulated ones.
+# Each group: its name, metres per cell, the real maps, and the options of the simulated ones.
 GROUPS = [
     ("hand-held", 0.05, "halmstad/E5_[0-9]*.png", hand_held),
     ("laser", 0.1, "radish/pairs/*/map?.pgm", laser),

@@ -11,7 +11,7 @@
 
 namespace gridmerge::fuzz {
 
-/// Maps of 1 to 40 cells a side, drawn as the bytes say: each shows a part of one place, at a pose of its
+/// Maps of 1 to 40 cells per side, drawn as the bytes say: each shows a part of one place, at a pose of its
 /// own, with strokes of its own over it. So many have walls in common, as maps of two robots have.
 std::vector<OccupancyGrid> draw_maps(FuzzedDataProvider& bytes, std::size_t count);
 

@@ -64,7 +64,7 @@ class Console {
 /// would take the place of one of the `inputs`.
 void try_output_file(const std::string& path, const std::vector<std::filesystem::path>& inputs);
 
-/// Reads the maps of a command, and tells what is odd about their files once a kind, not once a map.
+/// Reads the maps of a command, and tells what is odd about their files once per kind, not once per map.
 class MapReader {
  public:
   /// `console` must outlive this.
@@ -77,7 +77,7 @@ class MapReader {
   bool lacks_resolution(const std::string& path) const;
 
   /// The same of a map whose scale is to be found: if its resolution is lacking, `resolution`, that of
-  /// `other`, takes its place, which is told.
+  /// `other`, takes its place, which is reported.
   LoadedMap read(const std::string& path, double resolution, const std::string& other);
 
   /// The same of several, in their order. Some are read at a time, by up to `threads` threads; 0 = one per

@@ -205,7 +205,7 @@ void add_distance_map_options(CLI::App& command, MeasureCommandOptions& options)
       command
           .add_option("--dmap", options.dmap,
                       "Write a distance map (d-map) on FIXED's cells: FILE.png is a picture in "
-                      "gray, with numbers in maps of at most 40 cells a side; FILE.csv is "
+                      "gray, with numbers in maps of at most 40 cells per side; FILE.csv is "
                       "numbers, the upper row first")
           ->type_name("FILE");
   command
@@ -259,7 +259,7 @@ void add_measure(CLI::App& app, Action& action) {
       "The measures of Birk & Carpin (2006) on FIXED's cells, and beside them what the engine says of the\n"
       "pose. omega counts equal cells, of all maps together; the rest is said of each MOVING on FIXED.\n"
       "A map that lies on none of the others is an error. Where maps lie on each other and know no cell in\n"
-      "common, it is told.\n\n"
+      "common, the output says so.\n\n"
       "Example:\n  gridmerge measure robot1.yaml robot2.yaml --pose 1.25,-3,0.52 --c-lock 7.5");
   command->callback([options, &action] {
     check_usage(*options);

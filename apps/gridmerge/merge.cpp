@@ -301,7 +301,9 @@ void add_files(CLI::App& command, MergeCommandOptions& options) {
       ->type_name("MAP")
       ->required()
       ->expected(1, -1);
-  command.add_option("-o,--output", options.output, "Directory for the results; made if need be")
+  command
+      .add_option("-o,--output", options.output,
+                  "Directory for the results, needed unless --shard is given; made if need be")
       ->type_name("DIR");
   command
       .add_option(

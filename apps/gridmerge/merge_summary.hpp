@@ -25,7 +25,7 @@ struct AskedMerge {
 /// way.
 std::string what_asks_for_less(const AskedMerge& asked, double probability, const char* what);
 
-/// What became of each comparison, a line each.
+/// What became of each comparison, one line each.
 std::string describe_joins(const AskedMerge& asked, const MergeResult& result);
 
 /// The merged maps and their members, what was left out and why, and what else a person should know.

@@ -151,7 +151,7 @@ void add_published_options(CLI::App& command, NodeCommandOptions& options) {
       .add_option(
           "--tf", options.transforms,
           "Transforms from the world to the robots' map frames: static on /tf_static when they change, "
-          "dynamic on /tf ten times a second, or none")
+          "dynamic on /tf ten times per second, or none")
       ->type_name("WHERE")
       ->check(CLI::IsMember(transform_topics()).description(""))
       ->capture_default_str();

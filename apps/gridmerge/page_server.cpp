@@ -72,7 +72,7 @@ const char* explain(Status status) {
     case Status::not_found:
       return "there is nothing here";
     case Status::length_required:
-      return "the body's length has to be told, in one Content-Length";
+      return "the body's length has to be given, in one Content-Length";
     case Status::payload_too_large:
       return "the body is longer than 1 MiB";
     case Status::uri_too_long:

@@ -93,7 +93,7 @@ std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& opt
       "N")
       ->check(CLI::Range(1, 1000).description(""));
   add("--starts", options.starts,
-      fmt::format("The lattice of poses whose best one starts a walk: R rotations, O shifts on each side of "
+      fmt::format("The grid of poses whose best one starts a walk: R rotations, O shifts on each side of "
                   "the centre in x and in y, OFFSET cells apart; {}x{}x{} if not given",
                   match.start.rotations, match.start.offsets, match.start.offset),
       "RxOxOFFSET")
@@ -135,7 +135,7 @@ std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& opt
 void check_walk(const SearchOptions& options) {
   if (!options.up_the_tree())
     throw CLI::ValidationError(
-        "--strategy", "joint needs several hypotheses a pair: --search exhaustive, quick or thorough");
+        "--strategy", "joint needs several hypotheses per pair: --search exhaustive, quick or thorough");
   if (options.restarts && static_cast<std::size_t>(*options.restarts) < options.walk.c_locks.size())
     throw CLI::ValidationError("--restarts", "is less than the number of --c-lock, which are used in turn");
   if (!options.scales.empty()) throw CLI::ValidationError("--scale", "excludes --search random-walk");

@@ -62,7 +62,7 @@ MatchOptions match_options(const CommonOptions& common, const SearchOptions& opt
 /// Matches pairs as the options say, and keeps the walks' traces if they are asked for.
 class PairMatcher {
  public:
-  /// `progress` is told how much of a match is done, in [0, 1].
+  /// `progress` gets how much of a match is done, in [0, 1].
   PairMatcher(const CommonOptions& common, SearchOptions options, std::function<void(double)> progress = {});
 
   MatchResult operator()(const OccupancyGrid& fixed, const OccupancyGrid& moving);

@@ -32,8 +32,8 @@ struct Draw {
   std::vector<RobotMap> robots;  ///< m1 is the first
 };
 
-/// Maps that cover 100 m in `side` cells a side (400 as the paper's). Throws std::runtime_error if the shares
-/// of m3 and m4 cannot be had.
+/// Maps that cover 100 m in `side` cells per side (400 as the paper's). Throws std::runtime_error if the
+/// shares of m3 and m4 cannot be had.
 Draw make_draw(int side, std::uint64_t seed);
 
 /// Two maps of a draw.

@@ -26,7 +26,7 @@ class OccupancyGrid:
     Args:
         data: int8 array of shape (height, width), row 0 at the bottom (y up): -1 unknown, 0 to 100 the occupancy
             in percent. Any strides will do; it is read where it lies.
-        resolution: metres a cell.
+        resolution: metres per cell.
         origin: pose of the lower left corner of cell (0, 0) in the map frame: (x, y, theta) [m, rad], a Transform
             or a 3x3 matrix.
 
@@ -107,7 +107,7 @@ class OccupancyGrid:
 
     @property
     def resolution(self) -> float:
-        """Metres a cell."""
+        """Metres per cell."""
         return self._core.resolution
 
     @property
@@ -353,7 +353,7 @@ def to_resolution(name: str, value: object) -> float:
     resolution = _arguments.number(name, value)
     if not _core.MIN_RESOLUTION <= resolution <= _core.MAX_RESOLUTION:
         raise ValueError(
-            f"{name}: must be between {_core.MIN_RESOLUTION:g} and {_core.MAX_RESOLUTION:g} metres a cell, is {value}"
+            f"{name}: must be between {_core.MIN_RESOLUTION:g} and {_core.MAX_RESOLUTION:g} metres per cell, is {value}"
         )
     return resolution
 

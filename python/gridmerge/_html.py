@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ._grid import OccupancyGrid
     from ._merge_result import MergeResult
 
-_MOST_PIXELS = 600  # a side
+_MOST_PIXELS = 600  # per side
 _COLOURS = bytes((221, 221, 217, 255, 255, 255, 32, 32, 36))  # unknown, free, occupied: those of preview.png
 
 
@@ -43,7 +43,7 @@ def _figure(caption: str, png: bytes, width: int) -> str:
 
 
 def _reduced(cells: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """At most so many pixels a side: occupied wins over free, and free over unknown, so that no wall is lost."""
+    """At most so many pixels per side: occupied wins over free, and free over unknown, so that no wall is lost."""
     step = -(-max(cells.shape) // _MOST_PIXELS)
     if step == 1:
         return cells

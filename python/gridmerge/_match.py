@@ -114,7 +114,7 @@ def match(
 
     Args:
         fixed, moving: maps, paths of map files, or messages like nav_msgs/OccupancyGrid.
-        threads: 0 = one a core. The result does not depend on it.
+        threads: 0 = one per core. The result does not depend on it.
         accept: the verdict is "accepted" from this probability on, 0.95 if None. Of the random walk it is the
             acceptance index, 0.98 if None.
         max_hypotheses: how many distinct hypotheses the result lists.

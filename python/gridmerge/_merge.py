@@ -48,9 +48,9 @@ def merge(
         strategy: "joint", or "tree": pairwise up a tree, as Birk & Carpin (2006).
         init: what is known of the maps' poses: the path of a table, which names the maps' files, or poses by map index,
             name, or path that the map was loaded from.
-        fix: a map whose pose is the truth, or several, told in the same ways: they are not changed, and the merged map
+        fix: a map whose pose is the truth, or several, named in the same ways: they are not changed, and the merged map
             is in this map's frame, or in that of `init`.
-        threads: 0 = one a core. The result does not depend on it.
+        threads: 0 = one per core. The result does not depend on it.
         accept: maps are joined from this probability on, 0.95 if None. Of the random walk it is the acceptance index,
             0.98 if None.
         max_false_joins: so many joins of the whole merge may be expected to be false, or of more than 50 maps for every
@@ -225,7 +225,7 @@ def to_output_resolution(value: float | None) -> float:
     resolution = _arguments.number("output_resolution", value)
     if not _core.MIN_RESOLUTION <= resolution <= _core.MAX_RESOLUTION:
         raise ValueError(
-            f"output_resolution: must be between {_core.MIN_RESOLUTION:g} and {_core.MAX_RESOLUTION:g} metres a cell, "
-            f"is {value}"
+            f"output_resolution: must be between {_core.MIN_RESOLUTION:g} and {_core.MAX_RESOLUTION:g} metres per cell"
+            f", is {value}"
         )
     return resolution

@@ -34,7 +34,7 @@ class Member:
     map: int
     """Index of the input map."""
     name: str
-    """Of the map: its file, or what merge() was told to call it."""
+    """Of the map: its file, or the name that merge() was given for it."""
     transform: Transform
     """Takes points of the map's frame to the component's."""
     probability: float | None
@@ -73,7 +73,8 @@ class Component:
     members: tuple[Member, ...]
     """Ascending by index, two or more."""
     grid: OccupancyGrid
-    """The merged map, with probabilities, in the frame of the first member, or the world's."""
+    """The merged map, with probabilities. Its frame is that of the first member, the world's if a member's pose is
+    fixed, or the plan's."""
     agreeing: int
     """Cells known in two or more inputs, all equal."""
     conflicting: int
@@ -130,7 +131,7 @@ class LeftOut:
     map: int
     """Index of the input map."""
     name: str
-    """Of the map: its file, or what merge() was told to call it."""
+    """Of the map: its file, or the name that merge() was given for it."""
     reason: Reason
     """Of the refused join that was most probable."""
     explanation: str
@@ -152,7 +153,7 @@ class OpenWay:
     transform: Transform
     """T_fixed_moving between the frames of these two maps."""
     probability: float
-    """With all that the other maps say; 0.1 or more."""
+    """With all that the other maps say; 0.05 or more."""
 
     def __repr__(self) -> str:
         return (

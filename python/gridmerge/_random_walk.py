@@ -118,7 +118,7 @@ def match_by_random_walk(
         c_locks: weights of disagreement less agreement in Delta, used by the walks in turn.
         restarts: how many walks, of which the one with the best acceptance index is kept; one for each c_lock if None.
         start: T_fixed_moving where all walks start, instead of the best poses of `starts`.
-        starts: a lattice of poses: rotations, shifts on each side of the centre in x and in y, and the cells between.
+        starts: a grid of poses: rotations, shifts on each side of the centre in x and in y, and the cells between.
         wide_share: share of proposals that are drawn from all poses, in [0, 1].
         temperature: a sample that is worse by d is accepted with probability exp(-d / temperature); 0 climbs.
         cooling: the temperature is multiplied with this after every proposal, in (0, 1].
@@ -130,7 +130,7 @@ def match_by_random_walk(
         least_common_cells: ...if so many cells are known in both maps.
         max_hypotheses: how many distinct hypotheses the result lists.
         seed: of the first walk; those of the others follow from it.
-        threads: 0 = one a core. The result does not depend on it.
+        threads: 0 = one per core. The result does not depend on it.
         trace: which samples the walks keep: "none", "accepted" or "all".
         progress: called with the share of walks that are done.
 

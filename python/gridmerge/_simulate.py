@@ -153,7 +153,7 @@ def simulate(
         stray, missed: shares of beams that end too early, or come back with nothing.
         tidy: without specks, and with walls so much thicker on each side [m]; None = as the range finder left them.
         seed: the same seed gives the same maps on the same machine.
-        threads: 0 = one a core. The result does not depend on it.
+        threads: 0 = one per core. The result does not depend on it.
         progress: called now and then, in the calling thread, with the share of the work that is done.
 
     Other Python threads run meanwhile, and Ctrl-C ends the work. Raises TypeError, or ValueError for what cannot be

@@ -113,8 +113,8 @@ class Team:
     thread, and none waits for that work, except wait_until_settled().
 
     Answers are steady. A robot's pose follows the evidence, but a robot that was placed moves elsewhere only when that
-    is confirmed, and each jump is told. A component's frame is that of the robot that was heard first, for as long as
-    it lives.
+    is confirmed, and each jump is reported. A component's frame is that of the robot that was heard first, for as long
+    as it lives.
 
     Args:
         threads, accept, max_false_joins, output_resolution, search: as of merge().

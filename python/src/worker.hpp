@@ -29,7 +29,7 @@ using Report = std::function<void(double)>;
 
 /// Runs `work` in a thread of its own, without the interpreter's lock, while the calling thread waits. That
 /// one meanwhile lets Python handle signals, and calls `progress` (None, or a function of the share) with
-/// what `work` reports: about twenty times a second, and with 1.0 at the end. When a signal's handler or
+/// what `work` reports: about twenty times per second, and with 1.0 at the end. When a signal's handler or
 /// `progress` raises, the work is cancelled, waited for, and the exception passed on. `work` touches no
 /// Python object.
 void run_in_worker(const nb::object& progress, const std::function<void(const Report&)>& work);

@@ -44,7 +44,7 @@ def test_the_typed_figures_are_those_of_the_json(team_folder: Path) -> None:
         assert {name: getattr(case, name) for name in expected} == expected
         assert case.negative == (expected["tolerance"] is None)
     assert evaluation.sets.maps == evaluation.set_cases[0].maps == 3
-    assert "seconds a match" in evaluation.summary()
+    assert "seconds per match" in evaluation.summary()
 
 
 def test_negatives_alone(team_folder: Path) -> None:

@@ -21,7 +21,7 @@
 
 namespace gridmerge::internal {
 
-/// So many robots are heard; who comes later is told of, and heard when another goes that never sent a map.
+/// So many robots are heard; who comes later is reported, and heard when another goes that never sent a map.
 inline constexpr std::size_t kMaxRobots = 256;
 /// The newest maps of all robots may have so many cells together.
 inline constexpr std::size_t kMaxCellsTogether = std::size_t{1} << 30;

@@ -14,7 +14,7 @@
 
 namespace gridmerge::internal {
 
-/// A transform that TF is told.
+/// A transform that TF gets.
 struct NamedTransform {
   std::string parent;
   std::string child;

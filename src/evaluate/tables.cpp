@@ -86,7 +86,7 @@ std::string summary_table(const Evaluation& evaluation, double accept_probabilit
   if (!evaluation.matches.empty()) {
     const TimeSummary seconds = summarize_times(evaluation.matches);
     text += pair_rows(evaluation.matches);
-    text += fmt::format("\nseconds a match: median {:.3f}, 90 % {:.3f}, max {:.3f}\n\n", seconds.median,
+    text += fmt::format("\nseconds per match: median {:.3f}, 90 % {:.3f}, max {:.3f}\n\n", seconds.median,
                         seconds.p90, seconds.max);
     text += threshold_rows(evaluation.matches, accept_probability);
   }

@@ -5,7 +5,7 @@
 
 namespace gridmerge::internal {
 
-/// How many threads with_threads() uses when it is asked for so many: 0 = one a core, and there are never
+/// How many threads with_threads() uses when it is asked for so many: 0 = one per core, and there are never
 /// more.
 GRIDMERGE_INTERNAL_EXPORT int thread_count(int threads);
 

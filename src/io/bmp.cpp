@@ -89,7 +89,7 @@ Header read_header(const Bytes& bytes) {
     case 32:
       break;
     default:
-      throw ParseError(fmt::format("a BMP of {} bits a pixel: save it as PNG", header.bits));
+      throw ParseError(fmt::format("a BMP of {} bits per pixel: save it as PNG", header.bits));
   }
   header.palette = std::size_t{kFileHeader} + header_size;
   header.raster = bytes.word32(kRasterAt);

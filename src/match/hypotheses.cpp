@@ -96,7 +96,7 @@ constexpr int kSlideDirections = 8;       // over half a turn
 constexpr std::size_t kSlideWalls = 600;  // that are looked at
 
 struct Hold {
-  double least = 0.0, most = 0.0;  // nats a metre
+  double least = 0.0, most = 0.0;  // nats per metre
   double direction = 0.0;          // of the least [rad, fixed grid frame]
 };
 

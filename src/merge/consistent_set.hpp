@@ -12,7 +12,7 @@ namespace gridmerge::internal {
 
 struct ConsistentSet {
   std::vector<NodeGroup> groups;    ///< every map is in one; ascending by first map, maps ascending
-  std::vector<UsedCandidate> used;  ///< ascending by pair, at most one a pair
+  std::vector<UsedCandidate> used;  ///< ascending by pair, at most one per pair
   /// Pairs that a larger budget of false joins would use, ascending.
   std::vector<std::size_t> over_budget = {};
 };

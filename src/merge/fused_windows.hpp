@@ -15,7 +15,7 @@ namespace gridmerge::internal {
 /// What fuse() gives, a window at a time: a merged map that is too large to be held is never whole in memory.
 class GRIDMERGE_INTERNAL_EXPORT FusedWindows {
  public:
-  /// What the whole map may have: 2^36 cells, and 2^19 a side, so that some hundred rows can be held.
+  /// What the whole map may have: 2^36 cells, and 2^19 per side, so that some hundred rows can be held.
   static constexpr LatticeLimits kLimits{68719476736.0, 524288.0};
 
   /// Arguments as of fuse(), and throws as fuse(), but for the limits. The maps outlive it. O(cells of

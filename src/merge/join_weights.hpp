@@ -147,7 +147,7 @@ class JoinWeights {
   static std::vector<ManyPointsTransform> poses_of(const NodeGroup& group);
   void unite_fixed(const NodeGroup& group, DisjointSets& places) const;
   std::vector<WeighedJoin> ways_of_pair(const PlacedNode& a, const PlacedNode& b) const;
-  /// The distinct ways that candidates propose, their probabilities not told. A way that is worth less than
+  /// The distinct ways that candidates propose, without their probabilities. A way that is worth less than
   /// the best one by more than `margin` may be missing; all are, if none can be worth more than `least`
   /// against being apart.
   std::vector<WeighedJoin> weigh_proposals(const NodeGroup& a, const NodeGroup& b, double margin,

@@ -345,7 +345,7 @@ Lattice cover(const std::vector<PlacedMap>& inputs, double resolution,
                                   what);
   };
   require_within(columns * rows, limits.cells, " cells");
-  require_within(std::max(columns, rows), limits.side, " cells a side");
+  require_within(std::max(columns, rows), limits.side, " cells per side");
   return {static_cast<int>(columns), static_cast<int>(rows), resolution, corner};
 }
 
@@ -365,8 +365,8 @@ LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice, const
                   (output.y - lattice.corner.y) / lattice.resolution + kSlack};
   };
   // A square of side a holds a point of any square grid of spacing a / sqrt(2), however that is rotated. So
-  // from that ratio on, every lattice cell meets the centre of a map cell; below it, two samples a side meet
-  // every map cell.
+  // from that ratio on, every lattice cell meets the centre of a map cell; below it, two samples per side
+  // meet every map cell.
   constexpr double kEveryCell = std::numbers::sqrt2;
   if (!deformation.is_identity()) {
     constexpr double kMostStretched = 1.0 + Deformation::kMostStrain;

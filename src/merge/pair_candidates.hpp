@@ -38,7 +38,7 @@ struct ProblemMap {
 /// All that is known of k maps.
 struct JoinProblem {
   std::vector<ProblemMap> maps;
-  std::vector<PairCandidates> pairs;  ///< at most one a pair of maps
+  std::vector<PairCandidates> pairs;  ///< at most one per pair of maps
   /// All maps lie on the first one, and what pairs say knows how often it fits by chance.
   bool is_of_a_plan = false;
 

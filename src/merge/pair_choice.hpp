@@ -54,7 +54,7 @@ class PairChoice {
     return std::exchange(comparisons_, std::move(store));
   }
 
-  /// The map has changed a little: it is chosen for as it was, and no store is told that.
+  /// The map has changed a little: it is chosen for as it was, and no store gets that.
   void outdate(MapId id) { outdated_.insert(id); }
 
   /// Makes the signatures that are missing, and compares them. `maps` are in canonical order. Runs in the

@@ -9,7 +9,7 @@ namespace gridmerge::internal {
 
 namespace {
 
-constexpr int kMaxNumbered = 40;   // cells a side: fills a screen
+constexpr int kMaxNumbered = 40;   // cells per side: fills a screen
 constexpr int kNumberedCell = 24;  // pixels: three digits fit
 constexpr int kLine = 1;           // between magnified cells
 

@@ -44,7 +44,7 @@ struct SimilarityMeter::Maps {
     const double moving_sides = (moving.width + moving.height) * moving.resolution / fixed.resolution;
     if (fixed.width + fixed.height + 1.5 * moving_sides > kMaxDistanceMapSides) {
       throw std::invalid_argument("the maps are too large for the image similarity: it takes about " +
-                                  std::to_string(kMaxDistanceMapSides / 5) + " cells a side");
+                                  std::to_string(kMaxDistanceMapSides / 5) + " cells per side");
     }
     const Point2 corner = inverse(fixed.origin) * Point2{fixed_map.origin.x, fixed_map.origin.y};
     whole.left = static_cast<int>(std::lround(corner.x / fixed.resolution));

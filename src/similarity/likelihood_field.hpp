@@ -74,7 +74,7 @@ struct LikelihoodField {
   int height = 0;                ///< rows
   SE2 T_map_grid;                ///< grid frame to map frame, both in metres
   std::vector<Place> places;     ///< width * height; those on the rim are always unseen
-  std::vector<WallPoint> walls;  ///< one a cell that holds a wall
+  std::vector<WallPoint> walls;  ///< one per cell that holds a wall
   std::array<double, kDistanceBins>
       background;  ///< share of the seen area in each distance bin; sums to 1, none is 0
 

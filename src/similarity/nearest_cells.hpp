@@ -21,7 +21,7 @@ struct CellsOnLattice {
   CellBox box;  ///< in cells of the lattice
   std::size_t stride = 0;
   std::vector<std::uint8_t> cells;  ///< values of Cell
-  std::vector<Span> spans;          ///< one a row, within the box
+  std::vector<Span> spans;          ///< one per row, within the box
 
   const std::uint8_t* row(int lattice_row) const {
     return cells.data() + static_cast<std::size_t>(lattice_row - box.bottom) * stride;
@@ -34,8 +34,8 @@ struct CellsOnLattice {
   }
 };
 
-/// Whether the grid has at most a million cells a side, and its corners lie within a million lattice cells of
-/// the lattice's own: beyond that numbers would leave their range. O(1).
+/// Whether the grid has at most a million cells per side, and its corners lie within a million lattice cells
+/// of the lattice's own: beyond that numbers would leave their range. O(1).
 bool is_within_lattice(const OccupancyGrid& grid, const SE2& T_lattice_grid, double lattice_resolution);
 
 /// The box of lattice cells whose centres may fall into `grid`, and perhaps a rim of others.

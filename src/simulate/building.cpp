@@ -84,7 +84,7 @@ void validate(const Building& building) {
 OccupancyGrid draw_building(const Building& building, double resolution) {
   validate(building);
   if (!(resolution >= 0.01 && resolution <= 1.0))
-    throw std::invalid_argument("the resolution must be between 0.01 and 1 metres a cell");
+    throw std::invalid_argument("the resolution must be between 0.01 and 1 metres per cell");
   const FloorPlan plan(building.edges, 0.5 * FloorPlan::kCell);
   constexpr double kMargin = 1.0;  // [m]
   const auto cells = [&](double side) { return std::ceil((side + 2.0 * kMargin) / resolution); };

@@ -37,7 +37,7 @@ void validate_mapping(const SimulateOptions& options) {
   require(is_between(options.drift, 0.0, 10.0), "drift must be between 0 and 10");
   require(is_between(options.clutter, 0.0, 10.0), "clutter must be between 0 and 10");
   require(is_between(options.resolution, 0.01, 1.0),
-          "the resolution must be between 0.01 and 1 metres a cell");
+          "the resolution must be between 0.01 and 1 metres per cell");
   require(options.steps >= 1 && options.steps <= 1000, "there must be between 1 and 1000 steps");
   require(!options.tidy || is_between(*options.tidy, 0.0, 1.0), "walls can be made thicker by 0 to 1 metres");
 }

@@ -117,7 +117,7 @@ TEST(SummaryTable, SweepsTheProbability) {
   }
   std::getline(rows, line);
   EXPECT_EQ(line, "area under the ROC of the probability: 1.0000");
-  EXPECT_NE(table.find("\nseconds a match: median 0.500, 90 % 0.500, max 0.500\n\n"), std::string::npos)
+  EXPECT_NE(table.find("\nseconds per match: median 0.500, 90 % 0.500, max 0.500\n\n"), std::string::npos)
       << table;
 }
 

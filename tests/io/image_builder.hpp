@@ -25,7 +25,7 @@ struct BmpBuilder {
   std::string build() const;
 };
 
-/// 24 bits a pixel, the top row of `values` first.
+/// 24 bits per pixel, the top row of `values` first.
 std::string gray_bmp(int width, int height, const std::vector<std::uint8_t>& values);
 
 /// Made by libjpeg at quality 75, the top row of `values` first; of several channels they follow each other.

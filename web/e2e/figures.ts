@@ -12,7 +12,7 @@ interface Figures {
   /** Milliseconds from navigation. */
   firstPaint: number;
   drawn: number;
-  /** Frames a second while the view is dragged, all of it in sight and then eleven times as near, and the longest frame in milliseconds. */
+  /** Frames per second while the view is dragged, all of it in sight and then eleven times as near, and the longest frame in milliseconds. */
   framesPerSecond: number;
   longestFrame: number;
   /** Milliseconds: of the script at a stretch while it loads, and until all is drawn anew after a zoom and after a layer was hidden. */

@@ -82,7 +82,7 @@ export class Grid {
   }
 }
 
-/** Half as many cells a side: occupied if any of the four is, else free if any is, so that no wall is lost. */
+/** Half as many cells per side: occupied if any of the four is, else free if any is, so that no wall is lost. */
 export function halve(fine: Level): Level {
   const width = (fine.width + 1) >> 1;
   const height = (fine.height + 1) >> 1;

@@ -9,7 +9,7 @@ import type { Offset, Witness } from "./witnesses";
 
 // Why the merge decides as it does, in sentences.
 
-/** So many other maps are told one by one. */
+/** So many other maps are named one by one. */
 const mostListed = 3;
 
 /** "0.12 m and 0.4°". */

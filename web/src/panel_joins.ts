@@ -39,7 +39,7 @@ export class JoinsPanel {
     replace(this.element, this.chosen, isLarge(state.report) ? searchBox(state) : null, this.filters(), this.graph, this.table.element);
     state.on("query", () => this.table.update());
     for (const topic of ["scene", "colors"] as const) state.on(topic, () => this.update());
-    // Distances are told at a map's middle, which is known with its cells.
+    // Distances are given at a map's middle, which is known with its cells.
     state.on("grids", () => this.showChosen());
     this.update();
   }

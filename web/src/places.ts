@@ -24,7 +24,7 @@ export function placesOf(report: Report, map: number, middle: Point, placed: Pla
     const other = join.fixed === map ? join.moving : join.moving === map ? join.fixed : -1;
     const pose = placed.find((candidate) => candidate.map === other)?.T_scene_map;
     if (!pose) return [];
-    // Of many maps the ways of a refused comparison are not told but for one; maps that could not be compared have none.
+    // Of many maps the ways of a refused comparison are not listed except for one; maps that could not be compared have none.
     const ways = join.hypotheses.length > 0 ? join.hypotheses : join.probability > 0 ? [join] : [];
     return ways.map(({ transform, probability }) => ({
       T_scene_map: compose(pose, join.moving === map ? transform : inverse(transform)), with: other, probability,

@@ -171,7 +171,7 @@ export function isPlanBelieved(report: Report): boolean {
   return report.plan !== undefined && report.plan.maps.length > 0;
 }
 
-/** Whether it is told what the two maps have in common: it is not of refused joins of many maps. */
+/** Whether the data says what the two maps have in common: of refused joins of many maps it does not. */
 export function hasFigures(join: Join): boolean {
   return join.agreement + join.disagreement > 0;
 }

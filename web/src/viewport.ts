@@ -26,7 +26,7 @@ export interface Viewport {
   height: number;
   /** Point of the scene in the middle of the canvas. */
   center: Point;
-  /** Pixels a metre. */
+  /** Pixels per metre. */
   scale: number;
 }
 

@@ -88,7 +88,7 @@ struct Shard {
 
 /// How match_with_cache() goes about it.
 struct MatchWorkOptions {
-  Shard shard;  ///< what is made; all, unless told otherwise
+  Shard shard;  ///< what is made; all by default
   /// When a match cannot be written, warns once and goes on; without it that is an error.
   bool goes_on_when_full = true;
   /// Called with the numbers of matches of a round that are there, and that are due; never from two threads

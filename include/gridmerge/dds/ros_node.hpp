@@ -18,7 +18,7 @@ namespace gridmerge {
 /// Where a RosNode publishes the transforms of robots.
 enum class TransformTopic {
   tf_static,  ///< `/tf_static`: when they change, kept for whoever listens later
-  tf,         ///< `/tf`: ten times a second, stamped with the system's time
+  tf,         ///< `/tf`: ten times per second, stamped with the system's time
   none,       ///< nowhere
 };
 

@@ -93,7 +93,7 @@ struct Truth {
   std::vector<TrueSet> sets;            ///< maps to be merged
 };
 
-/// How the engine is run and what is told meanwhile.
+/// How the engine is run and what is reported meanwhile.
 struct EvaluateOptions {
   /// How two maps are compared; match() as it is, if empty.
   Matcher matcher;

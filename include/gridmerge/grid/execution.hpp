@@ -9,10 +9,10 @@
 
 namespace gridmerge {
 
-/// Runs `work` in a TBB arena of up to `threads` threads; 0 = one a core, and there are never more. Functions
-/// that say that they run in the calling TBB arena use these threads. Functions with a number of threads
-/// among their options or arguments use that number instead. Throws std::invalid_argument for a negative
-/// number; an exception of `work` is passed on.
+/// Runs `work` in a TBB arena of up to `threads` threads; 0 = one per core, and there are never more.
+/// Functions that say that they run in the calling TBB arena use these threads. Functions with a number of
+/// threads among their options or arguments use that number instead. Throws std::invalid_argument for a
+/// negative number; an exception of `work` is passed on.
 GRIDMERGE_EXPORT void with_threads(int threads, const std::function<void()>& work);
 
 /// What work ends with that was asked to stop.

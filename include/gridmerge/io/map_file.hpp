@@ -91,7 +91,7 @@ struct LoadedMap {
 /// Refused: resolutions outside [kMinResolution, kMaxResolution], origins that are not finite or beyond 1e9
 /// m, thresholds outside [0, 1] or crossed, YAML above 1 MiB, images with less data than their header
 /// promises (more is tolerated). Throws FileError. O(pixels); peak memory is the file and 3
-/// to 8 bytes a cell, of a progressive JPEG up to 6 more.
+/// to 8 bytes per cell, of a progressive JPEG up to 6 more.
 GRIDMERGE_EXPORT LoadedMap load_map(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// The files that load_map(path) reads: the YAML and its image, or a bare image alone. The image is not

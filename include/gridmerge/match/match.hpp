@@ -93,8 +93,8 @@ struct MatchOptions {
   /// Of SearchMethod::random_walk, which has its own rule of acceptance. Its threads, number of hypotheses
   /// and progress are those below.
   RandomWalkMatchOptions random_walk = {};
-  int threads = 0;                   ///< worker threads; 0 = one a core. The result does not depend on it.
-  std::size_t max_hypotheses = 10;   ///< how many distinct hypotheses the result lists; some 30 are judged
+  int threads = 0;                   ///< worker threads; 0 = one per core. The result does not depend on it.
+  std::size_t max_hypotheses = 10;   ///< how many distinct hypotheses the result lists; up to 18 are judged
   double accept_probability = 0.95;  ///< the verdict is `accepted` from this probability on
   /// Called now and then with the share of the work that is done, in [0, 1]; never from two threads at once.
   std::function<void(double)> progress;

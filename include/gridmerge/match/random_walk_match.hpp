@@ -17,8 +17,8 @@ namespace gridmerge {
 
 /// How two maps are matched by random walks.
 struct RandomWalkMatchOptions {
-  StartPoseOptions start;  ///< the lattice of poses from which walks start
-  /// T_fixed_moving from which all walks start, instead of the best poses of that lattice [m, rad].
+  StartPoseOptions start;  ///< the grid of poses from which walks start
+  /// T_fixed_moving from which all walks start, instead of the best poses of that grid [m, rad].
   std::optional<SE2> start_pose = {};
   /// Of each walk. Its seed is the first walk's, and those of the others are derived from it; its c_lock is
   /// replaced by those below.
@@ -30,14 +30,14 @@ struct RandomWalkMatchOptions {
   /// ...if so many cells of the fixed map's lattice are known in both: any two maps agree on a handful.
   std::int64_t least_common_cells = 400;
   std::size_t max_hypotheses = 10;  ///< how many distinct hypotheses the result lists
-  int threads = 0;                  ///< worker threads; 0 = one a core. The result does not depend on it.
+  int threads = 0;                  ///< worker threads; 0 = one per core. The result does not depend on it.
   /// Called now and then with the share of the walks that are finished; never from two threads at once.
   std::function<void(double)> progress;
   /// Called at the end for every walk, in order, with its number from 0 and its c_lock.
   std::function<void(int, double, const RandomWalkResult&)> on_walk;
 };
 
-/// Finds how `moving` lies on `fixed` as Birk & Carpin (2006) do: adaptive random walks from a lattice of
+/// Finds how `moving` lies on `fixed` as Birk & Carpin (2006) do: adaptive random walks from a grid of
 /// start poses, of which the one with the best acceptance index is kept (of those with the fewest undefined
 /// distances), and accepted if that is large enough, no distance is undefined and the maps have enough in
 /// common.

@@ -36,7 +36,7 @@ struct MergeOptions {
   MapTransform transform = MapTransform::rigid;
   /// Called with the numbers of pairs that are matched and to be matched, never from two threads at once. The
   /// numbers begin anew with each round: with the second look, and of many maps with each choice of pairs.
-  /// Matches of maps with merged groups are not told.
+  /// Matches of maps with merged groups are not reported.
   std::function<void(std::size_t, std::size_t)> progress;
 };
 
@@ -71,8 +71,9 @@ GRIDMERGE_EXPORT void validate(const KnownPose& known);
 /// the component that holds one has the world's frame. With no fixed map in it a component has the frame of
 /// its first member.
 ///
-/// The result does not depend on the number of threads, nor on the order of the maps, except that the frame
-/// of a component is its first member's and `joins` are in the order (0, 1), (0, 2), ... Throws
+/// The result does not depend on the number of threads, nor on the order of the maps, with two exceptions:
+/// without fixed maps the frame of a component is its first member's, and `joins` are in the order (0, 1),
+/// (0, 2), ... Throws
 /// std::invalid_argument for an invalid grid, option or known pose, naming the map by its index, for more
 /// known poses than maps, and when a merged map would exceed kMaxGridCells cells. At most k * (k - 1) / 2
 /// matches for k maps.

@@ -96,7 +96,7 @@ struct OpenWay {
   double probability = 0.0;  ///< with all that the other maps say, kMinOpenProbability or more
 };
 
-/// Ways that are less probable are not told. One of this probability is what keeps another from 0.95, which
+/// Ways that are less probable are not listed. One of this probability is what keeps another from 0.95, which
 /// is usually asked for.
 inline constexpr double kMinOpenProbability = 0.05;
 
@@ -140,7 +140,7 @@ struct PlanPlacement {
   /// metres, lies in the frame of the component on the plan. 1 if no part is on the plan.
   double scale = 1.0;
   std::vector<PlanPart> parts;  ///< in the order of their first maps
-  double resolution = 0.0;  ///< of the plan, in its own metres per cell; 0 = not told by an earlier version
+  double resolution = 0.0;  ///< of the plan, in its own metres per cell; 0 = not said by an earlier version
 
   /// Indices of the input maps that hang on it, part by part.
   std::vector<std::size_t> maps_on_plan() const {

@@ -125,7 +125,7 @@ GRIDMERGE_EXPORT void validate(const TeamOptions& options);
 /// six of each robot at most.
 ///
 /// Answers are steady. A robot's pose follows the evidence, but a robot that was placed moves elsewhere only
-/// when that is confirmed (TeamOptions::confirmations, TeamOptions::quiet), and each jump is told. A
+/// when that is confirmed (TeamOptions::confirmations, TeamOptions::quiet), and each jump is reported. A
 /// component's frame is that of the robot that was heard first, for as long as it lives.
 class GRIDMERGE_EXPORT Team {
  public:

@@ -77,11 +77,11 @@ enum class ExportFormat {
   /// Outlines of maps (RFC 7946), in metres of the merged map's frame.
   geojson,
   /// The merged maps themselves as cloud-optimised GeoTIFFs, in the cells of their finest maps, and of any
-  /// size: up to 2^36 cells, and 2^19 a side.
+  /// size: up to 2^36 cells, and 2^19 per side.
   geotiff,
 };
 
-/// All of them, in the order in which they are told.
+/// All of them, in the order in which they are listed.
 GRIDMERGE_EXPORT std::span<const ExportFormat> export_formats();
 
 /// As users spell it: "g2o", "open-rmf", "geojson", "geotiff".

@@ -71,7 +71,7 @@ GRIDMERGE_EXPORT void validate(const Building& building);
 /// for an arena, a quarter of a second at the largest.
 GRIDMERGE_EXPORT Building make_building(BuildingKind kind, double width, double height, std::uint64_t seed);
 
-/// The building as a map in its own frame, `resolution` metres a cell: edges occupied, floor that can be
+/// The building as a map in its own frame, `resolution` metres per cell: edges occupied, floor that can be
 /// reached free, the rest unknown. Throws std::invalid_argument for a building that cannot be, a resolution
 /// outside [0.01, 1], and a map of more than kMaxGridCells. O(cells).
 GRIDMERGE_EXPORT OccupancyGrid draw_building(const Building& building, double resolution);
@@ -100,9 +100,9 @@ struct SimulateOptions {
   /// common with another one (of the smaller of the two). It is reached by how far robots go from where they
   /// start. Without it each goes wherever it can.
   std::optional<double> overlap;
-  /// Where robots start, in the building's frame, one a robot; empty spreads them over the floor.
+  /// Where robots start, in the building's frame, one per robot; empty spreads them over the floor.
   std::vector<Point2> starts;
-  /// Which way robots set off, in the building's frame, one a robot [rad]; empty lets them go anywhere. A
+  /// Which way robots set off, in the building's frame, one per robot [rad]; empty lets them go anywhere. A
   /// robot with a heading looks that way at first, and goes only to places that lie ahead of its start: two
   /// that set off back to back part for good.
   std::vector<double> headings;
@@ -122,7 +122,7 @@ struct SimulateOptions {
   /// each side [m]; as the range finder left them, if not given.
   std::optional<double> tidy;
   std::uint64_t seed = 1;  ///< of everything that chance decides
-  int threads = 0;         ///< worker threads; 0 = one a core. The result does not depend on it.
+  int threads = 0;         ///< worker threads; 0 = one per core. The result does not depend on it.
   /// Called now and then with the share of the work that is done, in [0, 1]; never from two threads at once.
   std::function<void(double)> progress;
 };
@@ -165,7 +165,7 @@ struct SimulatedPair {
 /// A building, the maps that robots made of it, and the truth about them.
 struct Simulation {
   Building building;                                           ///< the same for all robots
-  std::vector<SimulatedMap> maps;                              ///< one a robot
+  std::vector<SimulatedMap> maps;                              ///< one per robot
   std::vector<SimulatedPair> pairs;                            ///< by fixed, then moving; fixed < moving
   std::vector<std::pair<std::size_t, std::size_t>> strangers;  ///< maps that have no place in common
   double overlap = 0.0;  ///< what SimulateOptions::overlap asks for, as it came out

@@ -46,7 +46,7 @@ def read_known_pose(
         if not fixed:
             return None
         if len(settings.fixed_robots) > 1:
-            return "is one of several fixed_robots: how they lie to each other must be told by init_pose_x, _y and _yaw"
+            return "is one of several fixed_robots: how they lie to each other must stand in init_pose_x, _y and _yaw"
         numbers = {"x": 0.0, "y": 0.0, "yaw": 0.0}
     missing = [f"init_pose_{axis}" for axis in ("x", "y", "yaw") if axis not in numbers]
     if missing:

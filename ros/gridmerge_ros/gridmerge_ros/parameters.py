@@ -84,7 +84,7 @@ PARAMETERS = (
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The parameters' values, checked: what they are apart from each other is told by PARAMETERS."""
+    """The parameters' values, checked: PARAMETERS says what each is by itself."""
 
     autostart: bool
     robot_map_topic: str
