@@ -211,7 +211,7 @@ def meetings(
         )
         with features.open(newline="") as file:
             for row in csv.DictReader(file, delimiter="\t"):
-                if row["truth"] == "right":
+                if row["hypothesis"] == "1" and row["truth"] == "right":
                     rigid.append(100 * float(row["walls_met"]))
                     local.append(100 * float(row["walls_met_locally"]))
     return rigid, local
