@@ -153,7 +153,9 @@ class Team:
         options.max_robots = _arguments.whole("max_robots", max_robots, 1, 1_000_000)
         self._core = _core.Team(options)
         self._accept = options.accept
-        self._files: set[bytes] = set()  # of every map that was heard: a result may still hold one that is gone
+        self._files: set[bytes] = (
+            set()
+        )  # of every map that was heard: a result may still hold one that is gone
 
     def __repr__(self) -> str:
         return f"Team({self.answer()!r})"
@@ -220,7 +222,9 @@ class Team:
         """
         merged, names = self._core.merged()
         files = tuple(sorted(self._files))
-        return to_merge_result(merged, [OccupancyGrid._of(grid) for grid in merged.maps], names, files, self._accept)
+        return to_merge_result(
+            merged, [OccupancyGrid._of(grid) for grid in merged.maps], names, files, self._accept
+        )
 
     def take_events(self) -> tuple[TeamEvent, ...]:
         """What has changed since this was called last, oldest first: the events of every answer, those too that nobody

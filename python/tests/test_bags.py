@@ -152,7 +152,9 @@ def test_arguments_that_do_not_fit(bags: Path, robots: list[str], tmp_path: Path
         gridmerge.load(robots[0], topic="/map")
     with pytest.raises(ValueError, match="topic: is '/tb2/map', but the path names '/tb1/map'"):
         gridmerge.load(f"{bags / 'db3'}#/tb1/map", topic="/tb2/map")
-    assert gridmerge.load(f"{bags / 'db3'}#tb1/map", topic="/tb1/map") == gridmerge.load(f"{bags / 'db3'}#/tb1/map")
+    assert gridmerge.load(f"{bags / 'db3'}#tb1/map", topic="/tb1/map") == gridmerge.load(
+        f"{bags / 'db3'}#/tb1/map"
+    )
     with pytest.raises(ValueError, match="topic: is empty"):
         gridmerge.load(bags / "db3", topic="")
     with pytest.raises(TypeError, match="topic: must be a string"):

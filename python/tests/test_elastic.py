@@ -58,7 +58,9 @@ def test_deformations_are_values() -> None:
     assert one == any_deformation()
     assert one != other
     assert hash(one) == hash(any_deformation())
-    zero, below = (gridmerge.Deformation((0.0, 0.0, 0.0), 1.0, np.full((4, 4, 2), one)) for one in (0.0, -0.0))
+    zero, below = (
+        gridmerge.Deformation((0.0, 0.0, 0.0), 1.0, np.full((4, 4, 2), one)) for one in (0.0, -0.0)
+    )
     assert zero == below
     assert hash(zero) == hash(below)
     assert pickle.loads(pickle.dumps(one)) == one

@@ -259,7 +259,7 @@ def test_a_map_goes_by_the_file_that_it_is_of_now(robots: list[str], tmp_path: P
 def test_a_map_may_be_called_as_the_metadata_of_a_bag(robots: list[str], tmp_path: Path) -> None:
     odd = tmp_path / "metadata.yaml"
     gridmerge.save(gridmerge.load(robots[0]), odd)
-    maps = [odd, robots[1]]
+    maps: list[str | Path] = [odd, robots[1]]
     plain = gridmerge.merge(maps, fix=os.path.join(tmp_path, ".", "metadata.yaml"))
     assert len(plain.components) == 1
     with ThreadPoolExecutor(1) as executor:

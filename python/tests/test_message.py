@@ -312,7 +312,10 @@ def test_data_of_two_dimensions_has_the_shape_of_the_map() -> None:
     values = np.arange(12, dtype=np.int8).reshape(3, 4)
     message = gridmerge.OccupancyGrid(values, 0.05).to_msg()
     for data in (values, values.tolist()):
-        np.testing.assert_array_equal(gridmerge.OccupancyGrid.from_msg({**message, "data": data}).to_numpy(), values)
-    for data in (values.T.copy(), values.reshape(4, 3).tolist(), values.reshape(1, 3, 4)):
+        np.testing.assert_array_equal(
+            gridmerge.OccupancyGrid.from_msg({**message, "data": data}).to_numpy(), values
+        )
+    wrong: list[Any] = [values.T.copy(), values.reshape(4, 3).tolist(), values.reshape(1, 3, 4)]
+    for data in wrong:
         with pytest.raises(ValueError, match=r"^data: is of shape"):
             gridmerge.OccupancyGrid.from_msg({**message, "data": data})
