@@ -13,8 +13,8 @@
 #include "gridmerge/io/file_error.hpp"
 #include "io/add_map.hpp"
 #include "io/destination.hpp"
+#include "io/directory_lock.hpp"
 #include "io/directory_names.hpp"
-#include "io/made_directories.hpp"
 
 namespace gridmerge::internal {
 

@@ -20,6 +20,8 @@ namespace {
 
 constexpr auto kPatience = std::chrono::minutes(1);  // no set of files takes as long to write
 constexpr auto kPause = std::chrono::milliseconds(5);
+constexpr int kTries =
+    100;  // of making the file: no other program removes the directory as often just before
 
 /// False when another has it. Looks again and again, as a wait in the system cannot be cancelled everywhere.
 bool try_lock(int descriptor) {
@@ -38,6 +40,7 @@ bool is_gone(int descriptor) {
 DirectoryLock::DirectoryLock(const std::filesystem::path& directory, IfMissing if_missing)
     : file_(directory / ".gridmerge.lock") {
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  int missing = 0;
   while (true) {
     // Again for each attempt: another program may have made the directory, and removed it as it was empty.
     if (if_missing == IfMissing::make) made_ = std::make_unique<MadeDirectories>(directory);
@@ -47,7 +50,7 @@ DirectoryLock::DirectoryLock(const std::filesystem::path& directory, IfMissing i
       descriptor_ = ::open(file_.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
       if (descriptor_ < 0) errno = EACCES;
     }
-    if (descriptor_ < 0 && (errno != ENOENT || if_missing == IfMissing::fail))
+    if (descriptor_ < 0 && (errno != ENOENT || if_missing == IfMissing::fail || ++missing == kTries))
       throw FileError(directory, "cannot be written to: " + describe_errno(errno));
     if (descriptor_ >= 0 && try_lock(descriptor_) && !is_gone(descriptor_)) return;
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -56,6 +59,10 @@ DirectoryLock::DirectoryLock(const std::filesystem::path& directory, IfMissing i
       throw FileError(directory, "cannot be written to: another program has been writing to it for a minute");
     std::this_thread::sleep_for(kPause);
   }
+}
+
+void check_directory(const std::filesystem::path& directory) {
+  const DirectoryLock trial(directory, DirectoryLock::IfMissing::make);
 }
 
 DirectoryLock::~DirectoryLock() {

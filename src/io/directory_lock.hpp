@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "internal_export.hpp"
 #include "io/made_directories.hpp"
 
 namespace gridmerge::internal {
@@ -26,5 +27,9 @@ class DirectoryLock {
   std::filesystem::path file_;
   int descriptor_;
 };
+
+/// Throws FileError, and Cancelled, unless files can be made in a directory, which is made for that if need
+/// be, and not kept. Waits for another writer.
+GRIDMERGE_INTERNAL_EXPORT void check_directory(const std::filesystem::path& directory);
 
 }  // namespace gridmerge::internal

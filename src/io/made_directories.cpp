@@ -50,13 +50,4 @@ void MadeDirectories::remove_empty() const {
   for (const fs::path& part : made_) ::rmdir(part.c_str());
 }
 
-void check_directory(const fs::path& directory) {
-  for (int i = 1;; ++i) {
-    const MadeDirectories made(directory);
-    if (::access(directory.c_str(), W_OK | X_OK) == 0) return;
-    if (errno != ENOENT || i == kTries)
-      throw FileError(directory, "cannot be written to: " + std::generic_category().message(errno));
-  }
-}
-
 }  // namespace gridmerge::internal

@@ -27,7 +27,4 @@ class GRIDMERGE_INTERNAL_EXPORT MadeDirectories {
   std::vector<std::filesystem::path> made_;  // the innermost first
 };
 
-/// Throws FileError unless files can be made in a directory, which is made for that if need be, and not kept.
-GRIDMERGE_INTERNAL_EXPORT void check_directory(const std::filesystem::path& directory);
-
 }  // namespace gridmerge::internal

@@ -3,12 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cerrno>
 #include <deque>
 #include <filesystem>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "gridmerge/io/file_error.hpp"
@@ -70,28 +68,6 @@ TEST(MadeDirectories, LastFromTheOutermostOn) {
   const MadeDirectories made(directory.file("a/b"));
   const std::filesystem::path outer = std::filesystem::canonical(directory.path());
   EXPECT_EQ(flushed, (std::vector<std::filesystem::path>{outer, outer / "a"}));
-}
-
-TEST(CheckDirectory, LeavesNothingAndNamesWhatIsInTheWay) {
-  const test::TemporaryDirectory directory;
-  check_directory(directory.file("a/b"));
-  EXPECT_FALSE(std::filesystem::exists(directory.file("a")));
-  directory.write("file", "");
-  EXPECT_THROW(check_directory(directory.file("file/b")), FileError);
-}
-
-TEST(CheckDirectory, TwoThatLookAtTheSameTimeBothFindThatItCanBeMade) {
-  const test::TemporaryDirectory directory;
-  for (const char* const name : {"o", "p/q/r"}) {
-    const std::filesystem::path path = directory.file(name);
-    std::atomic<bool> is_over{false};
-    std::thread other([&] {
-      while (!is_over) check_directory(path);
-    });
-    for (int i = 0; i < 300; ++i) EXPECT_NO_THROW(check_directory(path));
-    is_over = true;
-    other.join();
-  }
 }
 
 }  // namespace
