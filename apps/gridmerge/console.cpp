@@ -70,6 +70,16 @@ std::string describe_pose(const SE2& T) {
                      T.theta * 180.0 / std::numbers::pi);
 }
 
+std::string describe_removed(const std::vector<std::filesystem::path>& removed, const char* of) {
+  std::string names;
+  for (const std::filesystem::path& file : removed) {
+    std::error_code error;
+    if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) continue;  // written anew
+    names += (names.empty() ? "" : ", ") + file.filename().string();
+  }
+  return names.empty() ? names : fmt::format("removed: {} (of an earlier {})\n", escape_controls(names), of);
+}
+
 Console::Console(const CommonOptions& options)
     : quiet_(options.quiet),
       verbose_(options.verbose),

@@ -22,6 +22,10 @@ void print_error(const std::string& message);
 /// A transform or a pose as people read it, on one line.
 std::string describe_pose(const SE2& T);
 
+/// Names the files of an earlier merge or dataset (`of`) that were removed and are not there again; "" if
+/// there are none.
+std::string describe_removed(const std::vector<std::filesystem::path>& removed, const char* of);
+
 /// stderr while a command runs: warnings, remarks, and a progress bar when it is a terminal.
 class Console {
  public:

@@ -10,7 +10,6 @@
 #include "console.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/report/merge_output.hpp"
-#include "merge_summary.hpp"
 #include "report/interchange.hpp"
 #include "report/output_names.hpp"
 
@@ -149,7 +148,7 @@ std::string write_exports(const std::vector<Export>& exports,
       const internal::ExportedFiles files = internal::write_export_files(one.format, one.file, inputs, merge);
       for (const std::filesystem::path& file : files.written)
         text += fmt::format("{}: {}\n", name_of(one.format), escape_controls(file.string()));
-      text += describe_removed(files.removed);
+      text += describe_removed(files.removed, "merge");
     }
   });
   return text;

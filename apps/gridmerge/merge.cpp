@@ -247,7 +247,7 @@ int run_merge(const MergeCommandOptions& options) {
   console.clear();
   if (options.common.verbose) print(describe_joins(asked, result));
   print(describe_merge(asked, inputs.maps, result, known_poses.describe_unused(inputs.maps, result)) +
-        describe_plan(asked, result) + hints + describe_removed(removed));
+        describe_plan(asked, result) + hints + describe_removed(removed, "merge"));
   print("look at it: " + escape_controls((std::filesystem::path(options.output) / "report.html").string()) +
         "\n");
   if (not_exported) std::rethrow_exception(not_exported);

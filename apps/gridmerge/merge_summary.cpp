@@ -307,14 +307,4 @@ std::string describe_doubled(const AskedMerge& asked, const std::vector<Occupanc
   return text;
 }
 
-std::string describe_removed(const std::vector<std::filesystem::path>& removed) {
-  std::string names;
-  for (const std::filesystem::path& file : removed) {
-    std::error_code error;
-    if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) continue;  // exported anew
-    names += (names.empty() ? "" : ", ") + file.filename().string();
-  }
-  return names.empty() ? names : fmt::format("removed: {} (of an earlier merge)\n", names);
-}
-
 }  // namespace gridmerge::cli

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,8 +35,5 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
 /// How many walls lie double, and what may help: where it is asked for, or there are many. O(cells).
 std::string describe_doubled(const AskedMerge& asked, const std::vector<OccupancyGrid>& maps,
                              const MergeResult& result, bool is_asked_for);
-
-/// Names the files of an earlier merge that were removed and are not there again; "" if there are none.
-std::string describe_removed(const std::vector<std::filesystem::path>& removed);
 
 }  // namespace gridmerge::cli

@@ -101,7 +101,9 @@ std::string describe(const Simulation& simulation, const std::string& output) {
 int run_simulate(const SimulateCommandOptions& options) {
   Console console(options.common);
   SimulateOptions simulation_options = make_options(options);
-  prepare_dataset(options.output);
+  prepare_dataset(options.output, {static_cast<std::size_t>(simulation_options.robots),
+                                   static_cast<std::size_t>(simulation_options.steps),
+                                   static_cast<std::size_t>(options.others)});
   // Each building takes about as long as another.
   const auto show = [&](int done, double share) {
     console.progress("simulating", (done + share) / (1.0 + options.others));
@@ -115,8 +117,9 @@ int run_simulate(const SimulateCommandOptions& options) {
     elsewhere.push_back(simulate(other));
   }
   console.clear();
-  write_dataset(options.output, simulation, elsewhere, options.dataset);
-  print(describe(simulation, options.output));
+  const std::vector<std::filesystem::path> removed =
+      write_dataset(options.output, simulation, elsewhere, options.dataset);
+  print(describe(simulation, options.output) + describe_removed(removed, "dataset"));
   return kDone;
 }
 
@@ -227,8 +230,9 @@ void add_simulate(CLI::App& app, Action& action) {
       "frame of their own. Writes robot_1.yaml and so on, elsewhere_1.yaml of other buildings, "
       "building.yaml,\n"
       "and the truth: pairs.tsv, negatives.tsv and sets.tsv, and building.tsv of the robots' maps on\n"
-      "building.yaml, as 'gridmerge evaluate' reads them. Maps of an earlier dataset that its tables name,\n"
-      "and this one has not, are removed from DIR.\n\n"
+      "building.yaml, as 'gridmerge evaluate' reads them. simulation.sha256 lists these files. An earlier\n"
+      "dataset in DIR is replaced; what this one has no file for is removed, and named. Other files that\n"
+      "would be replaced are an error: choose another DIR.\n\n"
       "The less the maps overlap, and the more they bend, the fewer of them can be joined. These four "
       "can:\n\n"
       "Example:\n  gridmerge simulate --kind office --robots 4 --overlap 0.6 --seed 4 -o office\n"

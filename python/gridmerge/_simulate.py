@@ -101,8 +101,9 @@ class Simulation:
         building.yaml, and the truth as evaluate() reads it: pairs.tsv, negatives.tsv and sets.tsv, and building.tsv
         of the robots' maps on building.yaml.
 
-        With `probabilities` the maps are written in mode raw. Maps that an earlier dataset's tables name there, and
-        this one has not, are removed. Raises FileError when they cannot be written.
+        With `probabilities` the maps are written in mode raw. simulation.sha256 lists all files. What an earlier
+        dataset has left there is replaced, or removed where this one has no such file. Raises FileError when files
+        cannot be written, or would take the place of others: all stays as it was then.
         """
         self._core.save(_arguments.path("directory", directory), bool(probabilities))
 

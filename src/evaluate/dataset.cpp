@@ -4,17 +4,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
 
+#include "grid/sha256.hpp"
 #include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/io/file_error.hpp"
 #include "io/add_map.hpp"
 #include "io/destination.hpp"
 #include "io/directory_lock.hpp"
-#include "io/directory_names.hpp"
+#include "io/file_reader.hpp"
 
 namespace gridmerge::internal {
 
@@ -27,9 +31,19 @@ constexpr const char* kPairs = "pairs.tsv";
 constexpr const char* kOnBuilding = "building.tsv";
 constexpr const char* kNegatives = "negatives.tsv";
 constexpr const char* kSets = "sets.tsv";
+constexpr const char* kList = "simulation.sha256";
+constexpr std::string_view kListHead = "# gridmerge simulate wrote these files";
+constexpr std::string_view kBetween = "  ";  // a digest and its file
+
+constexpr std::size_t kMaxBytes = std::size_t{1} << 29;  // of a file: a map has 2^28 cells at most
 
 TruthMap robot_map(std::size_t robot) {
   return {fmt::format("robot_{}.yaml", robot + 1), {}};
+}
+
+/// The same at an earlier moment.
+std::string map_at(std::size_t robot, std::size_t step) {
+  return fmt::format("robot_{}_step_{}.yaml", robot + 1, step + 1);
 }
 
 TruthMap elsewhere_map(std::size_t map) {
@@ -84,97 +98,146 @@ std::vector<TrueSet> sets(const Simulation& simulation) {
   return {set};
 }
 
-/// The maps that the tables of an earlier dataset name.
-std::set<std::string> maps_of_tables(const fs::path& directory) {
-  std::set<std::string> names;
-  const auto take = [&](const char* table, const auto& use) {
-    std::error_code error;
-    if (!fs::is_regular_file(directory / table, error)) return;
-    try {
-      use(directory / table);
-    } catch (const FileError&) {  // it is no dataset's, and names nothing
-    }
+std::set<std::string> files_of(const DatasetSize& size) {
+  std::set<std::string> names{kPairs, kOnBuilding, kNegatives, kSets, kList};
+  const auto add = [&](const std::string& map) {
+    names.insert({map, fs::path(map).replace_extension(".pgm").string()});
   };
-  const auto take_pairs = [&](const fs::path& table) {
-    for (const TruePair& pair : read_pairs(table)) names.insert({pair.fixed.name, pair.moving.name});
-  };
-  take(kPairs, take_pairs);
-  take(kOnBuilding, take_pairs);
-  take(kNegatives, [&](const fs::path& table) {
-    for (const NegativePair& pair : read_negatives(table)) names.insert({pair.fixed.name, pair.moving.name});
-  });
-  take(kSets, [&](const fs::path& table) {
-    for (const TrueSet& set : read_sets(table)) {
-      for (const TrueMember& member : set.members) names.insert(member.map.name);
-    }
-  });
+  add(kBuilding);
+  for (std::size_t robot = 0; robot < size.robots; ++robot) {
+    add(robot_map(robot).name);
+    for (std::size_t step = 0; step + 1 < size.steps; ++step) add(map_at(robot, step));
+  }
+  for (std::size_t other = 0; other < size.others; ++other) add(elsewhere_map(other).name);
   return names;
 }
 
-bool is_number(std::string_view text) {
-  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+DatasetSize size_of(const Simulation& simulation, const std::vector<Simulation>& elsewhere) {
+  DatasetSize size{simulation.maps.size(), 1, 0};
+  if (size.robots > 0) size.steps += simulation.maps.front().earlier.size();
+  for (const Simulation& other : elsewhere) size.others += other.maps.size();
+  return size;
 }
 
-/// The map of a dataset that a file belongs to: "robot_2.yaml" of "robot_2_step_1.pgm". Empty for other
-/// files.
-std::string map_of_file(const fs::path& file) {
-  if (file.extension() != ".yaml" && file.extension() != ".pgm") return {};
-  constexpr std::string_view kStep = "_step_";
-  std::string stem = file.stem().string();
-  const std::size_t step = stem.find(kStep);
-  if (step != std::string::npos && is_number(std::string_view(stem).substr(step + kStep.size())))
-    stem.resize(step);
-  for (const std::string_view prefix : {"robot_", "elsewhere_"}) {
-    if (stem.starts_with(prefix) && is_number(std::string_view(stem).substr(prefix.size())))
-      return stem + ".yaml";
-  }
-  return {};
+std::string digest_of(std::string_view bytes) {
+  return to_hex(Sha256().add(bytes).digest());
 }
 
-/// The maps of an earlier dataset that this one has none for: they are of another building.
-void remove_stale(FileSet& files, const fs::path& directory, const std::set<std::string>& current) {
-  const std::set<std::string> earlier = maps_of_tables(directory);
-  std::error_code error;
-  for (const std::string& name : names_in(directory, error)) {
-    if (current.contains(name) || !earlier.contains(map_of_file(name))) continue;
-    if (fs::is_regular_file(directory / name, error)) files.remove(name);
+std::string digest_of_file(const fs::path& path) {
+  FileReader reader(path, NamedBy::file);
+  return digest_of(reader.read_all(kMaxBytes));
+}
+
+/// What `sha256sum -c` reads, of a set whose other files are all added.
+std::string list_files(const FileSet& files, std::set<std::string> names) {
+  names.erase(kList);
+  std::string text = fmt::format("{}\n", kListHead);
+  for (const std::string& name : names)
+    fmt::format_to(std::back_inserter(text), "{}{}{}\n", digest_of_file(files.staged(name)), kBetween, name);
+  return text;
+}
+
+/// The files of an earlier dataset, and their digests when it was written. None where it left no list.
+std::map<std::string, std::string> listed_files(const fs::path& directory) {
+  std::map<std::string, std::string> digests;
+  try {
+    FileReader reader(directory / kList, NamedBy::file);
+    const std::string& text = reader.read_all(kMaxBytes);
+    std::istringstream lines(text);
+    std::string line;
+    if (!std::getline(lines, line) || line != kListHead) return {};
+    digests[kList] = digest_of(text);
+    while (std::getline(lines, line)) {
+      const std::size_t at = line.find(kBetween);
+      if (at == std::string::npos) continue;
+      const std::string name = line.substr(at + kBetween.size());
+      if (fs::path(name).filename() == name) digests[name] = line.substr(0, at);
+    }
+  } catch (const FileError&) {  // there is no dataset
   }
+  return digests;
+}
+
+bool has_digest(const fs::path& path, const std::string& digest) {
+  try {
+    return digest_of_file(path) == digest;
+  } catch (const FileError&) {
+    return false;
+  }
+}
+
+[[noreturn]] void refuse(const fs::path& directory, const std::vector<std::string>& foreign) {
+  constexpr std::size_t kNamed = 10;
+  const std::size_t named = std::min(foreign.size(), kNamed);
+  std::string names = fmt::format("{}", fmt::join(foreign.begin(), foreign.begin() + named, ", "));
+  if (foreign.size() > named) names += fmt::format(" and {} more", foreign.size() - named);
+  throw FileError(directory,
+                  fmt::format("files would be replaced or removed that no simulation wrote, or that have "
+                              "changed since: {}: choose another directory, or move them away",
+                              names));
+}
+
+/// The files of an earlier dataset that this one has none for: they are of another building. Throws FileError
+/// where anything but an earlier dataset is in the way.
+std::vector<std::string> stale_files(const fs::path& directory, const std::set<std::string>& current) {
+  const std::map<std::string, std::string> earlier = listed_files(directory);
+  std::set<std::string> touched = current;
+  for (const auto& [name, digest] : earlier) touched.insert(name);
+  std::vector<std::string> stale, foreign;
+  for (const std::string& name : touched) {
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(directory / name, error))) continue;
+    const auto own = earlier.find(name);
+    if (own == earlier.end() || !has_digest(directory / name, own->second)) {
+      foreign.push_back(name);
+    } else if (!current.contains(name)) {
+      stale.push_back(name);
+    }
+  }
+  if (!foreign.empty()) refuse(directory, foreign);
+  return stale;
 }
 
 }  // namespace
 
-void prepare_dataset(const fs::path& directory) {
+void prepare_dataset(const fs::path& directory, const DatasetSize& size) {
   check_directory(directory);
-  for (const char* const name : {kBuilding, kPairs, kOnBuilding, kNegatives, kSets})
-    check_destination(directory / name);
+  const std::set<std::string> names = files_of(size);
+  for (const std::string& name : names) check_destination(directory / name);
+  stale_files(directory, names);
 }
 
-void write_dataset(const fs::path& directory, const Simulation& simulation,
-                   const std::vector<Simulation>& elsewhere, const DatasetOptions& options) {
+std::vector<fs::path> write_dataset(const fs::path& directory, const Simulation& simulation,
+                                    const std::vector<Simulation>& elsewhere, const DatasetOptions& options) {
   FileSet files(directory, FileSet::IfMissing::make);
-  std::set<std::string> current;
-  const auto add = [&](const OccupancyGrid& grid, const std::string& name, bool probabilities) {
-    probabilities ? add_probability_map(files, grid, name) : add_map(files, grid, name);
-    current.insert({name, fs::path(name).replace_extension(".pgm").string()});
+  const DatasetSize size = size_of(simulation, elsewhere);
+  const std::set<std::string> names = files_of(size);
+  const std::vector<std::string> stale = stale_files(directory, names);
+  const auto add = [&](const OccupancyGrid& grid, const std::string& name) {
+    options.probabilities ? add_probability_map(files, grid, name) : add_map(files, grid, name);
   };
   for (std::size_t i = 0; i < simulation.maps.size(); ++i) {
     const SimulatedMap& map = simulation.maps[i];
-    add(map.grid, robot_map(i).name, options.probabilities);
-    for (std::size_t step = 0; step < map.earlier.size(); ++step)
-      add(map.earlier[step], fmt::format("robot_{}_step_{}.yaml", i + 1, step + 1), options.probabilities);
+    add(map.grid, robot_map(i).name);
+    for (std::size_t step = 0; step < map.earlier.size(); ++step) add(map.earlier[step], map_at(i, step));
   }
   std::size_t others = 0;
   for (const Simulation& other : elsewhere) {
-    for (const SimulatedMap& map : other.maps)
-      add(map.grid, elsewhere_map(others++).name, options.probabilities);
+    for (const SimulatedMap& map : other.maps) add(map.grid, elsewhere_map(others++).name);
   }
-  add(draw_building(simulation.building, 0.05), kBuilding, false);
+  add_map(files, draw_building(simulation.building, 0.05), kBuilding);
   files.add(kPairs, format_pairs(true_pairs(simulation)));
   files.add(kOnBuilding, format_pairs(on_building(simulation)));
-  files.add(kNegatives, format_negatives(negatives(simulation, others)));
+  files.add(kNegatives, format_negatives(negatives(simulation, size.others)));
   files.add(kSets, format_sets(sets(simulation)));
-  remove_stale(files, directory, current);
+  files.add(kList, list_files(files, names));
+  std::vector<fs::path> removed;
+  for (const std::string& name : stale) {
+    files.remove(name);
+    removed.push_back(directory / name);
+  }
   files.commit();
+  return removed;
 }
 
 }  // namespace gridmerge::internal

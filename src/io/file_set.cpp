@@ -111,8 +111,7 @@ void FileSet::add(const std::string& name, std::string_view bytes) {
   throw_if_cancelled();
   const fs::path path = directory_ / name;
   check_destination(path);
-  const int descriptor =
-      ::open((directory_ / kWork / kNew / name).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const int descriptor = ::open(staged(name).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) fail(path, errno);
   int error = write_all(descriptor, bytes);
   if (error == 0) error = flush_descriptor(descriptor);
@@ -125,8 +124,12 @@ void FileSet::add(StagedFile& file) {
   throw_if_cancelled();
   const std::string name = file.path().filename().string();
   check_destination(directory_ / name);
-  file.hand_over(directory_ / kWork / kNew / name);
+  file.hand_over(staged(name));
   added_.push_back(name);
+}
+
+fs::path FileSet::staged(const std::string& name) const {
+  return directory_ / kWork / kNew / name;
 }
 
 void FileSet::remove(const std::string& name) {
@@ -175,7 +178,7 @@ void FileSet::commit() {
 void FileSet::replace_one_by_one() {
   for (const std::string& name : added_) {
     const fs::path path = directory_ / name;
-    check(std::rename((directory_ / kWork / kNew / name).c_str(), path.c_str()), path);
+    check(std::rename(staged(name).c_str(), path.c_str()), path);
   }
   for (const std::string& name : removed_) check(::unlink((directory_ / name).c_str()), directory_ / name);
   flush(directory_, directory_);

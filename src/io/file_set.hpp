@@ -46,6 +46,8 @@ class GRIDMERGE_INTERNAL_EXPORT FileSet {
   void add(const std::string& name, std::string_view bytes);
   /// The same of a file that was staged in this directory, and is not committed then.
   void add(StagedFile& file);
+  /// Where a file that was added can be read until commit().
+  std::filesystem::path staged(const std::string& name) const;
   /// A file of the old set that has no successor.
   void remove(const std::string& name);
   /// Once only. Throws FileError: then the set is the old one, or, if it could not be tidied up after the

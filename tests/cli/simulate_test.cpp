@@ -53,7 +53,8 @@ TEST_F(Simulate, ASeedGivesTheSameFiles) {
     EXPECT_EQ(bytes_of(entry.path()), bytes_of(std::filesystem::path(output("b")) / entry.path().filename()));
     ++files;
   }
-  EXPECT_EQ(files, 2U * 2U + 2U + 2U + 4U);  // two robots, one elsewhere, the building, four tables
+  EXPECT_EQ(files,
+            2U * 2U + 2U + 2U + 4U + 1U);  // two robots, one elsewhere, the building, four tables, their list
 }
 
 TEST_F(Simulate, WhatCannotBeHadIsAnErrorAndWritesNothing) {
@@ -85,6 +86,30 @@ TEST_F(Simulate, TriesItsFolderFirst) {
   // The robots' starts are looked at when the building is there.
   const Outcome outcome = run(with({"-o", file + "/folder", "--start", "-3,7", "--start", "20,7"}));
   expect_error(outcome, file + "/folder", "cannot be created");
+}
+
+TEST_F(Simulate, LeavesMapsOfTheUserAloneAndSaysSoBeforeTheWork) {
+  directory.write("mine/robot_2.yaml", "mine");
+  directory.write("mine/pairs.tsv", "fixed\tmoving\nrobot_1.yaml\trobot_2.yaml\n");
+  // The robots' starts are looked at when the building is there.
+  expect_error(run(with({"-o", output("mine"), "--robots", "1", "--start", "-3,7"})), output("mine"),
+               "that no simulation wrote, or that have changed since: pairs.tsv: choose another directory");
+  EXPECT_EQ(read_file(output("mine/robot_2.yaml")), "mine");
+}
+
+TEST_F(Simulate, NamesWhatItRemovesOfAnEarlierDataset) {
+  const Outcome first = run(with({"-o", output("a")}));
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_EQ(first.out.find("removed"), std::string::npos) << first.out;
+  std::vector<std::string> fewer{"simulate", "--kind",   "hall", "--size", "20x12",     "--robots",
+                                 "1",        "--others", "0",    "-o",     output("a"), "--quiet"};
+  const Outcome second = run(fewer);
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_NE(second.out.find("removed: elsewhere_1.pgm, elsewhere_1.yaml, robot_2.pgm, robot_2.yaml (of an "
+                            "earlier dataset)\n"),
+            std::string::npos)
+      << second.out;
+  EXPECT_FALSE(std::filesystem::exists(output("a/robot_2.yaml")));
 }
 
 TEST_F(Simulate, SaysTheLeastAngularStep) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -167,33 +169,111 @@ TEST(Dataset, KeepsProbabilitiesToAPercent) {
   EXPECT_TRUE(read_sets(directory.path() / "sets.tsv").empty());
 }
 
-TEST(Dataset, RemovesTheMapsOfAnEarlierOneAndNothingElse) {
+TEST(Dataset, RemovesTheFilesOfAnEarlierOneAndNothingElse) {
   const test::TemporaryDirectory directory;
   SimulateOptions options = quick(3);
   options.steps = 2;
   const Simulation elsewhere = simulate(quick(1));
-  write_dataset(directory.path(), simulate(options), {elsewhere, elsewhere});
+  EXPECT_TRUE(write_dataset(directory.path(), simulate(options), {elsewhere, elsewhere}).empty());
   const std::vector<std::string> of_user{"robot_7.yaml", "robot_3_notes.yaml", "robot_3.png", "notes"};
   for (const std::string& name : of_user) directory.write(name, "mine");
+  const std::vector<std::string> before = directory.names();
   const Simulation other = simulate(quick(2));
-  write_dataset(directory.path(), other, {elsewhere});
+  EXPECT_NO_THROW(prepare_dataset(directory.path(), {2, 1, 1}));
+  EXPECT_EQ(directory.names(), before);
+  const auto removed = write_dataset(directory.path(), other, {elsewhere});
 
   const test::TemporaryDirectory fresh;
   write_dataset(fresh.path(), other, {elsewhere});
   std::vector<std::string> expected = fresh.names();
   expected.insert(expected.end(), of_user.begin(), of_user.end());
   std::ranges::sort(expected);
-  std::vector<std::string> names = directory.names();
-  std::ranges::sort(names);
-  EXPECT_EQ(names, expected);
+  EXPECT_EQ(directory.names(), expected);
+  for (const std::string& name : fresh.names())
+    EXPECT_EQ(test::read_file(directory.path() / name), test::read_file(fresh.path() / name)) << name;
+
+  std::vector<std::string> gone;
+  std::ranges::set_difference(before, directory.names(), std::back_inserter(gone));
+  std::vector<std::string> told;
+  for (const std::filesystem::path& file : removed) {
+    EXPECT_EQ(file.parent_path(), directory.path());
+    told.push_back(file.filename().string());
+  }
+  EXPECT_EQ(told, gone);
+  EXPECT_EQ(gone.size(), 2U + 2U * 3U + 2U);  // a robot, three earlier moments, a map of another building
 }
 
-TEST(Dataset, TablesOfOthersRemoveNothing) {
+/// Neither before the work nor after it a dataset takes the place of `name`, nor of anything else.
+void expect_refused(const test::TemporaryDirectory& directory, int robots, const std::string& name) {
+  std::map<std::string, std::string> before;
+  for (const std::string& each : directory.names()) before[each] = test::read_file(directory.path() / each);
+  const auto expect_error = [&](const auto& work) {
+    try {
+      work();
+      ADD_FAILURE() << name << " was not told";
+    } catch (const FileError& error) {
+      const std::string text = error.what();
+      EXPECT_NE(text.find(": " + name + ": choose another directory"), std::string::npos) << text;
+    }
+  };
+  expect_error([&] { prepare_dataset(directory.path(), {static_cast<std::size_t>(robots), 1, 0}); });
+  expect_error([&] { write_dataset(directory.path(), simulate(quick(robots)), {}); });
+  EXPECT_EQ(directory.names().size(), before.size());
+  for (const auto& [each, text] : before) EXPECT_EQ(test::read_file(directory.path() / each), text) << each;
+}
+
+TEST(Dataset, TakesThePlaceOfNoFileThatNoSimulationWrote) {
+  for (const char* const name : {"robot_1.yaml", "robot_2.pgm", "building.yaml", "pairs.tsv", "building.tsv",
+                                 "negatives.tsv", "sets.tsv", "simulation.sha256"}) {
+    const test::TemporaryDirectory directory;
+    // A truth of one's own names maps of usual names.
+    directory.write(name,
+                    format_pairs({{{"robot_1.yaml", {}}, {"robot_3.yaml", {}}, {}, 0.5, "", 0.5, 1.0}}));
+    directory.write("robot_3.yaml", "mine");
+    expect_refused(directory, 2, name);
+  }
+}
+
+TEST(Dataset, TakesThePlaceOfNoFileThatHasChanged) {
   const test::TemporaryDirectory directory;
-  directory.write("pairs.tsv", "no table of maps: robot_9.yaml");
-  directory.write("robot_9.yaml", "mine");
+  write_dataset(directory.path(), simulate(quick(2)), {});
+  const std::string pairs = test::read_file(directory.path() / "pairs.tsv");
+  directory.write("pairs.tsv", pairs + "robot_1.yaml\tmine.yaml\t0\t0\t0\t0.5\tA\t1\t9\n");
+  expect_refused(directory, 2, "pairs.tsv");
+  directory.write("pairs.tsv", pairs);
+  directory.write("robot_2.yaml", "image: mine.pgm");  // one robot has no map of this name
+  expect_refused(directory, 1, "robot_2.yaml");
+  std::filesystem::remove(directory.path() / "robot_2.yaml");
+  EXPECT_EQ(write_dataset(directory.path(), simulate(quick(1)), {}).size(), 1U);  // its image
+}
+
+TEST(Dataset, WithoutItsListIsLikeOtherFiles) {
+  const test::TemporaryDirectory directory;
   write_dataset(directory.path(), simulate(quick(1)), {});
-  EXPECT_TRUE(std::filesystem::exists(directory.path() / "robot_9.yaml"));
+  std::filesystem::remove(directory.path() / "simulation.sha256");
+  expect_refused(directory, 1,
+                 "building.pgm, building.tsv, building.yaml, negatives.tsv, pairs.tsv, robot_1.pgm, "
+                 "robot_1.yaml, sets.tsv");
+  // Not all of many are named.
+  const test::TemporaryDirectory many;
+  for (int i = 1; i <= 6; ++i) {
+    for (const char* const ending : {".pgm", ".yaml"}) many.write("robot_" + std::to_string(i) + ending, "");
+  }
+  expect_refused(many, 6,
+                 "robot_1.pgm, robot_1.yaml, robot_2.pgm, robot_2.yaml, robot_3.pgm, robot_3.yaml, "
+                 "robot_4.pgm, robot_4.yaml, robot_5.pgm, robot_5.yaml and 2 more");
+}
+
+TEST(Dataset, AListNamesFilesOfItsFolderOnly) {
+  const test::TemporaryDirectory directory;
+  const std::filesystem::path folder = directory.path() / "made";
+  write_dataset(folder, simulate(quick(1)), {});
+  const std::string list = test::read_file(folder / "simulation.sha256");
+  const std::string digest = list.substr(list.find('\n') + 1, 64);  // that of building.pgm
+  std::filesystem::copy(folder / "building.pgm", directory.path() / "mine");
+  directory.write("made/simulation.sha256", list + digest + "  ../mine\n");
+  EXPECT_TRUE(write_dataset(folder, simulate(quick(1)), {}).empty());
+  EXPECT_TRUE(std::filesystem::exists(directory.path() / "mine"));
 }
 
 TEST(Dataset, AFolderThatCannotBeMadeIsAnError) {
@@ -201,8 +281,8 @@ TEST(Dataset, AFolderThatCannotBeMadeIsAnError) {
   const std::string file = directory.write("file", "");
   const std::filesystem::path folder = std::filesystem::path(file) / "folder";
   EXPECT_THROW(write_dataset(folder, simulate(quick(1)), {}), FileError);
-  EXPECT_THROW(prepare_dataset(folder), FileError);
-  EXPECT_NO_THROW(prepare_dataset(directory.path() / "new" / "folder"));
+  EXPECT_THROW(prepare_dataset(folder, {}), FileError);
+  EXPECT_NO_THROW(prepare_dataset(directory.path() / "new" / "folder", {}));
   EXPECT_FALSE(std::filesystem::exists(directory.path() / "new"));
 }
 
