@@ -18,6 +18,7 @@
 #include "io/file_reader.hpp"
 #include "merge/joins.hpp"
 #include "report/deformation_json.hpp"
+#include "report/escaped_bytes.hpp"
 #include "report/fused_places.hpp"
 #include "report/json_reader.hpp"
 #include "report/json_values.hpp"
@@ -57,6 +58,7 @@ class RecordReader {
     for (std::size_t i = 0; i < is_placed_.size(); ++i) {
       if (!is_placed_[i]) throw JsonError("'" + record_.names[i] + "' is in no component and not left out");
     }
+    if (json.has("names")) unescape_names(json);
     return std::move(record_);
   }
 
@@ -70,6 +72,19 @@ class RecordReader {
       record_.names.push_back(name);
     }
     is_placed_.assign(record_.names.size(), false);
+  }
+
+  /// Of a merge with names that are not UTF-8, all of which are escaped: at the end, as the names tell of
+  /// which map something is said.
+  void unescape_names(const JsonReader& json) {
+    if (json.at("names").text() != "escaped") json.at("names").fail("is not 'escaped'");
+    const auto unescape = [](std::string& name, const JsonReader& place) {
+      const std::optional<std::string> bytes = unescape_bytes(name);
+      if (!bytes) place.fail("has an escape that is none: '" + name + "'");
+      name = *bytes;
+    };
+    for (std::size_t i = 0; i < record_.names.size(); ++i) unescape(record_.names[i], json.at("maps").at(i));
+    if (record_.result.plan) unescape(record_.result.plan->name, json.at("plan").at("source"));
   }
 
   /// All of that name, ascending: one, or a file that was given several times, which is equal maps.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <utility>
 
 #include "gridmerge/report/merge_record.hpp"
 #include "report/deformation_json.hpp"
+#include "report/escaped_bytes.hpp"
 #include "report/json_values.hpp"
 #include "report/plan_json.hpp"
 #include "report/told_joins.hpp"
@@ -96,7 +98,12 @@ std::string refused_text(const MergeResult& result, const ToldJoins& told) {
 
 }  // namespace
 
-std::string transforms_json(const std::vector<std::string>& names, const MergeResult& result) {
+std::string transforms_json(const std::vector<std::string>& map_names, const MergeResult& result) {
+  const bool has_escapes = !std::all_of(map_names.begin(), map_names.end(), is_utf8) ||
+                           (result.plan && !is_utf8(result.plan->name));
+  const auto written = [&](const std::string& name) { return has_escapes ? escape_bytes(name) : name; };
+  std::vector<std::string> names;
+  for (const std::string& name : map_names) names.push_back(written(name));
   Json maps = Json::array();
   for (const std::string& name : names) maps.push_back(name);
   Json components = Json::array();
@@ -126,6 +133,7 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
     text += (text.empty() ? "{\n  \"" : ",\n  \"") + std::string(key) + "\": " + value;
   };
   const auto add_json = [&](const char* key, const Json& value) { add(key, indented(text_of(value, 2), 2)); };
+  if (has_escapes) add_json("names", "escaped");
   add_json("maps", maps);
   add_json("components", components);
   const ToldJoins told = tell_joins(result);
@@ -144,7 +152,11 @@ std::string transforms_json(const std::vector<std::string>& names, const MergeRe
   if (result.not_compared)
     add_json("not_compared", {{"pairs", result.not_compared->pairs},
                               {"expected_joins", number_json(result.not_compared->expected_joins)}});
-  if (result.plan) add_json("plan", plan_json(names, *result.plan, component_on_plan(result)));
+  if (result.plan) {
+    Json plan = plan_json(names, *result.plan, component_on_plan(result));
+    plan["source"] = written(result.plan->name);
+    add_json("plan", plan);
+  }
   return text + "\n}\n";
 }
 

@@ -52,6 +52,16 @@ TEST_F(Report, IsWhatTheMergeWroteInTheWorldsFrame) {
   expect_the_same({left, right, "--fix", right, "--init", poses});
 }
 
+TEST_F(Report, OfMapsWithNamesOfAnyBytes) {
+  // Two that differ in bytes that are of no character alone.
+  const std::string a =
+      write_map(directory, "caf\xe9/robot", map_part(draw_building(1), {0, 0, 13, 13}, T_left_building));
+  const std::string b =
+      write_map(directory, "caf\xe8/robot", map_part(draw_building(1), {5, 0, 18, 13}, T_right_building));
+  expect_the_same({a, b});
+  expect_the_same({b, a});
+}
+
 TEST_F(Report, OfBareImages) {
   const std::vector<std::string> images{directory.file("left.pgm"), directory.file("right.pgm")};
   expect_the_same({images[0], images[1], "--resolution", "0.1"}, {"--resolution", "0.1"});

@@ -90,6 +90,37 @@ TEST(MergeRecord, HoldsWhatWasWritten) {
   EXPECT_TRUE(read.result.components[0].fused.grid.cells.empty());
 }
 
+TEST(MergeRecord, KeepsNamesOfAnyBytes) {
+  std::vector<std::string> names{"\xe9/a.yaml", "\xe8/a.yaml", "\\xe9/a.yaml", "caf\xc3\xa9", "\xff", "f\\"};
+  MergeResult result = any_result();
+  result.plan->name = "caf\xe9.png";
+  const std::string text = transforms_json(names, result);
+  const Json json = Json::parse(text);
+  EXPECT_EQ(json.at("names"), "escaped");
+  EXPECT_EQ(json.at("maps").at(0), "\\xe9/a.yaml");
+  EXPECT_EQ(json.at("components").at(0).at("members").at(0).at("source"), "\\xe9/a.yaml");
+  EXPECT_EQ(json.at("maps").at(2), "\\\\xe9/a.yaml");
+  const MergeRecord read = parse(text);
+  EXPECT_EQ(read.names, names);
+  EXPECT_EQ(read.result.plan->name, result.plan->name);
+  EXPECT_EQ(transforms_json(read.names, read.result), text);
+
+  // Of names that are UTF-8 nothing is escaped, unless the plan's is not.
+  EXPECT_FALSE(any_json().contains("names"));
+  names = {"a\\b", "b", "c", "d", "e", "f"};
+  EXPECT_EQ(Json::parse(transforms_json(names, any_result())).at("maps").at(0), "a\\b");
+  EXPECT_EQ(parse(transforms_json(names, result)).names, names);
+
+  Json wrong = json;
+  wrong["names"] = "plain";
+  EXPECT_EQ(message_of<FileError>([&] { parse(wrong.dump()); }), "transforms.json: names is not 'escaped'");
+  wrong = Json::parse(transforms_json(kNames, any_result()));
+  wrong["names"] = "escaped";
+  wrong["plan"]["source"] = "\\x";
+  EXPECT_EQ(message_of<FileError>([&] { parse(wrong.dump()); }),
+            "transforms.json: plan.source has an escape that is none: '\\x'");
+}
+
 TEST(MergeRecord, ProbabilitiesGoFromNothingToCertainty) {
   MergeResult result = any_result();
   for (const double probability : {0.0, 1.0}) {
