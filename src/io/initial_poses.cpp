@@ -5,6 +5,7 @@
 #include <string>
 #include <unordered_set>
 
+#include "grid/pose_bounds.hpp"
 #include "io/file_reader.hpp"
 #include "io/text_table.hpp"
 
@@ -16,19 +17,17 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{16} << 20;  // bounds what a wrong argument makes us read
 
-constexpr double kFarthest = 1e7;  // [m]: what is farther off is a mistake
-constexpr double kMinDeviation = 1e-6;
-
 double place(const TextTable& table, std::size_t row, std::string_view column) {
   const double value = table.number(row, column);
-  if (std::abs(value) > kFarthest) table.fail(row, std::string(column) + " is farther off than 10000 km");
+  if (std::abs(value) > kFarthestPose) table.fail(row, std::string(column) + " is farther off than 10000 km");
   return value;
 }
 
 double deviation(const TextTable& table, std::size_t row, std::string_view column, double usual) {
   if (!table.has(column)) return usual;
   const double value = table.number(row, column);
-  if (value < kMinDeviation) table.fail(row, std::string(column) + " must be positive, 0.000001 at least");
+  if (!is_deviation(value))
+    table.fail(row, std::string(column) + " must be positive, from 0.000001 to 100000");
   return value;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "grid/pose_bounds.hpp"
 #include "gridmerge/merge/merger.hpp"
 #include "merge/consistent_set.hpp"
 #include "merge/joins.hpp"
@@ -11,13 +12,6 @@
 namespace gridmerge {
 
 using namespace internal;
-
-namespace {
-
-constexpr double kFarthest = 1e7;  // [m]
-constexpr double kMinDeviation = 1e-6;
-
-}  // namespace
 
 void validate(const MergeOptions& options) {
   validate(options.match);
@@ -35,13 +29,12 @@ void validate(const MergeOptions& options) {
 
 void validate(const KnownPose& known) {
   const SE2& T = known.T_world_map;
-  if (!(std::abs(T.x) <= kFarthest && std::abs(T.y) <= kFarthest && std::isfinite(T.theta)))
+  if (!(std::abs(T.x) <= kFarthestPose && std::abs(T.y) <= kFarthestPose && std::isfinite(T.theta)))
     throw std::invalid_argument("a known pose must be finite, and within 10000 km");
   if (known.fixed) return;
-  const auto is_deviation = [](double sd) { return std::isfinite(sd) && sd >= kMinDeviation; };
   if (!is_deviation(known.sd_position) || !is_deviation(known.sd_theta))
     throw std::invalid_argument(
-        "the standard deviations of a known pose must be at least 0.000001, unless it is fixed");
+        "the standard deviations of a known pose must lie between 0.000001 and 100000, unless it is fixed");
 }
 
 MergeResult merge(const std::vector<OccupancyGrid>& maps, const MergeOptions& options,

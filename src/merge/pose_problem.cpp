@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "merge/pose_problem.hpp"
 
-#include <ceres/covariance.h>
+#include <ceres/crs_matrix.h>
 
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseQR>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -95,29 +98,67 @@ SE2 PoseProblem::pose(std::size_t number) const {
   return middle * inverse(shift(block.middle));
 }
 
+namespace {
+
+/// The variances of the unknowns of equations, by their derivatives; none where the equations do not
+/// determine all. Ceres has them too, but no more where some unknowns are known a billion times better than
+/// others, and prints it. Here each is measured in a unit of its own.
+std::optional<Eigen::VectorXd> variances_of(const ceres::CRSMatrix& derivatives) {
+  Eigen::SparseMatrix<double> equations = Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
+      derivatives.num_rows, derivatives.num_cols, static_cast<Eigen::Index>(derivatives.values.size()),
+      derivatives.rows.data(), derivatives.cols.data(), derivatives.values.data());
+  Eigen::VectorXd unit(equations.cols());
+  for (Eigen::Index i = 0; i < equations.cols(); ++i) unit[i] = 1.0 / equations.col(i).norm();
+  if (!unit.allFinite()) return std::nullopt;
+  equations = equations * unit.asDiagonal();
+  equations.makeCompressed();
+  const Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> qr(equations);
+  if (qr.info() != Eigen::Success || qr.rank() < equations.cols()) return std::nullopt;
+  Eigen::VectorXd variances(equations.cols());
+  for (Eigen::Index i = 0; i < equations.cols(); ++i) {
+    // The squared length of R^-T e_i. R has no entry below its diagonal, so what is before i is 0.
+    Eigen::VectorXd solution = Eigen::VectorXd::Zero(equations.cols());
+    for (Eigen::Index column = i; column < equations.cols(); ++column) {
+      double sum = column == i ? 1.0 : 0.0, diagonal = 0.0;
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(qr.matrixR(), column); entry; ++entry) {
+        if (entry.row() == column) {
+          diagonal = entry.value();
+        } else {
+          sum -= entry.value() * solution[entry.row()];
+        }
+      }
+      solution[column] = sum / diagonal;
+    }
+    const Eigen::Index unknown = qr.colsPermutation().indices()[i];
+    variances[unknown] = solution.squaredNorm() * unit[unknown] * unit[unknown];
+  }
+  return variances;
+}
+
+}  // namespace
+
 std::vector<std::optional<PoseDeviation>> PoseProblem::deviations() {
   std::vector<std::optional<PoseDeviation>> deviations(blocks_.size());
-  std::vector<std::pair<const double*, const double*>> wanted;
+  ceres::Problem::EvaluateOptions wanted;
+  wanted.num_threads = 1;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     if (blocks_[i].held) {
       deviations[i] = PoseDeviation{};
     } else {
-      wanted.emplace_back(blocks_[i].values.data(), blocks_[i].values.data());
+      wanted.parameter_blocks.push_back(blocks_[i].values.data());
     }
   }
-  ceres::Covariance::Options options;
-  // Of the Jacobian, not of its square: poses known to a micrometre and to a kilometre may stand in one
-  // problem.
-  options.algorithm_type = ceres::SPARSE_QR;
-  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
-  options.num_threads = 1;
-  ceres::Covariance covariance(options);
-  if (wanted.empty() || !covariance.Compute(wanted, &problem_)) return deviations;
+  ceres::CRSMatrix derivatives;
+  if (wanted.parameter_blocks.empty() || !problem_.Evaluate(wanted, nullptr, nullptr, nullptr, &derivatives))
+    return deviations;
+  const std::optional<Eigen::VectorXd> variances = variances_of(derivatives);
+  if (!variances) return deviations;
+  Eigen::Index at = 0;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     if (blocks_[i].held) continue;
-    std::array<double, 9> block{};
-    covariance.GetCovarianceBlock(blocks_[i].values.data(), blocks_[i].values.data(), block.data());
-    deviations[i] = PoseDeviation{std::sqrt(block[0] + block[4]), std::sqrt(block[8])};
+    deviations[i] =
+        PoseDeviation{std::sqrt((*variances)[at] + (*variances)[at + 1]), std::sqrt((*variances)[at + 2])};
+    at += 3;
   }
   return deviations;
 }

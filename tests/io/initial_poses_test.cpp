@@ -68,14 +68,17 @@ TEST(InitialPoses, ErrorsNameFileLineAndCause) {
 
 TEST(InitialPoses, LimitsThemselvesAreFine) {
   const auto poses = parse_initial_poses(
-      "poses.tsv", "map\tx\ty\ttheta\tsd\tsd_theta\na\t1e7\t-1e7\t0\t0.000001\t0.000001\n");
-  ASSERT_EQ(poses.size(), 1u);
+      "poses.tsv",
+      "map\tx\ty\ttheta\tsd\tsd_theta\na\t1e7\t-1e7\t0\t0.000001\t0.000001\nb\t0\t0\t0\t1e5\t1e5\n");
+  ASSERT_EQ(poses.size(), 2u);
   EXPECT_EQ(poses[0].T_world_map.x, 1e7);
   EXPECT_EQ(poses[0].T_world_map.y, -1e7);
   EXPECT_EQ(poses[0].sd_position, 1e-6);
   EXPECT_EQ(poses[0].sd_theta, 1e-6);
-  for (const char* row :
-       {"10000001\t0\t0\t1\t1", "0\t-10000001\t0\t1\t1", "0\t0\t0\t9e-7\t1", "0\t0\t0\t1\t9e-7"})
+  EXPECT_EQ(poses[1].sd_position, 1e5);
+  EXPECT_EQ(poses[1].sd_theta, 1e5);
+  for (const char* row : {"10000001\t0\t0\t1\t1", "0\t-10000001\t0\t1\t1", "0\t0\t0\t9e-7\t1",
+                          "0\t0\t0\t1\t9e-7", "0\t0\t0\t100001\t1", "0\t0\t0\t1\t1e12"})
     EXPECT_THROW(
         parse_initial_poses("poses.tsv", std::string("map\tx\ty\ttheta\tsd\tsd_theta\na\t") + row + "\n"),
         FileError)

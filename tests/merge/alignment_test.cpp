@@ -10,6 +10,7 @@
 #include <optional>
 #include <random>
 
+#include "grid/pose_bounds.hpp"
 #include "merge/coverage.hpp"
 #include "merge/pose_graph.hpp"
 #include "merge/wall_error.hpp"
@@ -139,6 +140,27 @@ TEST(FindDeviations, AreKnownWhereOnePoseIsABillionTimesSurerThanAnother) {
     ASSERT_TRUE(deviations[1] && deviations[2]) << sure;
     EXPECT_NEAR(deviations[1]->position / (sure * std::sqrt(2.0)), 1.0, 1e-6);
     EXPECT_NEAR(deviations[2]->position / (unsure * std::sqrt(2.0)), 1.0, 1e-6);
+  }
+}
+
+// The solver would print that it found none.
+TEST(FindDeviations, AreKnownHoweverSurelyPosesAreGivenAndNothingIsPrinted) {
+  const Blank blank;
+  std::vector<RelativePose> measured;
+  std::vector<AlignedMap> maps(300, {&blank.prepared, {}, blank.extent, {}});
+  for (std::size_t i = 1; i < maps.size(); ++i)
+    measured.push_back(measured_between(i - 1, i, {}, blank.extent, blank.extent, 0.01));
+  for (const double sd : {kMinDeviation, kMaxDeviation}) {
+    for (const double sd_theta : {kMinDeviation, kMaxDeviation}) {
+      for (const double sure : {kMinDeviation, kMaxDeviation}) {
+        for (AlignedMap& map : maps) map.known_pose = KnownPose{{}, sd, sd_theta, false};
+        maps[7].known_pose->sd_position = sure;
+        testing::internal::CaptureStderr();
+        const auto deviations = find_deviations(maps, measured, 0);
+        EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << sd << ' ' << sd_theta << ' ' << sure;
+        EXPECT_TRUE(std::ranges::all_of(deviations, [](const auto& one) { return one.has_value(); }));
+      }
+    }
   }
 }
 

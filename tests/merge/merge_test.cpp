@@ -229,7 +229,12 @@ TEST(Merge, RefusesWhatMakesNoSense) {
   options.match.accept_probability = 2.0;
   EXPECT_THROW(merge(team.maps, options), std::invalid_argument);
   const std::vector<OccupancyGrid> two{team.maps[0], team.maps[1]};
-  EXPECT_THROW(merge(two, {}, {std::nullopt, KnownPose{{}, -1.0, 0.1}}), std::invalid_argument);
+  for (const double sd : {-1.0, 0.0, 9e-7, 100001.0, 1e12, std::nan("")}) {
+    EXPECT_THROW(merge(two, {}, {std::nullopt, KnownPose{{}, sd, 0.1}}), std::invalid_argument) << sd;
+    EXPECT_THROW(merge(two, {}, {std::nullopt, KnownPose{{}, 0.1, sd}}), std::invalid_argument) << sd;
+    EXPECT_NO_THROW(validate(KnownPose{{}, sd, sd, true})) << sd;
+  }
+  for (const double sd : {1e-6, 1e5}) EXPECT_NO_THROW(validate(KnownPose{{}, sd, sd})) << sd;
   EXPECT_THROW(merge(two, {}, {KnownPose{{std::nan(""), 0.0, 0.0}, 1.0, 0.1}}), std::invalid_argument);
   EXPECT_THROW(merge(two, {}, std::vector<std::optional<KnownPose>>(3)), std::invalid_argument);
   std::vector<OccupancyGrid> broken = two;

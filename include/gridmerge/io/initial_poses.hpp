@@ -24,7 +24,7 @@ struct InitialPose {
 
 /// Reads a tab-separated table whose first line names the columns: `map x y theta`, and optionally `sd` and
 /// `sd_theta`; metres and radians. Throws FileError that says "file:line: cause" for what it cannot use, a
-/// map named twice and deviations that are not positive among it.
+/// map named twice and deviations that are not from 10^-6 to 10^5 among it.
 GRIDMERGE_EXPORT std::vector<InitialPose> read_initial_poses(const std::filesystem::path& path);
 
 /// The same of the file's text.

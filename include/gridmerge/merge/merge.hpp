@@ -53,7 +53,7 @@ struct KnownPose {
 };
 
 /// Throws std::invalid_argument for a pose that is not finite or farther off than 10^7 m, or a deviation that
-/// is less than 10^-6; those of a fixed pose may be 0.
+/// is less than 10^-6 or more than 10^5; those of a fixed pose may be any.
 GRIDMERGE_EXPORT void validate(const KnownPose& known);
 
 /// Merges `maps` by what all pairs of them say together.
