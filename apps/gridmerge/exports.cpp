@@ -10,6 +10,7 @@
 #include "console.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "gridmerge/report/merge_output.hpp"
+#include "io/destination.hpp"
 #include "report/interchange.hpp"
 #include "report/output_names.hpp"
 
@@ -104,6 +105,7 @@ void try_result_file(const std::filesystem::path& file, const std::string& direc
                      const std::vector<std::filesystem::path>& inputs) {
   if (normal(file) == normal_folder(directory))
     throw FileError(file, "is the folder of the results: choose another name");
+  internal::check_destination(file);  // also where its folder is still to be made
   const bool beside = normal_folder(file.parent_path()) == normal_folder(directory);
   if (beside && internal::is_merge_output(file.filename()))
     throw FileError(file, "is a file that the merge itself writes: choose another name");

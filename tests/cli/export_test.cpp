@@ -180,6 +180,11 @@ TEST_F(Export, ToWhereItCannotBeIsAnErrorBeforeTheWork) {
       directory.file("./x"), "would be written by two exports");
   expect_error(merge({"--export", "g2o=/dev/null"}), "/dev/null", "");
   expect_error(merge({"--export", "g2o=" + output}), output, "is the folder of the results");
+  for (const std::string end : {"/", "/.", "/x/.."})
+    expect_error(merge({"--export", "g2o=" + output + end}), output + end,
+                 "cannot be written: it names a directory");
+  expect_error(merge({"--search", "random-walk", "--strategy", "tree", "--trace", output + "/"}),
+               output + "/", "cannot be written: it names a directory");
   expect_error(merge({"--export", "geotiff=" + directory.file("x.tif"), "--export",
                       "g2o=" + directory.file("./x_2.tif")}),
                directory.file("./x_2.tif"), "may be written by two exports");
