@@ -25,7 +25,7 @@ int run_report(const ReportCommandOptions& options) {
   try_exports(exports, options.merge.directory, merge.files);
   with_threads(options.common.threads,
                [&] { write_report(options.merge.directory, merge.files, merge.named(), merge.fingerprint); });
-  print((std::filesystem::path(options.merge.directory) / "report.html").string() + "\n");
+  print(escape_controls((std::filesystem::path(options.merge.directory) / "report.html").string()) + "\n");
   print(write_exports(exports, merge.files, merge.named(), options.common.threads));
   return kDone;
 }

@@ -94,7 +94,7 @@ std::string describe(const Simulation& simulation, const std::string& output) {
                    "share a place, {} share none\n",
                    simulation.overlap, simulation.pairs.size(), simulation.strangers.size());
   }
-  fmt::format_to(out, "the truth: {}/pairs.tsv, negatives.tsv, sets.tsv\n", output);
+  fmt::format_to(out, "the truth: {}/pairs.tsv, negatives.tsv, sets.tsv\n", escape_controls(output));
   return text;
 }
 

@@ -62,6 +62,12 @@ TEST_F(Report, OfMapsWithNamesOfAnyBytes) {
   expect_the_same({b, a});
 }
 
+TEST_F(Report, NamesItsFileOnOneLine) {
+  const std::string odd = directory.file("a\n\x1b[31mb");
+  ASSERT_EQ(run({"merge", left, right, "-o", odd}).exit_code, 0);
+  EXPECT_EQ(run({"report", odd}).out, directory.file("a\\n\\x1b[31mb") + "/report.html\n");
+}
+
 TEST_F(Report, OfBareImages) {
   const std::vector<std::string> images{directory.file("left.pgm"), directory.file("right.pgm")};
   expect_the_same({images[0], images[1], "--resolution", "0.1"}, {"--resolution", "0.1"});

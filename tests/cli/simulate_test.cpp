@@ -112,6 +112,13 @@ TEST_F(Simulate, NamesWhatItRemovesOfAnEarlierDataset) {
   EXPECT_FALSE(std::filesystem::exists(output("a/robot_2.yaml")));
 }
 
+TEST_F(Simulate, NamesItsFolderOnOneLine) {
+  const Outcome outcome = run(with({"-o", output("a\n\x1b[31mb")}));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("the truth: " + output("a\\n\\x1b[31mb") + "/pairs.tsv"), std::string::npos)
+      << outcome.out;
+}
+
 TEST_F(Simulate, SaysTheLeastAngularStep) {
   expect_error(run({"simulate", "-o", output("none"), "--quiet", "--angular-step", "0.000001"}), "",
                "the angular step must be 0.0001 rad (0.0058 degrees) at least");

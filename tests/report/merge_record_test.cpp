@@ -93,6 +93,7 @@ TEST(MergeRecord, HoldsWhatWasWritten) {
 TEST(MergeRecord, KeepsNamesOfAnyBytes) {
   std::vector<std::string> names{"\xe9/a.yaml", "\xe8/a.yaml", "\\xe9/a.yaml", "caf\xc3\xa9", "\xff", "f\\"};
   MergeResult result = any_result();
+  EXPECT_EQ(parse(transforms_json(names, result)).names, names);
   result.plan->name = "caf\xe9.png";
   const std::string text = transforms_json(names, result);
   const Json json = Json::parse(text);
