@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "match/drawing.hpp"
+#include "match/rounded_down.hpp"
 #include "report/json_lines.hpp"
 #include "scale_hint.hpp"
 #include "scarce_memory.hpp"
@@ -41,18 +41,18 @@ std::string describe_verdict(const MatchResult& result, const SearchOptions& sea
   if (search.random_walk() && !result.hypotheses.empty()) {
     if (result.verdict == Verdict::refused && result.acceptance_index >= search.accept_from())
       return "refused: the maps have too little in common, or one has no free or no occupied cells there";
-    // Rounded down: what falls short of a threshold must not look as if it reached it.
     return fmt::format("{}: the acceptance index is {:.4f}, and {} is asked for", name_of(result.verdict),
-                       std::floor(1e4 * result.acceptance_index) / 1e4, search.accept_from());
+                       rounded_down(result.acceptance_index), search.accept_from());
   }
   if (result.verdict == Verdict::accepted) {
-    return fmt::format("accepted: {}, with probability {:.4f}", explain(result), result.probability);
+    return fmt::format("accepted: {}, with probability {:.4f}", explain(result),
+                       rounded_down(result.probability));
   }
   const std::string why = explain(result, search.accept_from());
   // Where nothing was compared no pose has a probability.
   return result.reason == Reason::nothing_to_compare
              ? "refused: " + why
-             : fmt::format("refused: {} (probability {:.4f})", why, result.probability);
+             : fmt::format("refused: {} (probability {:.4f})", why, rounded_down(result.probability));
 }
 
 std::string describe_line(const std::string& name, const std::string& value) {
@@ -80,10 +80,10 @@ std::string describe(const MatchResult& result, const MatchCommandOptions& optio
   for (std::size_t i = 0; i < result.hypotheses.size(); ++i) {
     const Hypothesis& hypothesis = result.hypotheses[i];
     const std::string scale = options.scaled() ? fmt::format(", scale {:.4f}", hypothesis.scale) : "";
-    const std::string figures =
-        options.search.random_walk()
-            ? fmt::format("acceptance index {:.4f}", hypothesis.score)
-            : fmt::format("score {:.4g}, probability {:.4f}", hypothesis.score, hypothesis.probability);
+    const std::string figures = options.search.random_walk()
+                                    ? fmt::format("acceptance index {:.4f}", rounded_down(hypothesis.score))
+                                    : fmt::format("score {:.4g}, probability {:.4f}", hypothesis.score,
+                                                  rounded_down(hypothesis.probability));
     line(fmt::format("hypothesis {}", i + 1),
          fmt::format(" {}{}, {}", describe_pose(hypothesis.T_fixed_moving), scale, figures));
   }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "gridmerge/bag/bag.hpp"
+#include "match/rounded_down.hpp"
 #include "report/plan_json.hpp"
 #include "search_options.hpp"
 
@@ -93,7 +94,7 @@ std::string describe_plan(const AskedMerge& asked, const MergeResult& result) {
   } else {
     fmt::format_to(out, "{} of {} maps hang on it{}, enlarged by {:.4f} (probability {:.4f})\n", on_plan,
                    asked.names.size(), file.empty() ? std::string() : ", as " + file, plan.scale,
-                   plan.probability());
+                   rounded_down(plan.probability()));
   }
   for (const PlanPart& part : plan.parts) {
     std::vector<std::string> maps;
@@ -108,7 +109,7 @@ std::string describe_plan(const AskedMerge& asked, const MergeResult& result) {
                                                describe_pose(part.T_plan_first), part.scale)
                                  : std::string();
     fmt::format_to(out, "off the plan: {}: {} (probability {:.4f}{})\n", fmt::join(maps, ", "), explain(part),
-                   part.probability, best);
+                   rounded_down(part.probability), best);
   }
   const double most = std::accumulate(
       plan.parts.begin(), plan.parts.end(), 0.0,

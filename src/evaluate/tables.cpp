@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluate/count.hpp"
+#include "gridmerge/io/file_error.hpp"
+#include "match/rounded_down.hpp"
 #include "match/verdict.hpp"
 
 namespace gridmerge::internal {
@@ -28,7 +30,8 @@ std::string pair_rows(const std::vector<MatchOutcome>& matches) {
   std::string text = fmt::format(kPairRow, "", "", "accepted", "accepted", "", "best");
   text += fmt::format(kPairRow, "", "total", "correct", "wrong", "refused", "correct");
   text += pair_row("pairs", count_pairs(matches));
-  for (const auto& [tier, counts] : count_tiers(matches)) text += pair_row("  " + tier, counts);
+  for (const auto& [tier, counts] : count_tiers(matches))
+    text += pair_row("  " + escape_controls(tier), counts);
   const NegativeCounts negatives = count_negatives(matches);
   text += fmt::format(kPairRow, "negatives", negatives.total, "", negatives.accepted,
                       negatives.total - negatives.accepted, "");
@@ -105,11 +108,12 @@ std::string case_table(const Evaluation& evaluation) {
                               : match.error     ? fmt::format("off by {:.2f} m", *match.error)
                                                 : "no hypothesis";
     fmt::format_to(std::back_inserter(text), "{:<8} {:.4f}  {:<18} {:.3f} s  {} {}\n", name_of(match.verdict),
-                   match.probability, truth, match.seconds, match.fixed, match.moving);
+                   rounded_down(match.probability), truth, match.seconds, escape_controls(match.fixed),
+                   escape_controls(match.moving));
   }
   for (const SetOutcome& set : evaluation.sets) {
-    fmt::format_to(std::back_inserter(text), "set {}: {} maps, {} correct, {} wrong, {} left out\n", set.name,
-                   set.maps, set.correct, set.wrong, set.left_out);
+    fmt::format_to(std::back_inserter(text), "set {}: {} maps, {} correct, {} wrong, {} left out\n",
+                   escape_controls(set.name), set.maps, set.correct, set.wrong, set.left_out);
   }
   return text;
 }

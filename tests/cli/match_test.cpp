@@ -30,6 +30,17 @@ class Match : public CliTest {
   }
 };
 
+TEST_F(Match, RefusedForWantOfMoreThanUsualNamesNoFaultAndNoFullProbability) {
+  const double surely = Json::parse(run({"match", left, right, "--json"}).out).at("probability");
+  ASSERT_GT(surely, 0.95);
+  const Outcome outcome = run({"match", left, right, "--accept", "1"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_EQ(outcome.out.find(
+                "refused: the maps show one place, but not as surely as is asked for (probability 0.9"),
+            0u)
+      << outcome.out;
+}
+
 TEST_F(Match, JsonOfAnAcceptedPairIsAllThereIsOnStdout) {
   const Outcome outcome = run({"match", left, right, "--json"});
   EXPECT_EQ(outcome.exit_code, 0);

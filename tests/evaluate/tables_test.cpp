@@ -44,6 +44,26 @@ Evaluation sample() {
   return {{right, blank, negative}, {{"s", 4, 2, 1, 1}}};
 }
 
+TEST(CaseTable, ShowsAnyNameOnALine) {
+  Evaluation evaluation = sample();
+  evaluation.matches[0].fixed = "a\x1b[2J.yaml";
+  evaluation.matches[0].moving = "b\x1b.yaml";
+  evaluation.matches[0].tier = "\x1b";
+  evaluation.sets[0].name = "s\x1b";
+  const std::string text = case_table(evaluation) + summary_table(evaluation, 0.95);
+  EXPECT_EQ(text.find('\x1b'), std::string::npos) << text;
+  EXPECT_NE(text.find("a\\x1b[2J.yaml b\\x1b.yaml\n"), std::string::npos) << text;
+}
+
+TEST(CaseTable, LetsNoProbabilityLookHigherThanItIs) {
+  Evaluation evaluation = sample();
+  evaluation.matches[0].verdict = Verdict::refused;
+  evaluation.matches[0].probability = 0.949999;
+  EXPECT_NE(case_table(evaluation).find("refused  0.9499 "), std::string::npos) << case_table(evaluation);
+  evaluation.matches[0].probability = 0.57;  // no less than four digits say
+  EXPECT_NE(case_table(evaluation).find("refused  0.5700 "), std::string::npos) << case_table(evaluation);
+}
+
 TEST(EvaluationJson, HasExactlyTheKeysOfTheContract) {
   EXPECT_EQ(Json::parse(evaluation_json(sample())), Json::parse(R"({
     "pairs": {"total": 2, "accepted_correct": 1, "accepted_wrong": 0, "refused": 1, "best_correct": 1},

@@ -49,6 +49,25 @@ TEST(Explain, TellsRivalsFromMapsThatSlide) {
   EXPECT_EQ(explain(result), "the maps are free to slide along 30 degrees");
 }
 
+TEST(Explain, OfMoreThanIsUsuallyAskedForNamesNoFault) {
+  const std::string words = "the maps show one place, but not as surely as is asked for";
+  for (const Reason reason : {Reason::contradiction, Reason::several}) {
+    MatchResult result = refused(reason);
+    result.probability = 0.95;
+    EXPECT_EQ(explain(result, 0.99998), words);
+    result.probability = 0.9499;
+    EXPECT_NE(explain(result), words);
+  }
+  MatchResult result = refused(Reason::ambiguous);
+  PoseFigures held;
+  held.held = held.held_most = 10.0;
+  result.probability = 0.99;
+  result.hypotheses = {{{}, 10.0, 0.99, held}};
+  EXPECT_EQ(explain(result, 0.999), words);
+  result.hypotheses.push_back({{1.0, 0.0, 0.0}, 9.0, 0.0099, held});
+  EXPECT_EQ(explain(result, 0.999), "another way to lay the maps explains them too well to be ruled out");
+}
+
 TEST(Explain, OfUnknownScaleSaysWhatWalls) {
   MatchResult result = refused(Reason::ambiguous);
   PoseFigures held;
