@@ -13,6 +13,7 @@
 #include "console.hpp"
 #include "gridmerge/bag/bag.hpp"
 #include "gridmerge/io/initial_poses.hpp"
+#include "shown_command.hpp"
 
 namespace gridmerge::cli {
 
@@ -108,7 +109,7 @@ std::map<std::string, GivenPose> read_given_poses(const KnownPoseOptions& option
     console.warn(
         fmt::format("{}: one pose alone says nothing about how maps lie: give that of another one too, "
                     "or --fix {}",
-                    options.init, given.begin()->first));
+                    options.init, typed_file(given.begin()->first)));
   return given;
 }
 
@@ -126,8 +127,8 @@ KnownPoses::KnownPoses(const KnownPoseOptions& options, const std::vector<std::s
   }
 }
 
-std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps,
-                                        const MergeResult& result) const {
+std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps, const MergeResult& result,
+                                        const LoadOptions& load) const {
   std::string text;
   for (const ContradictedFix& fix : find_contradicted_fixes(maps, poses_, result)) {
     text += fmt::format("{}: --fix keeps it {} from where it fits {}: the maps contradict the given poses\n",
@@ -147,7 +148,7 @@ std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps,
     const bool is_pair =
         unused.why == UnusedPose::Why::not_sure_enough || unused.why == UnusedPose::Why::against_match;
     if (!is_pair || told.insert(std::minmax(unused.map, unused.other)).second)
-      text += describe(unused) + "\n";
+      text += describe(unused, load) + "\n";
   }
   if (!all.empty() && would_do_in_degrees(maps, result, all.size()))
     text += fmt::format(
@@ -157,11 +158,14 @@ std::string KnownPoses::describe_unused(const std::vector<OccupancyGrid>& maps,
   return text;
 }
 
-std::string KnownPoses::describe(const UnusedPose& unused) const {
+std::string KnownPoses::describe(const UnusedPose& unused, const LoadOptions& load) const {
   const std::string name = escape_controls(names_[unused.map]);
   const std::string other = escape_controls(names_[unused.other]);
   const KnownPose& pose = *poses_[unused.map];
-  const auto remedy = [&] { return fmt::format("--fix {} --fix {} takes them for the truth", other, name); };
+  const auto remedy = [&] {
+    return fmt::format("--fix {} --fix {} takes them for the truth", typed_file(names_[unused.other]),
+                       typed_file(names_[unused.map]));
+  };
   switch (unused.why) {
     case UnusedPose::Why::overruled:
       return fmt::format("{}: the given pose is not believed: {} from where the maps fit", name,
@@ -176,10 +180,11 @@ std::string KnownPoses::describe(const UnusedPose& unused) const {
           unused.sd_allowed / unused.sd, remedy());
     case UnusedPose::Why::against_match:
       return fmt::format(
-          "{0}: the given pose is {1} from where the map surely fits {2} without it: one of the two is "
+          "{}: the given pose is {} from where the map surely fits {} without it: one of the two is "
           "wrong\n"
-          "try: gridmerge match {2} {0}   (where it fits), or {3}",
-          name, offset_text(unused.distance, unused.angle), other, remedy());
+          "try: {}   (where it fits), or {}",
+          name, offset_text(unused.distance, unused.angle), other,
+          match_command(names_[unused.other], names_[unused.map], load), remedy());
     case UnusedPose::Why::contradicted:
       break;
   }

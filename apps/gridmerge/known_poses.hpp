@@ -53,10 +53,12 @@ class KnownPoses {
 
   /// Lines that name the poses that the merge did not follow, why, and what to do; and those that it followed
   /// against what the maps say.
-  std::string describe_unused(const std::vector<OccupancyGrid>& maps, const MergeResult& result) const;
+  /// `load` is how the maps were read.
+  std::string describe_unused(const std::vector<OccupancyGrid>& maps, const MergeResult& result,
+                              const LoadOptions& load) const;
 
  private:
-  std::string describe(const internal::UnusedPose& unused) const;
+  std::string describe(const internal::UnusedPose& unused, const LoadOptions& load) const;
   bool would_do_in_degrees(const std::vector<OccupancyGrid>& maps, const MergeResult& result,
                            std::size_t unused) const;
 

@@ -29,6 +29,7 @@
 #include "scale_hint.hpp"
 #include "scarce_memory.hpp"
 #include "search_options.hpp"
+#include "shown_command.hpp"
 #include "transform_options.hpp"
 
 namespace gridmerge::cli {
@@ -139,7 +140,7 @@ MergeResult merge_maps(const std::vector<OccupancyGrid>& maps,
 std::string scale_hints(const MergeCommandOptions& options, const std::vector<OccupancyGrid>& maps,
                         const MergeResult& result, Console& console) {
   constexpr std::size_t kMaxHints = 2;  // each takes as long as ten matches
-  if (options.search.up_the_tree() || result.left_out.empty()) return {};
+  if (options.search.up_the_tree() || result.left_out.empty() || maps.size() < 2) return {};
   const bool has_merged = !result.components.empty();
   const std::size_t first = result.left_out.front().map;
   const NamedMap fixed = has_merged ? NamedMap{"the merged map", result.components.front().fused.grid}
@@ -149,8 +150,8 @@ std::string scale_hints(const MergeCommandOptions& options, const std::vector<Oc
   for (const LeftOut& one : result.left_out) {
     const std::size_t map = one.map;
     const NamedMap left_out{options.maps[map], maps[map]};
-    const std::string plan = plan_hint(
-        left_out, fmt::format("--plan {} hangs the other maps on it", escape_controls(left_out.name)));
+    const std::string plan =
+        plan_hint(left_out, fmt::format("--plan {} hangs the other maps on it", typed_file(left_out.name)));
     text += plan;
     if (!plan.empty()) continue;
     if ((!has_merged && map == first) || count_cells(maps[map]).known() == 0 || asked == kMaxHints) continue;
@@ -237,6 +238,7 @@ int run_merge(const MergeCommandOptions& options) {
   }
   const AskedMerge asked{options.maps,
                          options.search,
+                         options.load,
                          known_poses.poses(),
                          map_transform(options.transform).value(),
                          options.max_false_joins,
@@ -246,7 +248,8 @@ int run_merge(const MergeCommandOptions& options) {
                             describe_doubled(asked, inputs.maps, result, options.common.verbose);
   console.clear();
   if (options.common.verbose) print(describe_joins(asked, result));
-  print(describe_merge(asked, inputs.maps, result, known_poses.describe_unused(inputs.maps, result)) +
+  print(describe_merge(asked, inputs.maps, result,
+                       known_poses.describe_unused(inputs.maps, result, options.load)) +
         describe_plan(asked, result) + hints + describe_removed(removed, "merge"));
   print("look at it: " + escape_controls((std::filesystem::path(options.output) / "report.html").string()) +
         "\n");

@@ -10,10 +10,12 @@
 
 #include "console.hpp"
 #include "gridmerge/report/merge_record.hpp"
+#include "match/rounded_down.hpp"
 #include "merge/consistent_set.hpp"
 #include "merge/doubled_walls.hpp"
 #include "merge/fused_windows.hpp"
 #include "merge/joins.hpp"
+#include "shown_command.hpp"
 
 namespace gridmerge::cli {
 
@@ -28,8 +30,8 @@ const char* figure_name(const SearchOptions& search) {
 
 /// Where to look for what keeps two maps apart.
 std::string try_match(const AskedMerge& asked, const Join& join) {
-  return fmt::format("try: gridmerge match {} {}{}   (how these two may lie, and why it is not believed)\n",
-                     escape_controls(asked.names[join.fixed]), escape_controls(asked.names[join.moving]),
+  return fmt::format("try: {}{}   (how these two may lie, and why it is not believed)\n",
+                     match_command(asked.names[join.fixed], asked.names[join.moving], asked.load),
                      asked.search.random_walk() ? " --search random-walk" : "");
 }
 
@@ -54,29 +56,41 @@ double likeliest_open_way(const MergeResult& result) {
   return likeliest;
 }
 
+/// The likeliest of maps that can be compared; null if there is none.
+const Join* nearest_join(const MergeResult& result) {
+  const Join* nearest = nullptr;
+  for (const Join& join : result.joins) {
+    if (join.reason() != Reason::nothing_to_compare &&
+        (nearest == nullptr || join.probability > nearest->probability))
+      nearest = &join;
+  }
+  return nearest;
+}
+
 /// The head of a result that holds no merged map. What became of known poses comes first: who gives them
 /// wants them used.
 std::string describe_nothing(const AskedMerge& asked, const MergeResult& result,
                              const std::string& unused_poses) {
   std::string text = fmt::format("nothing was merged: no two of the {} maps fit together surely enough\n{}",
                                  asked.names.size(), unused_poses);
-  const auto out = std::back_inserter(text);
-  const auto nearest =
-      std::max_element(result.joins.begin(), result.joins.end(),
-                       [](const Join& a, const Join& b) { return a.probability < b.probability; });
-  if (nearest != result.joins.end()) {
-    fmt::format_to(out, "nearest to it: {} and {}, {} {:.4f}{}\n",
+  const char* const poses =
+      "     --init TABLE and --fix MAP take poses that you know; the page lays maps by hand\n";
+  const Join* const nearest = nearest_join(result);
+  if (nearest == nullptr && !result.joins.empty()) return text + poses;  // nobody asks too much
+  if (nearest != nullptr) {
+    fmt::format_to(std::back_inserter(text), "nearest to it: {} and {}, {} {:.4f}{}\n",
                    escape_controls(asked.names[nearest->fixed]),
                    escape_controls(asked.names[nearest->moving]), figure_name(asked.search),
-                   nearest->probability, unused_poses.empty() ? "" : " without the given poses");
+                   rounded_down(nearest->probability),
+                   unused_poses.empty() ? "" : " without the given poses");
     text += try_match(asked, *nearest);
   }
   if (asked.search.up_the_tree()) return text + "     a lower --accept asks for less\n";
-  text += asked.names.size() == 2 && nearest != result.joins.end()
+  text += asked.names.size() == 2 && nearest != nullptr
               ? what_asks_for_less(asked, std::max(nearest->probability, likeliest_open_way(result)),
                                    "this join alone")
               : "     a lower --accept or a higher --max-false-joins asks for less\n";
-  return text + "     --init TABLE and --fix MAP take poses that you know; the page lays maps by hand\n";
+  return text + poses;
 }
 
 /// How maps that lie apart may lie together, the most probable ways.
@@ -88,7 +102,7 @@ std::string describe_open_ways(const std::vector<std::string>& names, const Merg
     const OpenWay& way = result.open_ways[i];
     fmt::format_to(out, "perhaps: {} in the frame of {} at {} (probability {:.2f})\n",
                    escape_controls(names[way.moving]), escape_controls(names[way.fixed]),
-                   describe_pose(way.T_fixed_moving), way.probability);
+                   describe_pose(way.T_fixed_moving), rounded_down(way.probability, 2));
   }
   if (result.open_ways.size() > kMaxTold)
     fmt::format_to(out, "and {} more such ways: see transforms.json\n", result.open_ways.size() - kMaxTold);
@@ -191,7 +205,7 @@ std::string describe_joins(const AskedMerge& asked, const MergeResult& result) {
   std::string text;
   for (const Join& join : result.joins) {
     fmt::format_to(std::back_inserter(text), "{:<8} {} {:.4f}, {:.3f} s: {} and {}\n", name_of(join.outcome),
-                   figure_name(asked.search), join.probability, join.match.seconds,
+                   figure_name(asked.search), rounded_down(join.probability), join.match.seconds,
                    escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
   }
   return text;
@@ -252,13 +266,13 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
         fmt::format("{} and {}", escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
     if (join.outcome == JoinOutcome::rescued)
       fmt::format_to(out, "rescued: {}, {:.3f} by themselves, but the other maps or known poses agree\n",
-                     pair, join.probability);
+                     pair, rounded_down(join.probability, 3));
     if (join.over_budget)
       fmt::format_to(out, "over budget: {}, {:.3f} by themselves, which --max-false-joins has no room for\n",
-                     pair, join.probability);
+                     pair, rounded_down(join.probability, 3));
     if (join.outcome == JoinOutcome::rejected)
       fmt::format_to(out, "rejected: {}, {:.3f} by themselves, but other maps or fixed poses contradict\n",
-                     pair, join.probability);
+                     pair, rounded_down(join.probability, 3));
     if (join.outcome == JoinOutcome::known)
       fmt::format_to(out, "known: {}, from their initial poses\n", pair);
   }

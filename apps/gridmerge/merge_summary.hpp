@@ -14,6 +14,7 @@ namespace gridmerge::cli {
 struct AskedMerge {
   const std::vector<std::string>& names;  ///< of the maps
   const SearchOptions& search;
+  const LoadOptions& load;                                   ///< by which the maps were read
   const std::vector<std::optional<KnownPose>>& known_poses;  ///< of the maps
   MapTransform transform = MapTransform::rigid;
   double max_false_joins = MergeOptions{}.max_false_joins;

@@ -5,8 +5,10 @@
 
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 #include "gridmerge/io/file_error.hpp"
+#include "gridmerge/merge/plan.hpp"
 #include "match/drawing.hpp"
 #include "match/scale.hpp"
 
@@ -14,8 +16,22 @@ namespace gridmerge::cli {
 
 using namespace internal;
 
+namespace {
+
+/// Whether the drawing has walls that maps can hang on.
+bool can_be_plan(const OccupancyGrid& drawing) {
+  try {
+    validate_plan({}, drawing);
+    return true;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+}  // namespace
+
 std::string plan_hint(const NamedMap& map, const std::string& what_helps) {
-  if (!is_drawing(map.grid)) return {};
+  if (!is_drawing(map.grid) || !can_be_plan(map.grid)) return {};
   return fmt::format("hint: {} looks like a drawing of walls: {}\n", escape_controls(map.name), what_helps);
 }
 
@@ -44,6 +60,7 @@ std::string range_hint(const NamedMap& fixed, const NamedMap& moving, const Scal
   const bool is_plan_moving = is_drawing(moving.grid);
   if (is_plan_moving == is_drawing(fixed.grid)) return {};
   const NamedMap &plan = is_plan_moving ? moving : fixed, &map = is_plan_moving ? fixed : moving;
+  if (!can_be_plan(plan.grid)) return {};
   const double floor = known_area(map.grid), drawn = known_area(with_enclosed_free(plan.grid));
   if (floor <= 0.0 || drawn <= 0.0) return {};
   const double enlarged = std::sqrt(floor / drawn), equal = is_plan_moving ? enlarged : 1.0 / enlarged;

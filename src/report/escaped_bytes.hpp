@@ -5,12 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "internal_export.hpp"
+
 namespace gridmerge::internal {
 
 // Names of files are any bytes, and JSON is UTF-8.
 
 /// Whether a text is UTF-8. O(length).
-bool is_utf8(std::string_view text);
+GRIDMERGE_INTERNAL_EXPORT bool is_utf8(std::string_view text);
 
 /// Any bytes as UTF-8: `\xe9` stands for a byte that is of no character, `\\` for a backslash. O(length).
 std::string escape_bytes(std::string_view text);

@@ -3,6 +3,7 @@
 #include <glob.h>
 
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -90,6 +91,26 @@ class FirstSteps : public testing::Test {
     EXPECT_TRUE(std::regex_search(outcome.out, std::regex("sets +1 +1 +4 +4 +0 +0\\n"))) << outcome.out;
   }
 
+  /// Runs the command that a merge says to try, as a shell reads it.
+  Outcome tried(const std::string& out) const {
+    const std::string begin = "try: gridmerge ";
+    const std::size_t at = out.find(begin) + begin.size(), end = out.find("   (", at);
+    EXPECT_LT(at, end) << out;
+    const std::string script = directory.write("try.sh", "printf '%s\\0' " + out.substr(at, end - at));
+    FILE* const shell = ::popen(("bash " + script).c_str(), "r");
+    std::vector<std::string> words(1);
+    for (int c = std::fgetc(shell); c != EOF; c = std::fgetc(shell)) {
+      if (c != 0) {
+        words.back() += static_cast<char>(c);
+      } else {
+        words.emplace_back();
+      }
+    }
+    EXPECT_EQ(::pclose(shell), 0) << out;
+    words.pop_back();
+    return run(words);
+  }
+
   const std::filesystem::path before = std::filesystem::current_path();
   const TemporaryDirectory directory;
   const SE2 T_first_second{1.25, -3.0, 0.52};  // as README and the help of measure have it
@@ -133,6 +154,28 @@ TEST_F(FirstSteps, TheProgramAloneSaysWhatItCanDo) {
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(outcome.out, run({"--help"}).out);
+}
+
+TEST_F(FirstSteps, WhatAMergeSaysToTryRunsAsItIsPrinted) {
+  make_maps({"a", "b", "c"});
+  const OccupancyGrid map = map_part(draw_building(1), {0, 0, 13, 13}, {});
+  for (const std::string name : {"sp ace", "it's", "-d", "#a", "a;b", "$(x)",
+                                 "gr\xc3\xb6\xc3\x9f"
+                                 "e",
+                                 "a\nb", "it's\x1b\\", "caf\xe9"}) {
+    write_map(directory, name + "/map", map);
+    const Outcome outcome = run({"merge", "-o", "out", "--", name + "/map.yaml", "other.yaml"});
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos) << outcome.out;
+    const Outcome again = tried(outcome.out);
+    EXPECT_EQ(again.exit_code, 3) << outcome.out << again.err;
+  }
+  const Outcome images =
+      run({"merge", "a.pgm", "other.pgm", "--resolution", "0.1", "--literal-thresholds", "-o", "out"});
+  EXPECT_NE(images.out.find("gridmerge match a.pgm other.pgm --resolution 0.1 --literal-thresholds "),
+            std::string::npos)
+      << images.out;
+  EXPECT_EQ(tried(images.out).exit_code, 3) << images.out;
 }
 
 TEST_F(FirstSteps, AMergeOfNothingOpensWithThatAndWhatToTry) {

@@ -225,6 +225,27 @@ TEST_F(Merge, NamesWhatToAskOfAMapThatIsLeftOut) {
   EXPECT_NE(out.substr(at, out.find('\n', at + 1) - at).find(other), std::string::npos) << out;
 }
 
+TEST_F(Merge, OfMapsWithNothingToCompareAsksForNothingThatCannotHelp) {
+  for (const Cell cell : {Cell::unknown, Cell::occupied}) {
+    const std::string a = write_map(directory, "a", make_grid(1, 1, 0.1, {}, cell));
+    const std::string b = write_map(directory, "b", make_grid(1, 1, 0.1, {2.0, 0.0, 0.0}, cell));
+    const std::string out = run({"merge", a, b, "-o", output}).out;
+    for (const char* const hint :
+         {"nearest to it", "--accept", "--max-false-joins", "gridmerge match", "--plan"})
+      EXPECT_EQ(out.find(hint), std::string::npos) << out;
+    EXPECT_NE(out.find("there is too little in it to compare"), std::string::npos) << out;
+    EXPECT_NE(out.find("--init TABLE and --fix MAP"), std::string::npos) << "which place them all the same";
+    // Beside maps that can be compared, these are the nearest.
+    const std::string beside = run({"merge", a, left, other, "-o", output}).out;
+    EXPECT_NE(beside.find("nearest to it: " + left + " and " + other), std::string::npos) << beside;
+  }
+}
+
+TEST_F(Merge, OfOneMapOnAPlanDoesNotSpeakOfOthers) {
+  const std::string dot = write_map(directory, "dot", make_grid(1, 1, 0.1, {}, Cell::occupied));
+  EXPECT_EQ(run({"merge", dot, "--plan", left, "-o", output}).out.find("hint"), std::string::npos);
+}
+
 TEST_F(Merge, HelpSaysWhatTheThoroughLookIsFor) {
   const std::string help = run({"merge", "--help"}).out;
   EXPECT_EQ(help.find("decides nothing"), std::string::npos) << help;
