@@ -15,6 +15,7 @@ import csv
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import time
@@ -95,6 +96,7 @@ class Bench:
 
     def simulate(self, folder: pathlib.Path, options: dict, seed: int) -> bool:
         words = [word for option in (BASE | options | {"--seed": seed}).items() for word in option]
+        shutil.rmtree(folder, ignore_errors=True)
         code, _ = run([self.gridmerge, "simulate", "-o", folder, "--threads", 1, "--quiet", *words])
         return code == 0
 
@@ -180,6 +182,7 @@ class Bench:
             for option in (merged | {"--seed": seed, "--resolution": f"{resolution:g}"}).items()
             for word in option
         ]
+        shutil.rmtree(folder, ignore_errors=True)
         return run([self.gridmerge, "simulate", "-o", folder, "--threads", 1, "--quiet", *words])[0] == 0
 
     def teams(self) -> list[dict]:

@@ -31,6 +31,7 @@ import math
 import os
 import pathlib
 import random
+import shutil
 import subprocess
 
 KINDS = [
@@ -110,8 +111,8 @@ def make_building(gridmerge: str, folder: pathlib.Path, options: dict[str, str])
     wanted = " ".join(word for option in options.items() for word in option)
     done = folder / "options.txt"
     if not done.exists() or done.read_text() != wanted:
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / "pairs.tsv").unlink(missing_ok=True)
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
         overlap = float(options["--overlap"])
         for one in [overlap, *(larger for larger in LARGER if larger > overlap)]:
             words = [word for option in (options | {"--overlap": str(one)}).items() for word in option]
