@@ -3,7 +3,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <string>
 #include <system_error>
 
 #include "gridmerge/io/file_error.hpp"
@@ -27,8 +29,14 @@ MadeDirectories::MadeDirectories(const fs::path& directory) {
   }
   if (!error) error = flush_parents();
   if (error) {
+    const auto link = std::find_if(made_.begin(), made_.end(), [](const fs::path& part) {
+      std::error_code ignored;
+      return fs::is_symlink(part, ignored);  // which does not exist only where nothing is behind it
+    });
+    const std::string cause =
+        link == made_.end() ? error.message() : link->string() + " is a link to what is not there";
     remove_empty();
-    throw FileError(directory, "cannot be created: " + error.message());
+    throw FileError(directory, "cannot be created: " + cause);
   }
 }
 

@@ -45,6 +45,15 @@ TEST(MadeDirectories, ThatCannotBeMadeAreAnError) {
             directory.file("file/a") + ": cannot be created: Not a directory");
 }
 
+TEST(MadeDirectories, AreNotMadeBehindALinkToNothing) {
+  const test::TemporaryDirectory directory;
+  const std::string link = directory.file("link");
+  std::filesystem::create_symlink("nowhere", link);
+  for (const std::string& path : {link, link + "/", link + "/a/b"})
+    EXPECT_EQ(error_of(path), path + ": cannot be created: " + link + " is a link to what is not there");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+}
+
 TEST(MadeDirectories, ThatMayNotLastAreAnErrorAndAreGone) {
   const test::TemporaryDirectory directory;
   const std::string inner = directory.file("a/b");
