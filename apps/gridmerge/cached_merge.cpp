@@ -40,10 +40,7 @@ void add_cache_option(CLI::App& command, CacheOptions& options) {
           "--cache", options.directory,
           "Directory in which the match of each pair is kept, by what the two maps hold and the options "
           "that matter; made if need be. A run that was ended goes on from it, and several may share it")
-      ->type_name("DIR")
-      ->check(CLI::Validator(
-          [](const std::string& text) { return text.empty() ? "the directory has no name" : std::string(); },
-          ""));
+      ->type_name("DIR");
 }
 
 void add_shard_option(CLI::App& command, CacheOptions& options) {

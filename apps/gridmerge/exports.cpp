@@ -69,7 +69,6 @@ void add_export_option(CLI::App& command, ExportOptions& options) {
           "merged.tif in "
           "DIR. Repeat the option for others")
       ->option_text("FORMAT[=FILE]")
-      ->allow_extra_args(false)  // or it would take the maps behind it
       ->check(CLI::Validator([](std::string& text) { return what_is_wrong(text); }, ""));
 }
 

@@ -96,8 +96,7 @@ void add_known_pose_options(CLI::App& command, KnownPoseOptions& options) {
       .add_option("--fix", options.fix,
                   "Keep this map where it is. The merged map takes its frame, or that of --init, if given. "
                   "The option names one map; repeat it for others. Each of several needs a pose in --init")
-      ->option_text("MAP")
-      ->allow_extra_args(false);  // or it would take the maps behind it
+      ->option_text("MAP");
 }
 
 std::map<std::string, GivenPose> read_given_poses(const KnownPoseOptions& options, const MapNamer& name_of,

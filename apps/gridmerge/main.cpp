@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "command_words.hpp"
 #include "commands.hpp"
 #include "console.hpp"
 #include "gridmerge/version.hpp"
@@ -61,26 +62,6 @@ std::string help_command(const CLI::App& app) {
   return commands.empty() ? "gridmerge --help" : "gridmerge " + commands.front()->get_name() + " --help";
 }
 
-// CLI11 tells of a misspelt command only that there is none.
-std::string explain(const CLI::App& app, const CLI::ParseError& error) {
-  const auto words = app.remaining();
-  const bool misspelt = app.get_subcommands().empty() && !words.empty() && !words.front().starts_with('-');
-  return misspelt ? "there is no command '" + words.front() + "'" : error.what();
-}
-
-// CLI11 takes whatever follows an option for its value: of "-o --elastic" a folder of that name was made.
-void refuse_options_as_values(CLI::App& command) {
-  const CLI::Validator no_option(
-      [&command](const std::string& value) -> std::string {
-        if (!value.starts_with('-') || command.get_option_no_throw(value) == nullptr) return {};
-        return "'" + value + "' is an option, and a value is missing before it (./" + value + " is a file)";
-      },
-      "");
-  for (CLI::Option* const option : command.get_options()) {
-    if (option->get_items_expected_max() > 0) option->check(no_option);
-  }
-}
-
 int run(int argc, char** argv) {
   CLI::App app("Merges occupancy grid maps made by robots that do not know where the others are.",
                "gridmerge");
@@ -103,14 +84,14 @@ int run(int argc, char** argv) {
   add_view(app, action);
   add_evaluate(app, action);
   add_simulate(app, action);
-  for (CLI::App* const command : app.get_subcommands({})) refuse_options_as_values(*command);
+  for (CLI::App* const command : app.get_subcommands({})) settle_values(*command);
 
   if (argc < 2) {
     print(app.help());
     return kDone;
   }
   try {
-    app.parse(argc, argv);
+    app.parse(words_to_parse(app, argc, argv));
   } catch (const CLI::CallForHelp&) {
     print(app.help());
     return kDone;

@@ -211,7 +211,7 @@ void add_distance_map_options(CLI::App& command, MeasureCommandOptions& options)
   command
       .add_option("--dmap-of", options.dmap_of, "Of which map: 0 is FIXED, 1 the first MOVING at its pose")
       ->type_name("N")
-      ->check(CLI::Range(0, 1 << 20).description(""))
+      ->transform(whole_number(0, 1 << 20))
       ->capture_default_str()
       ->needs(dmap);
   command.add_option("--dmap-class", options.dmap_class, "To which cells: occupied, free or unknown")
@@ -245,7 +245,6 @@ void add_measure(CLI::App& app, Action& action) {
           "T_fixed_moving in metres and radians of the map frames; one for each MOVING, in their order")
       ->type_name("X,Y,THETA")
       ->required()
-      ->allow_extra_args(false)  // or it would take the maps behind it
       ->check(kPose);
   command->add_option("--c-lock", options->c_lock, "The weight in Delta = psi + C (disagreement - agreement)")
       ->type_name("C")

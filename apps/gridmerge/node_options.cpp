@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -32,9 +31,8 @@ const CLI::Validator kNamedTopic(
 
 const CLI::Validator kPositiveRate(
     [](std::string& text) {
-      double rate = 0.0;
-      const bool is_one = CLI::detail::lexical_cast(text, rate) && rate > 0.0 && std::isfinite(rate);
-      return is_one ? std::string() : "'" + text + "' is not a number above 0";
+      const std::optional<double> rate = parse_finite(text);
+      return rate && *rate > 0.0 ? std::string() : "'" + text + "' is not a number above 0";
     },
     "");
 
@@ -98,15 +96,13 @@ void add_robot_options(CLI::App& command, NodeCommandOptions& options) {
           fmt::format("Topics of maps: '*' stands for any characters between two slashes, a level '**' for "
                       "any levels. {} if neither this nor --robot is given; repeat it for others",
                       kUsualPattern))
-      ->type_name("PATTERN")
-      ->allow_extra_args(false);
+      ->type_name("PATTERN");
   command
       .add_option(
           "--robot", options.robots,
           "A robot's name and the topic of its map; repeat it for others. Robots found by a pattern are "
           "named after their topic's namespace")
       ->type_name("NAME=TOPIC")
-      ->allow_extra_args(false)
       ->check(kNamedTopic);
 }
 
@@ -123,8 +119,7 @@ void add_robot_pose_options(CLI::App& command, NodeCommandOptions& options) {
           "--fix", options.known.fix,
           "Keep this robot's map where it is. The merged map takes its frame, or that of --init, if given. "
           "Repeat it for others. Each of several needs a pose in --init")
-      ->option_text("ROBOT")
-      ->allow_extra_args(false);
+      ->option_text("ROBOT");
 }
 
 /// What it publishes under which name, and where.
@@ -192,8 +187,7 @@ void add_bag_options(CLI::App& command, NodeCommandOptions& options) {
               "--bag", options.bags,
               "A recording of ROS 2 (.mcap, .db3 or a rosbag2 folder) whose maps are published as the robot "
               "did, and merged; repeat it for others. /map of FILE.mcap becomes /FILE/map. All begin at once")
-          ->type_name("BAG")
-          ->allow_extra_args(false);
+          ->type_name("BAG");
   command.add_option("--rate", node.play_rate, "Seconds of the recordings per second, with --bag")
       ->type_name("NUMBER")
       ->check(kPositiveRate)
@@ -207,7 +201,7 @@ void add_page_options(CLI::App& command, NodeCommandOptions& options) {
                           .add_option("--page", options.page,
                                       "Serve a report page that follows along at this port; 0 = a free one")
                           ->type_name("PORT")
-                          ->check(kPort);
+                          ->transform(kPort);
   command
       .add_option("--page-address", options.page_address,
                   "Address or name of this machine to serve the page at; others can reach it unless it is a "

@@ -18,13 +18,28 @@ namespace gridmerge::cli {
 
 namespace {
 
+std::optional<SE2> parse_pose(const std::string& text) {
+  const std::optional<std::vector<double>> numbers = parse_numbers(text);
+  if (!numbers || numbers->size() != 3) return std::nullopt;
+  return SE2{(*numbers)[0], (*numbers)[1], normalize_angle((*numbers)[2])};
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> parse_whole(std::string_view text) {
+  std::uint64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+}
+
 std::optional<double> parse_finite(const std::string& text) {
   double value = 0.0;
   if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 
-std::optional<SE2> parse_pose(const std::string& text) {
+std::optional<std::vector<double>> parse_numbers(const std::string& text) {
   std::vector<double> numbers;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
@@ -33,11 +48,8 @@ std::optional<SE2> parse_pose(const std::string& text) {
     numbers.push_back(*number);
     begin = end + 1;
   }
-  if (numbers.size() != 3) return std::nullopt;
-  return SE2{numbers[0], numbers[1], normalize_angle(numbers[2])};
+  return numbers;
 }
-
-}  // namespace
 
 const CLI::Validator kProbability(
     [](std::string& text) {
@@ -47,19 +59,30 @@ const CLI::Validator kProbability(
     },
     "");
 
-const CLI::Validator kWholeNumber(
-    [](std::string& text) {
-      std::uint64_t value = 0;
-      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-      const bool whole = error == std::errc() && end == text.data() + text.size();
-      return whole ? std::string() : "'" + text + "' is not a whole number from 0 to 2^64 - 1";
-    },
-    "");
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+  return {[least, most](std::string& text) {
+            const std::optional<std::uint64_t> value = parse_whole(text);
+            if (!value || *value < least || *value > most)
+              return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+            text = std::to_string(*value);
+            return std::string();
+          },
+          ""};
+}
 
 const CLI::Validator kNotNegative(
     [](std::string& text) {
       const auto value = parse_finite(text);
       return value && *value >= 0.0 ? std::string() : "'" + text + "' is not a number of 0 or more";
+    },
+    "");
+
+const CLI::Validator kNumbersNotNegative(
+    [](std::string& text) {
+      const auto values = parse_numbers(text);
+      return values && std::all_of(values->begin(), values->end(), [](double value) { return value >= 0.0; })
+                 ? std::string()
+                 : "'" + text + "' is not a number of 0 or more, nor several with commas between them";
     },
     "");
 
@@ -72,15 +95,14 @@ const CLI::Validator kMetresPerCell(
     },
     "");
 
-const CLI::Validator kPort = CLI::Range(0, 65535).description("");
+const CLI::Validator kPort = whole_number(0, 65535);
 
 const CLI::Validator kOneAddress(
     [](std::string& text) {
       const std::vector<Address> addresses = resolve(text);
       const bool any =
           std::any_of(addresses.begin(), addresses.end(), [](const Address& one) { return one.is_any; });
-      return text.empty() || any
-                 ? "'" + text + "' is no single address: give the one by which others reach this machine"
+      return any ? "'" + text + "' is no single address: give the one by which others reach this machine"
                  : std::string();
     },
     "");
@@ -106,7 +128,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
       .add_option("--threads", options.threads,
                   "Worker threads; 0 = one per core. Results do not depend on it")
       ->type_name("N")
-      ->check(CLI::Range(0, 1024).description(""))
+      ->transform(whole_number(0, 1024))
       ->capture_default_str();
 }
 

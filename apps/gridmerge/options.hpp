@@ -2,8 +2,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/io/map_file.hpp"
@@ -27,11 +31,22 @@ inline constexpr std::string_view kMapHelp =
 /// --resolution and --literal-thresholds: how files become maps.
 void add_map_file_options(CLI::App& command, LoadOptions& options);
 
+/// The whole number that `text` is: decimal digits alone, where CLI11 would read "010" as 8.
+std::optional<std::uint64_t> parse_whole(std::string_view text);
+
+/// The finite number that `text` is.
+std::optional<double> parse_finite(const std::string& text);
+
+/// The finite numbers that `text` is, with commas between them.
+std::optional<std::vector<double>> parse_numbers(const std::string& text);
+
 /// A number in [0, 1].
 extern const CLI::Validator kProbability;
 
-/// Digits alone.
-extern const CLI::Validator kWholeNumber;
+/// A whole number as parse_whole() reads it. For CLI::Option::transform(), as check() leaves the zeros in
+/// front to CLI11.
+CLI::Validator whole_number(std::uint64_t least = 0,
+                            std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
 /// A finite number, 0 or more.
 extern const CLI::Validator kNotNegative;
@@ -39,7 +54,10 @@ extern const CLI::Validator kNotNegative;
 /// A resolution that a map can have.
 extern const CLI::Validator kMetresPerCell;
 
-/// The port of a server; 0 for a free one.
+/// Numbers of 0 or more, with commas between them.
+extern const CLI::Validator kNumbersNotNegative;
+
+/// The port of a server; 0 for a free one. For CLI::Option::transform().
 extern const CLI::Validator kPort;
 
 /// One address of this machine's, to serve at. Not one that stands for all: a request has to name its host,

@@ -27,12 +27,7 @@ void add_plan_options(CLI::App& command, PlanCommandOptions& options) {
                       "map, as MAP. Maps that nothing else joins are joined by it. The merged map has the "
                       "plan's frame, in the maps' metres, and holds the maps alone. One MAP is enough "
                       "with it")
-          ->type_name("PLAN")
-          ->check(CLI::Validator(
-              [](const std::string& name) {
-                return name.empty() ? std::string("the name of the plan is empty") : std::string();
-              },
-              ""));
+          ->type_name("PLAN");
   command
       .add_option("--plan-scale", options.scales,
                   "The factors by which the plan may be too small; 0.5:2 if not given. They count from "

@@ -40,12 +40,12 @@ std::optional<StartPoseOptions> parse_starts(const std::string& text) {
   const std::size_t first = text.find('x');
   const std::size_t second = text.find('x', first + 1);
   if (first == std::string::npos || second == std::string::npos) return std::nullopt;
-  StartPoseOptions starts;
-  if (!CLI::detail::lexical_cast(text.substr(0, first), starts.rotations) ||
-      !CLI::detail::lexical_cast(text.substr(first + 1, second - first - 1), starts.offsets) ||
-      !CLI::detail::lexical_cast(text.substr(second + 1), starts.offset))
-    return std::nullopt;
-  return starts;
+  const auto rotations = parse_whole(text.substr(0, first));
+  const auto offsets = parse_whole(text.substr(first + 1, second - first - 1));
+  const auto offset = parse_finite(text.substr(second + 1));
+  constexpr std::uint64_t kMost = std::numeric_limits<int>::max();
+  if (!rotations || !offsets || !offset || *rotations > kMost || *offsets > kMost) return std::nullopt;
+  return StartPoseOptions{static_cast<int>(*rotations), static_cast<int>(*offsets), *offset};
 }
 
 const CLI::Validator kStarts(
@@ -65,11 +65,8 @@ const CLI::Validator kStarts(
 std::optional<ScaleRange> parse_scales(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) return std::nullopt;
-  ScaleRange scales;
-  if (!CLI::detail::lexical_cast(text.substr(0, colon), scales.least) ||
-      !CLI::detail::lexical_cast(text.substr(colon + 1), scales.most))
-    return std::nullopt;
-  return scales;
+  const auto least = parse_finite(text.substr(0, colon)), most = parse_finite(text.substr(colon + 1));
+  return least && most ? std::optional(ScaleRange{*least, *most}) : std::nullopt;
 }
 
 /// The options that only the random walk has.
@@ -82,16 +79,24 @@ std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& opt
     added.push_back(command.add_option(name, value, help)->type_name(type)->group(kWalkGroup));
     return added.back();
   };
-  add("--c-lock", match.c_locks,
-      "The weight in Delta = psi + C (disagreement - agreement), which the walk makes small; 0 if not "
-      "given. Several, with commas, are used in turn, one for each walk",
-      "C,...")
-      ->allow_extra_args(false)  // or it would take the maps behind it
-      ->delimiter(',')
-      ->check(kNotNegative);
+  const auto set_c_locks = [&match](const std::vector<std::string>& lists) {
+    match.c_locks.clear();
+    for (const std::string& list : lists) {
+      const std::vector<double> numbers = parse_numbers(list).value();
+      match.c_locks.insert(match.c_locks.end(), numbers.begin(), numbers.end());
+    }
+  };
+  added.push_back(command
+                      .add_option_function<std::vector<std::string>>(
+                          "--c-lock", set_c_locks,
+                          "The weight in Delta = psi + C (disagreement - agreement), which the walk makes "
+                          "small; 0 if not given. Several, with commas, are used in turn, one for each walk")
+                      ->type_name("C,...")
+                      ->group(kWalkGroup)
+                      ->check(kNumbersNotNegative));
   add("--restarts", options.restarts, "How many walks, the best is kept; one for each c_lock if not given",
       "N")
-      ->check(CLI::Range(1, 1000).description(""));
+      ->transform(whole_number(1, 1000));
   add("--starts", options.starts,
       fmt::format("The grid of poses whose best one starts a walk: R rotations, O shifts on each side of "
                   "the centre in x and in y, OFFSET cells apart; {}x{}x{} if not given",
@@ -110,7 +115,7 @@ std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& opt
       "F")
       ->capture_default_str();
   add("--memory", walk.memory, "Accepted steps that set mean and covariance of proposals, at least 4", "N")
-      ->check(kWholeNumber)
+      ->transform(whole_number())
       ->capture_default_str();
   add("--first-step", walk.first_step,
       fmt::format("Standard deviation of proposals before anything is accepted, {} to {} cells",
@@ -119,14 +124,14 @@ std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& opt
       ->capture_default_str();
   add("--patience", walk.patience,
       "Stop after so many proposals without an improvement of the best sample, at any temperature", "N")
-      ->check(kWholeNumber)
+      ->transform(whole_number())
       ->capture_default_str();
   add("--least-common-cells", match.least_common_cells,
       "Accept only where so many cells of FIXED are known in both maps", "N")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40).description(""))
+      ->transform(whole_number(0, std::uint64_t{1} << 40))
       ->capture_default_str();
   add("--seed", walk.seed, "Seed of the first walk; those of the others follow from it", "N")
-      ->check(kWholeNumber)
+      ->transform(whole_number())
       ->capture_default_str();
   return added;
 }

@@ -141,7 +141,7 @@ void add_world_options(CLI::App& command, SimulateCommandOptions& options) {
       ->capture_default_str();
   command.add_option("--robots", simulation.robots, "How many robots map it")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000).description(""))
+      ->transform(whole_number(1, 1000))
       ->capture_default_str();
   command
       .add_option(
@@ -152,14 +152,12 @@ void add_world_options(CLI::App& command, SimulateCommandOptions& options) {
       ->check(kProbability);
   command.add_option("--start", options.starts, "Where a robot starts, in metres; once for each")
       ->type_name("X,Y")
-      ->allow_extra_args(false)
       ->check(two_numbers(',', "12.5,3"));
   command
       .add_option("--heading", options.headings,
                   "Which way a robot sets off, counter-clockwise from x; once for each. It goes only to "
                   "places ahead of its start")
-      ->type_name("DEGREES")
-      ->allow_extra_args(false);
+      ->type_name("DEGREES");
   command
       .add_option("--longest-way", simulation.longest_way,
                   "Metres after which a robot stops; 0 = when it has seen all")
@@ -171,7 +169,7 @@ void add_world_options(CLI::App& command, SimulateCommandOptions& options) {
                   "Write each map at so many moments of the robot's way: robot_1_step_1.yaml and so on, "
                   "robot_1.yaml is the last")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000).description(""))
+      ->transform(whole_number(1, 1000))
       ->capture_default_str();
   command
       .add_option("--clutter", simulation.clutter,
@@ -181,7 +179,7 @@ void add_world_options(CLI::App& command, SimulateCommandOptions& options) {
       ->capture_default_str();
   command.add_option("--others", options.others, "How many maps of other buildings to add")
       ->type_name("N")
-      ->check(CLI::Range(0, 1000).description(""))
+      ->transform(whole_number(0, 1000))
       ->capture_default_str();
 }
 
@@ -222,7 +220,7 @@ void add_simulate(CLI::App& app, Action& action) {
   add_mapping_options(*command, *options);
   command->add_option("--seed", options->simulation.seed, "The same seed gives the same maps")
       ->type_name("N")
-      ->check(kWholeNumber)
+      ->transform(whole_number())
       ->capture_default_str();
   add_common_options(*command, options->common);
   command->footer(

@@ -63,7 +63,7 @@ void add_view(CLI::App& app, Action& action) {
   add_saved_merge_options(*command, options->merge);
   command->add_option("--port", options->port, "Port to serve at; 0 = a free one")
       ->type_name("N")
-      ->check(kPort)
+      ->transform(kPort)
       ->capture_default_str();
   command
       ->add_option(

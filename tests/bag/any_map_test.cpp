@@ -55,6 +55,10 @@ TEST_F(AnyMap, NamesAreTakenApartAtTheTopic) {
   EXPECT_EQ(format_map_name({bag, ""}), bag);
 }
 
+TEST_F(AnyMap, AnEmptyNameIsCalledSo) {
+  EXPECT_EQ(test::message_of<FileError>([] { load_any_map(""); }), "'': is no name of a map: it is empty");
+}
+
 TEST_F(AnyMap, TwoWaysToNameAMapAreOneMap) {
   const std::string bag = directory_.write("a.mcap", mcap_file({row_at(1, {0, 100})}));
   const std::string other_way = (directory_.path() / "." / "a.mcap").string();

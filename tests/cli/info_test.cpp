@@ -30,12 +30,6 @@ TEST_F(Info, TellsPeople) {
                              "  known area  1.50 m x 1.00 m\n");
 }
 
-TEST_F(Info, SaysThatANameIsEmpty) {
-  const Outcome outcome = run({"info", ""});
-  EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_EQ(outcome.err, "gridmerge: '': is no name of a map: it is empty\n");
-}
-
 TEST_F(Info, TellsPrograms) {
   const std::string small = write_small_map();
   const Outcome outcome = run({"info", "--json", small, left});

@@ -253,11 +253,5 @@ TEST_F(MergePlan, APlanInTheOutputDirectoryIsKept) {
   EXPECT_EQ(read_file(output + "/merged.pgm"), before);
 }
 
-TEST_F(MergePlan, AnEmptyNameIsAUsageError) {
-  const Outcome outcome = run({"merge", left, right, "--plan", ""});
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_NE(outcome.err.find("--plan: the name of the plan is empty"), std::string::npos) << outcome.err;
-}
-
 }  // namespace
 }  // namespace gridmerge::test

@@ -5,18 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "commands.hpp"
 #include "gridmerge/version.hpp"
 #include "program.hpp"
 
 namespace gridmerge::test {
 namespace {
-
-const std::vector<std::string> kCommands = {
-    "info", "match", "measure", "merge", "report", "view", "evaluate", "simulate",
-#ifdef GRIDMERGE_HAS_NODE
-    "node",
-#endif
-};
 
 class WrongUsage : public testing::TestWithParam<std::vector<std::string>> {};
 
