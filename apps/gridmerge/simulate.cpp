@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <iterator>
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -40,17 +40,10 @@ struct SimulateCommandOptions {
 
 /// Two numbers with `separator` between them.
 std::optional<std::array<double, 2>> parse_two(const std::string& text, char separator) {
-  std::array<double, 2> values{};
   const std::size_t at = text.find(separator);
   if (at == std::string::npos) return std::nullopt;
-  const std::array<std::string_view, 2> parts{std::string_view(text).substr(0, at),
-                                              std::string_view(text).substr(at + 1)};
-  for (std::size_t i = 0; i < 2; ++i) {
-    const char* end = parts[i].data() + parts[i].size();
-    const auto [stop, error] = std::from_chars(parts[i].data(), end, values[i]);
-    if (error != std::errc() || stop != end) return std::nullopt;
-  }
-  return values;
+  const auto first = parse_finite(text.substr(0, at)), second = parse_finite(text.substr(at + 1));
+  return first && second ? std::optional(std::array{*first, *second}) : std::nullopt;
 }
 
 CLI::Validator two_numbers(char separator, const std::string& example) {
@@ -76,6 +69,44 @@ SimulateOptions make_options(const SimulateCommandOptions& options) {
   simulation.sensor.angular_step = options.angular_step * kDegree;
   simulation.threads = options.common.threads;
   return simulation;
+}
+
+/// Throws CLI::ValidationError for options that no simulation can have, and names the first.
+void check_usage(const SimulateOptions& wanted) {
+  SimulateOptions options;  // those that were looked at, and otherwise what is usual
+  const auto check = [&](const char* name) {
+    try {
+      validate(options);
+    } catch (const std::invalid_argument& error) {
+      throw CLI::ValidationError(name, error.what());
+    }
+  };
+  const auto add = [&](const char* name, auto member) {
+    options.*member = wanted.*member;
+    check(name);
+  };
+  const auto add_of_sensor = [&](const char* name, auto member) {
+    options.sensor.*member = wanted.sensor.*member;
+    check(name);
+  };
+  add("--size", &SimulateOptions::width);
+  add("--size", &SimulateOptions::height);
+  add("--robots", &SimulateOptions::robots);
+  add("--overlap", &SimulateOptions::overlap);
+  add("--start", &SimulateOptions::starts);
+  add("--heading", &SimulateOptions::headings);
+  add("--longest-way", &SimulateOptions::longest_way);
+  add("--steps", &SimulateOptions::steps);
+  add("--clutter", &SimulateOptions::clutter);
+  add("--drift", &SimulateOptions::drift);
+  add("--resolution", &SimulateOptions::resolution);
+  add("--tidy", &SimulateOptions::tidy);
+  add_of_sensor("--range", &RangeFinder::range);
+  add_of_sensor("--noise", &RangeFinder::noise);
+  add_of_sensor("--stray", &RangeFinder::stray_share);
+  add_of_sensor("--missed", &RangeFinder::missed_share);
+  options = wanted;
+  check("--field-of-view, --angular-step");  // of which one bounds the other
 }
 
 std::string describe(const Simulation& simulation, const std::string& output) {
@@ -237,7 +268,10 @@ void add_simulate(CLI::App& app, Action& action) {
       "  gridmerge merge office/robot_1.yaml office/robot_2.yaml office/robot_3.yaml office/robot_4.yaml -o "
       "merged\n"
       "  gridmerge evaluate office/pairs.tsv --negatives office/negatives.tsv --sets office/sets.tsv");
-  command->callback([options, &action] { action = [options] { return run_simulate(*options); }; });
+  command->callback([options, &action] {
+    check_usage(make_options(*options));
+    action = [options] { return run_simulate(*options); };
+  });
 }
 
 }  // namespace gridmerge::cli

@@ -57,11 +57,15 @@ std::optional<BuildingKind> building_kind(std::string_view name) {
   return std::nullopt;
 }
 
-Building make_building(BuildingKind kind, double width, double height, std::uint64_t seed) {
+void internal::validate_sides(double width, double height) {
   for (const double side : {width, height}) {
     if (!(side >= kMinBuildingSide && side <= kMaxBuildingSide))
       throw std::invalid_argument("a building's sides must be between 8 and 500 metres");
   }
+}
+
+Building make_building(BuildingKind kind, double width, double height, std::uint64_t seed) {
+  validate_sides(width, height);
   Random random(seed);
   Draughtsman pen;
   kKinds[static_cast<std::size_t>(kind)].draw(pen, random, width, height);

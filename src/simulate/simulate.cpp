@@ -42,20 +42,6 @@ void validate_mapping(const SimulateOptions& options) {
   require(!options.tidy || is_between(*options.tidy, 0.0, 1.0), "walls can be made thicker by 0 to 1 metres");
 }
 
-void validate(const SimulateOptions& options) {
-  validate_mapping(options);
-  require(options.robots >= 1 && options.robots <= 1000, "there must be between 1 and 1000 robots");
-  require(!options.overlap || is_between(*options.overlap, 0.0, 1.0), "overlap must lie in [0, 1]");
-  require(!options.overlap || options.robots >= 2, "an overlap takes two robots");
-  require(options.starts.empty() || options.starts.size() == static_cast<std::size_t>(options.robots),
-          "there must be a start for every robot, or none");
-  require(options.headings.empty() || options.headings.size() == static_cast<std::size_t>(options.robots),
-          "there must be a heading for every robot, or none");
-  for (const double heading : options.headings) require(std::isfinite(heading), "headings must be finite");
-  require(is_between(options.longest_way, 0.0, 1e5), "the longest way must be between 0 and 100000 metres");
-  require(options.threads >= 0, "threads must not be negative");
-}
-
 /// Fills in how much wall of the moving map lies where the fixed one knows, and the tier, which also asks
 /// how much of it meets wall there.
 void measure_shared_wall(const OccupancyGrid& fixed, const OccupancyGrid& moving, double bend,
@@ -221,6 +207,21 @@ void validate(const RangeFinder& sensor) {
   require(sensor.noise >= 0.0 && sensor.noise <= 10.0, "the noise must be between 0 and 10 metres");
   require(is_share(sensor.stray_share) && is_share(sensor.missed_share) && is_share(sensor.cleared_share),
           "shares of beams must lie in [0, 1]");
+}
+
+void validate(const SimulateOptions& options) {
+  validate_mapping(options);
+  validate_sides(options.width, options.height);
+  require(options.robots >= 1 && options.robots <= 1000, "there must be between 1 and 1000 robots");
+  require(!options.overlap || is_between(*options.overlap, 0.0, 1.0), "overlap must lie in [0, 1]");
+  require(!options.overlap || options.robots >= 2, "an overlap takes two robots");
+  require(options.starts.empty() || options.starts.size() == static_cast<std::size_t>(options.robots),
+          "there must be a start for every robot, or none");
+  require(options.headings.empty() || options.headings.size() == static_cast<std::size_t>(options.robots),
+          "there must be a heading for every robot, or none");
+  for (const double heading : options.headings) require(std::isfinite(heading), "headings must be finite");
+  require(is_between(options.longest_way, 0.0, 1e5), "the longest way must be between 0 and 100000 metres");
+  require(options.threads >= 0, "threads must not be negative");
 }
 
 Simulation simulate(const SimulateOptions& options) {

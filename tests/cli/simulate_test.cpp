@@ -61,21 +61,10 @@ TEST_F(Simulate, WhatCannotBeHadIsAnErrorAndWritesNothing) {
   for (const auto& [words, cause] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--longest-way", "2", "--overlap", "0.9", "--start", "2,7", "--start", "22,7"},
             "an overlap of 0.9"},
-           {{"--start", "-3,7", "--start", "20,7"}, "no robot can stand at -3,7"},
-           {{"--start", "2,7"}, "a start for every robot"},
-           {{"--size", "3x20"}, "between 8 and 500 metres"},
-           {{"--resolution", "0"}, "resolution"},
-           {{"--range", "0"}, "range"}}) {
+           {{"--start", "-3,7", "--start", "20,7"}, "no robot can stand at -3,7"}}) {
     std::vector<std::string> all{"simulate", "--kind",  "hall", "--size",
                                  "24x14",    "--quiet", "-o",   output("none")};
-    for (std::size_t i = 0; i < words.size(); ++i) {
-      const auto at = std::find(all.begin(), all.end(), words[i]);
-      if (words[i] == "--size" && at != all.end()) {
-        *(at + 1) = words[++i];
-      } else {
-        all.push_back(words[i]);
-      }
-    }
+    all.insert(all.end(), words.begin(), words.end());
     expect_error(run(all), "", cause);
     EXPECT_FALSE(std::filesystem::exists(output("none")));
   }
@@ -119,29 +108,48 @@ TEST_F(Simulate, NamesItsFolderOnOneLine) {
       << outcome.out;
 }
 
-TEST_F(Simulate, SaysTheLeastAngularStep) {
-  expect_error(run({"simulate", "-o", output("none"), "--quiet", "--angular-step", "0.000001"}), "",
-               "the angular step must be 0.0001 rad (0.0058 degrees) at least");
-}
+/// What stands on the command line, and what is said of it.
+struct WrongWords {
+  std::vector<std::string> words;
+  const char* said;
+};
 
-class WrongSimulation : public testing::TestWithParam<std::vector<std::string>> {};
+class WrongSimulation : public testing::TestWithParam<WrongWords> {};
 
-TEST_P(WrongSimulation, IsAUsageError) {
+TEST_P(WrongSimulation, IsAUsageErrorThatNamesTheOption) {
   std::vector<std::string> words{"simulate", "-o", "/nonexistent/x"};
-  words.insert(words.end(), GetParam().begin(), GetParam().end());
+  words.insert(words.end(), GetParam().words.begin(), GetParam().words.end());
   const Outcome outcome = run(words);
   EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
   EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+  EXPECT_EQ(outcome.err.find(std::string("gridmerge: ") + GetParam().said), 0U) << outcome.err;
 }
 
-using Words = std::vector<std::string>;
-INSTANTIATE_TEST_SUITE_P(Cli, WrongSimulation,
-                         testing::Values(Words{"--kind", "castle"}, Words{"--robots", "0"},
-                                         Words{"--size", "40"}, Words{"--size", "40xx2"},
-                                         Words{"--overlap", "1.5"}, Words{"--overlap", "nan"},
-                                         Words{"--noise", "-0.1"}, Words{"--drift", "-1"},
-                                         Words{"--start", "3"}, Words{"--seed", "x"}, Words{"--others", "-1"},
-                                         Words{"--steps", "0"}));
+INSTANTIATE_TEST_SUITE_P(
+    Cli, WrongSimulation,
+    testing::Values(
+        WrongWords{{"--kind", "castle"}, "--kind: "}, WrongWords{{"--robots", "0"}, "--robots: "},
+        WrongWords{{"--size", "40"}, "--size: "}, WrongWords{{"--size", "40xx2"}, "--size: "},
+        WrongWords{{"--size", "nanx10"}, "--size: 'nanx10'"},
+        WrongWords{{"--size", "10x-10"}, "--size: a building's sides must be between 8 and 500 metres"},
+        WrongWords{{"--size", "501x10"}, "--size: a building's sides must be between 8 and 500 metres"},
+        WrongWords{{"--overlap", "1.5"}, "--overlap: "}, WrongWords{{"--overlap", "nan"}, "--overlap: "},
+        WrongWords{{"--overlap", "0.5", "--robots", "1"}, "--overlap: an overlap takes two robots"},
+        WrongWords{{"--start", "3"}, "--start: '3'"}, WrongWords{{"--start", "3,inf"}, "--start: '3,inf'"},
+        WrongWords{{"--start", "2,7"}, "--start: there must be a start for every robot"},
+        WrongWords{{"--heading", "2"}, "--heading: there must be a heading for every robot"},
+        WrongWords{{"--heading", "2", "--heading", "nan"}, "--heading: headings must be finite"},
+        WrongWords{{"--longest-way", "1e6"}, "--longest-way: "}, WrongWords{{"--steps", "0"}, "--steps: "},
+        WrongWords{{"--clutter", "11"}, "--clutter: "}, WrongWords{{"--others", "-1"}, "--others: "},
+        WrongWords{{"--drift", "-1"}, "--drift: "}, WrongWords{{"--drift", "11"}, "--drift: "},
+        WrongWords{{"--resolution", "0"}, "--resolution: "}, WrongWords{{"--tidy", "100"}, "--tidy: "},
+        WrongWords{{"--range", "0"}, "--range: "}, WrongWords{{"--noise", "-0.1"}, "--noise: "},
+        WrongWords{{"--noise", "1e300"}, "--noise: "}, WrongWords{{"--stray", "2"}, "--stray: "},
+        WrongWords{{"--missed", "2"}, "--missed: "},
+        WrongWords{{"--field-of-view", "0"}, "--field-of-view, --angular-step: the field of view"},
+        WrongWords{{"--angular-step", "0.000001"},
+                   "--field-of-view, --angular-step: the angular step must be 0.0001 rad (0.0058 degrees)"},
+        WrongWords{{"--seed", "x"}, "--seed: "}));
 
 }  // namespace
 }  // namespace gridmerge::test

@@ -53,10 +53,12 @@ SimulateOptions crammed() {
 constexpr const char* kNoRoom = "no robot of this radius can stand in the building";
 
 void expect_fine(const SimulateOptions& options) {
+  EXPECT_EQ(complaint([&] { validate(options); }), "");
   EXPECT_EQ(complaint([&] { simulate(options); }), kNoRoom);
 }
 
 void expect_refused(const SimulateOptions& options, const char* what) {
+  EXPECT_TRUE(contains(complaint([&] { validate(options); }), what));
   EXPECT_TRUE(contains(complaint([&] { simulate(options); }), what));
 }
 
@@ -87,6 +89,15 @@ TEST(SimulateLimits, OfNumbersAreFineThemselves) {
   expect_refused(options, "longest way");
   options.longest_way = -0.001;
   expect_refused(options, "longest way");
+}
+
+TEST(SimulateLimits, OfSidesAreFineThemselves) {
+  SimulateOptions options = crammed();
+  options.height = 7.9;
+  expect_refused(options, "sides must be between 8 and 500 metres");
+  options.height = 8.0;
+  options.width = 500.1;
+  expect_refused(options, "sides must be between 8 and 500 metres");
 }
 
 TEST(SimulateLimits, OfCountsAreFineThemselves) {

@@ -127,6 +127,10 @@ struct SimulateOptions {
   std::function<void(double)> progress;
 };
 
+/// Throws std::invalid_argument, saying what is wrong, for options out of range, and for those that
+/// contradict each other. What a building has no room for is seen by simulate() alone.
+GRIDMERGE_EXPORT void validate(const SimulateOptions& options);
+
 /// The map that one robot brought home.
 struct SimulatedMap {
   /// In a frame of its own: origin where the robot started, turned at will. With probabilities. Cropped to
