@@ -20,8 +20,8 @@ namespace {
 
 constexpr auto kPatience = std::chrono::minutes(1);  // no set of files takes as long to write
 constexpr auto kPause = std::chrono::milliseconds(5);
-constexpr int kTries =
-    100;  // of making the file: no other program removes the directory as often just before
+// Of making the file: no other program removes the directory as often just before.
+constexpr int kTries = 100;
 
 /// False when another has it. Looks again and again, as a wait in the system cannot be cancelled everywhere.
 bool try_lock(int descriptor) {
@@ -43,6 +43,7 @@ DirectoryLock::DirectoryLock(const std::filesystem::path& directory, IfMissing i
   int missing = 0;
   while (true) {
     // Again for each attempt: another program may have made the directory, and removed it as it was empty.
+    made_.reset();  // before the next: what both have made, the first would remove again
     if (if_missing == IfMissing::make) made_ = std::make_unique<MadeDirectories>(directory);
     descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno == EACCES) {
