@@ -156,7 +156,7 @@ TEST_F(CacheTest, TwoAtOnceDisturbNobody) {
   two = run(with_cache({"-o", directory.file("two")}));
   beside.join();
   for (const Outcome* each : {&one, &two})
-    EXPECT_TRUE(std::regex_match(each->err, std::regex("gridmerge: \\d matches? of the cache, \\d made\n")))
+    EXPECT_TRUE(std::regex_match(each->err, std::regex("gridmerge: \\d match(es)? of the cache, \\d made\n")))
         << each->err;
   expect_answer_of_one_machine("one");
   expect_answer_of_one_machine("two");
