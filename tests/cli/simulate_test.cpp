@@ -81,8 +81,10 @@ TEST_F(Simulate, LeavesMapsOfTheUserAloneAndSaysSoBeforeTheWork) {
   directory.write("mine/robot_2.yaml", "mine");
   directory.write("mine/pairs.tsv", "fixed\tmoving\nrobot_1.yaml\trobot_2.yaml\n");
   // The robots' starts are looked at when the building is there.
-  expect_error(run(with({"-o", output("mine"), "--robots", "1", "--start", "-3,7"})), output("mine"),
-               "that no simulation wrote, or that have changed since: pairs.tsv: choose another directory");
+  expect_error(
+      run(with({"-o", output("mine"), "--start", "-3,7", "--start", "-3,8"})), output("mine"),
+      "that no simulation wrote, or that have changed since: pairs.tsv, robot_2.yaml: choose another "
+      "directory");
   EXPECT_EQ(read_file(output("mine/robot_2.yaml")), "mine");
 }
 
