@@ -94,6 +94,7 @@ def make_building(gridmerge: str, campus: str, number: int, folder: pathlib.Path
     """The names of its maps; none where the wanted overlap cannot be had."""
     done = folder / "done"
     if not done.exists():
+        shutil.rmtree(folder, ignore_errors=True)
         subprocess.run(
             [
                 gridmerge,

@@ -15,7 +15,7 @@ void settle_values(CLI::App& command);
 /// takes the next word where nothing stands behind '='.
 std::vector<std::string> words_to_parse(const CLI::App& app, int argc, const char* const* argv);
 
-/// What to tell of a command line that CLI11 does not take.
-std::string explain(const CLI::App& app, const CLI::ParseError& error);
+/// What to say of a command line that CLI11 does not take.
+std::string explain(const CLI::App& app, const CLI::ParseError& error, int argc, const char* const* argv);
 
 }  // namespace gridmerge::cli

@@ -99,7 +99,7 @@ int run(int argc, char** argv) {
     print(app.version() + "\n");
     return kDone;
   } catch (const CLI::ParseError& error) {
-    print_error(explain(app, error) + " (see " + help_command(app) + ")");
+    print_error(explain(app, error, argc, argv) + " (see " + help_command(app) + ")");
     return kUsage;
   }
   return run_interruptibly(action);

@@ -73,7 +73,7 @@ std::string describe(const MatchResult& result, const MatchCommandOptions& optio
     line("scale", fmt::format(" {:.4f}, by which MOVING is enlarged first: its cells are {:.4g} m",
                               result.scale, result.scale * moving_cell));
   line("agreement", fmt::format(" {} cells agree, {} do not (acceptance index {:.3f})", result.agreement,
-                                result.disagreement, result.acceptance_index));
+                                result.disagreement, rounded_down(result.acceptance_index, 3)));
   line("overlap", fmt::format(" {:.1f} % of the smaller map", 100.0 * result.overlap));
   line("time", fmt::format(" {:.3f} s", result.seconds));
   if (!options.common.verbose) return text;

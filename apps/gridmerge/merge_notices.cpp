@@ -58,7 +58,10 @@ void tell_of_copies(const GivenMaps& maps, const SearchOptions& search, bool is_
     if (is_twice) {
       twice.push_back(maps.names[i]);
     } else {
-      copies.push_back(fmt::format("{} (of {})", maps.names[i], maps.names[*original]));
+      // Of the two that with a known pose is the original.
+      const bool is_other = maps.known_poses[i].has_value();
+      copies.push_back(fmt::format("{} (of {})", maps.names[is_other ? *original : i],
+                                   maps.names[is_other ? i : *original]));
     }
   }
   const char* const count = search.up_the_tree() ? "each time" : "once";

@@ -14,8 +14,11 @@
 
 #include "gridmerge/bag/bag.hpp"
 #include "gridmerge/io/file_error.hpp"
+#include "io/number.hpp"
 
 namespace gridmerge::cli {
+
+using namespace internal;
 
 namespace {
 
@@ -31,7 +34,7 @@ const CLI::Validator kNamedTopic(
 
 const CLI::Validator kPositiveRate(
     [](std::string& text) {
-      const std::optional<double> rate = parse_finite(text);
+      const std::optional<double> rate = parse_number(text);
       return rate && *rate > 0.0 ? std::string() : "'" + text + "' is not a number above 0";
     },
     "");

@@ -13,8 +13,11 @@
 #include <vector>
 
 #include "address.hpp"
+#include "io/number.hpp"
 
 namespace gridmerge::cli {
+
+using namespace internal;
 
 namespace {
 
@@ -33,17 +36,11 @@ std::optional<std::uint64_t> parse_whole(std::string_view text) {
   return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
 }
 
-std::optional<double> parse_finite(const std::string& text) {
-  double value = 0.0;
-  if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 std::optional<std::vector<double>> parse_numbers(const std::string& text) {
   std::vector<double> numbers;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::optional<double> number = parse_finite(text.substr(begin, end - begin));
+    const std::optional<double> number = parse_number(text.substr(begin, end - begin));
     if (!number) return std::nullopt;
     numbers.push_back(*number);
     begin = end + 1;
@@ -53,7 +50,7 @@ std::optional<std::vector<double>> parse_numbers(const std::string& text) {
 
 const CLI::Validator kProbability(
     [](std::string& text) {
-      const auto value = parse_finite(text);
+      const auto value = parse_number(text);
       return value && *value >= 0.0 && *value <= 1.0 ? std::string()
                                                      : "'" + text + "' is not between 0 and 1";
     },
@@ -70,9 +67,13 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
           ""};
 }
 
+const CLI::Validator kNumber(
+    [](std::string& text) { return parse_number(text) ? std::string() : "'" + text + "' is not a number"; },
+    "");
+
 const CLI::Validator kNotNegative(
     [](std::string& text) {
-      const auto value = parse_finite(text);
+      const auto value = parse_number(text);
       return value && *value >= 0.0 ? std::string() : "'" + text + "' is not a number of 0 or more";
     },
     "");
@@ -88,7 +89,7 @@ const CLI::Validator kNumbersNotNegative(
 
 const CLI::Validator kMetresPerCell(
     [](std::string& text) {
-      const auto value = parse_finite(text);
+      const auto value = parse_number(text);
       return value && *value >= kMinResolution && *value <= kMaxResolution
                  ? std::string()
                  : fmt::format("'{}' is not between {} and {} metres", text, kMinResolution, kMaxResolution);

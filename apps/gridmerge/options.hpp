@@ -34,9 +34,6 @@ void add_map_file_options(CLI::App& command, LoadOptions& options);
 /// The whole number that `text` is: decimal digits alone, where CLI11 would read "010" as 8.
 std::optional<std::uint64_t> parse_whole(std::string_view text);
 
-/// The finite number that `text` is.
-std::optional<double> parse_finite(const std::string& text);
-
 /// The finite numbers that `text` is, with commas between them.
 std::optional<std::vector<double>> parse_numbers(const std::string& text);
 
@@ -47,6 +44,9 @@ extern const CLI::Validator kProbability;
 /// front to CLI11.
 CLI::Validator whole_number(std::uint64_t least = 0,
                             std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+
+/// A finite number.
+extern const CLI::Validator kNumber;
 
 /// A finite number, 0 or more.
 extern const CLI::Validator kNotNegative;

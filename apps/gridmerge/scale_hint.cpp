@@ -10,6 +10,7 @@
 #include "gridmerge/io/file_error.hpp"
 #include "gridmerge/merge/plan.hpp"
 #include "match/drawing.hpp"
+#include "match/rounded_down.hpp"
 #include "match/scale.hpp"
 
 namespace gridmerge::cli {
@@ -42,9 +43,9 @@ std::string scale_hint(const NamedMap& fixed, const NamedMap& moving, const Matc
       "hint: {} fits {} at {:g} times its scale (probability {:.4f}): is its resolution {:g} m and not {:g} "
       "m, or "
       "that of {} {:g} m and not {:g} m?\n",
-      escape_controls(moving.name), escape_controls(fixed.name), found->factor, found->probability,
-      found->factor * moving.grid.resolution, moving.grid.resolution, escape_controls(fixed.name),
-      fixed.grid.resolution / found->factor, fixed.grid.resolution);
+      escape_controls(moving.name), escape_controls(fixed.name), found->factor,
+      rounded_down(found->probability), found->factor * moving.grid.resolution, moving.grid.resolution,
+      escape_controls(fixed.name), fixed.grid.resolution / found->factor, fixed.grid.resolution);
 }
 
 namespace {

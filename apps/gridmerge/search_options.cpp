@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "io/atomic_file.hpp"
+#include "io/number.hpp"
 
 namespace gridmerge::cli {
 
@@ -42,7 +43,7 @@ std::optional<StartPoseOptions> parse_starts(const std::string& text) {
   if (first == std::string::npos || second == std::string::npos) return std::nullopt;
   const auto rotations = parse_whole(text.substr(0, first));
   const auto offsets = parse_whole(text.substr(first + 1, second - first - 1));
-  const auto offset = parse_finite(text.substr(second + 1));
+  const auto offset = parse_number(text.substr(second + 1));
   constexpr std::uint64_t kMost = std::numeric_limits<int>::max();
   if (!rotations || !offsets || !offset || *rotations > kMost || *offsets > kMost) return std::nullopt;
   return StartPoseOptions{static_cast<int>(*rotations), static_cast<int>(*offsets), *offset};
@@ -65,7 +66,7 @@ const CLI::Validator kStarts(
 std::optional<ScaleRange> parse_scales(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) return std::nullopt;
-  const auto least = parse_finite(text.substr(0, colon)), most = parse_finite(text.substr(colon + 1));
+  const auto least = parse_number(text.substr(0, colon)), most = parse_number(text.substr(colon + 1));
   return least && most ? std::optional(ScaleRange{*least, *most}) : std::nullopt;
 }
 
@@ -113,6 +114,7 @@ std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& opt
       ->capture_default_str();
   add("--cooling", walk.cooling, "The temperature is multiplied with this after every proposal, in (0, 1]",
       "F")
+      ->check(kNumber)
       ->capture_default_str();
   add("--memory", walk.memory, "Accepted steps that set mean and covariance of proposals, at least 4", "N")
       ->transform(whole_number())
@@ -121,6 +123,7 @@ std::vector<CLI::Option*> add_walk_options(CLI::App& command, SearchOptions& opt
       fmt::format("Standard deviation of proposals before anything is accepted, {} to {} cells",
                   walk.smallest_step, walk.largest_step),
       "CELLS")
+      ->check(kNumber)
       ->capture_default_str();
   add("--patience", walk.patience,
       "Stop after so many proposals without an improvement of the best sample, at any temperature", "N")

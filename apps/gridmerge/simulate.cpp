@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "console.hpp"
 #include "evaluate/dataset.hpp"
+#include "io/number.hpp"
 
 namespace gridmerge::cli {
 
@@ -42,7 +43,7 @@ struct SimulateCommandOptions {
 std::optional<std::array<double, 2>> parse_two(const std::string& text, char separator) {
   const std::size_t at = text.find(separator);
   if (at == std::string::npos) return std::nullopt;
-  const auto first = parse_finite(text.substr(0, at)), second = parse_finite(text.substr(at + 1));
+  const auto first = parse_number(text.substr(0, at)), second = parse_number(text.substr(at + 1));
   return first && second ? std::optional(std::array{*first, *second}) : std::nullopt;
 }
 
@@ -188,7 +189,8 @@ void add_world_options(CLI::App& command, SimulateCommandOptions& options) {
       .add_option("--heading", options.headings,
                   "Which way a robot sets off, counter-clockwise from x; once for each. It goes only to "
                   "places ahead of its start")
-      ->type_name("DEGREES");
+      ->type_name("DEGREES")
+      ->check(kNumber);
   command
       .add_option("--longest-way", simulation.longest_way,
                   "Metres after which a robot stops; 0 = when it has seen all")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Sequence
 
@@ -22,14 +23,14 @@ def short_scale(scale: float) -> str:
 
 
 def probability(value: float | None) -> str:
-    """``probability=0.998``; never rounded up to certainty."""
+    """``probability=0.998``; rounded down, so that what falls short of a bound does not look as if it reached it."""
     if value is None:
         return "probability=None"
     if 0.999 < value < 1.0:
         return "probability>0.999"
     if 0.0 < value < 0.001:
         return "probability<0.001"
-    return f"probability={value:.3f}"
+    return f"probability={math.floor(1e3 * value + 1e-6) / 1e3:.3f}"
 
 
 def count(number: int, what: str, several: str | None = None) -> str:

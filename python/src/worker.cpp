@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -60,7 +61,7 @@ class Worker {
   bool ended_ = false;
   std::exception_ptr failure_;
   int made_after_forks_ = fork_count();
-  std::thread thread_;
+  std::unique_ptr<std::thread> thread_;
 };
 
 /// What is at work without the interpreter's lock. When the interpreter ends, only the thread that ends it
@@ -147,7 +148,7 @@ Worker::Worker(const std::function<void(const Report&)>& work) {
     const OthersRun for_ever;
   }
   try {
-    thread_ = std::thread([this, &work] { run(work); });
+    thread_ = std::make_unique<std::thread>([this, &work] { run(work); });
   } catch (...) {
     at_work().remove(this);
     throw;
@@ -157,12 +158,12 @@ Worker::Worker(const std::function<void(const Report&)>& work) {
 Worker::~Worker() {
   cancelled_ = true;
   if (is_elsewhere()) {
-    thread_.detach();
+    (void)thread_.release();  // there is nothing that could be joined or detached
     return;
   }
   {
     const OthersRun meanwhile;
-    thread_.join();
+    thread_->join();
   }
   at_work().remove(this);
 }

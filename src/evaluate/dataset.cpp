@@ -17,7 +17,6 @@
 #include "gridmerge/io/file_error.hpp"
 #include "io/add_map.hpp"
 #include "io/destination.hpp"
-#include "io/directory_lock.hpp"
 #include "io/file_reader.hpp"
 
 namespace gridmerge::internal {
@@ -151,7 +150,8 @@ std::map<std::string, std::string> listed_files(const fs::path& directory) {
       const std::size_t at = line.find(kBetween);
       if (at == std::string::npos) continue;
       const std::string name = line.substr(at + kBetween.size());
-      if (fs::path(name).filename() == name) digests[name] = line.substr(0, at);
+      if (!name.empty() && name.front() != '.' && fs::path(name).filename() == name)
+        digests[name] = line.substr(0, at);
     }
   } catch (const FileError&) {  // there is no dataset
   }

@@ -62,10 +62,6 @@ DirectoryLock::DirectoryLock(const std::filesystem::path& directory, IfMissing i
   }
 }
 
-void check_directory(const std::filesystem::path& directory) {
-  const DirectoryLock trial(directory, DirectoryLock::IfMissing::make);
-}
-
 DirectoryLock::~DirectoryLock() {
   ::unlink(file_.c_str());
   ::close(descriptor_);

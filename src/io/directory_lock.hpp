@@ -28,8 +28,4 @@ class DirectoryLock {
   int descriptor_;
 };
 
-/// Throws FileError, and Cancelled, unless files can be made in a directory, which is made for that if need
-/// be, and not kept. Waits for another writer.
-GRIDMERGE_INTERNAL_EXPORT void check_directory(const std::filesystem::path& directory);
-
 }  // namespace gridmerge::internal

@@ -184,4 +184,8 @@ void FileSet::replace_one_by_one() {
   flush(directory_, directory_);
 }
 
+void check_directory(const fs::path& directory) {
+  const FileSet trial(directory, FileSet::IfMissing::make);
+}
+
 }  // namespace gridmerge::internal

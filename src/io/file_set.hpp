@@ -65,4 +65,8 @@ class GRIDMERGE_INTERNAL_EXPORT FileSet {
   std::vector<std::string> removed_;
 };
 
+/// Throws FileError, and Cancelled, unless a set can be made in a directory, which is made for that if need
+/// be, and not kept. Waits for another writer, and puts in order what a killed one has left.
+GRIDMERGE_INTERNAL_EXPORT void check_directory(const std::filesystem::path& directory);
+
 }  // namespace gridmerge::internal

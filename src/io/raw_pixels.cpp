@@ -38,6 +38,14 @@ double threshold_between(double below, double above, double usual) {
   return least <= usual && usual <= most ? usual : 0.5 * (least + most);
 }
 
+// The highest percentage that a probability may get, at most one off, and the lowest.
+int highest_above(double probability) {
+  return static_cast<int>(std::floor(100.0 * std::min(probability, 1.0))) + 1;
+}
+int lowest_below(double probability) {
+  return static_cast<int>(std::ceil(100.0 * std::max(probability, 0.0))) - 1;
+}
+
 // Where the percentages change their meaning if they are to keep the cells; none if they cannot.
 std::optional<Split> split_of(const Range& free, const Range& unknown, const Range& occupied) {
   const double above_free = std::min(unknown.least, occupied.least),
@@ -49,8 +57,11 @@ std::optional<Split> split_of(const Range& free, const Range& unknown, const Ran
   split.most_free = std::min(99, static_cast<int>(std::floor(100.0 * free_threshold)));
   split.least_occupied =
       std::max(split.most_free + 1, static_cast<int>(std::ceil(100.0 * occupied_threshold)));
-  const bool is_room_between = split.least_occupied - split.most_free > 1;
-  return unknown.is_empty() || is_room_between ? std::optional(split) : std::nullopt;
+  if (unknown.is_empty() || split.least_occupied - split.most_free > 1) return split;
+  // A percentage is to lie between: as far off as a percentage may be, there may be one.
+  split.least_occupied = std::min({split.most_free + 2, 100, highest_above(occupied.least)});
+  split.most_free = std::max({split.least_occupied - 2, 0, lowest_below(free.most)});
+  return split.least_occupied - split.most_free > 1 ? std::optional(split) : std::nullopt;
 }
 
 double probability_at(const OccupancyGrid& grid, std::size_t index) {

@@ -14,9 +14,10 @@ namespace {
 
 constexpr const char* kNotAsSurely = "the maps show one place, but not as surely as is asked for";
 
-/// Then nothing speaks against the maps, and the reason is only what would make them surer still.
-bool is_usually_enough(const MatchResult& result) {
-  return result.probability >= MatchOptions{}.accept_probability;
+/// Refused only because more is asked for than usual: nothing speaks against the maps, and the reason is only
+/// what would make them surer still.
+bool is_usually_enough(const MatchResult& result, double accept_probability) {
+  return result.probability >= MatchOptions{}.accept_probability && result.probability < accept_probability;
 }
 
 std::string explain_ambiguous(const MatchResult& result, double accept_probability) {
@@ -29,8 +30,9 @@ std::string explain_ambiguous(const MatchResult& result, double accept_probabili
     return "another way to lay the maps explains them too well to be ruled out";
   if (stands_out(best, accept_probability))
     return "the maps agree, but on so few walls that other places or scales may fit as well by chance";
-  return is_usually_enough(result) ? kNotAsSurely
-                                   : "this way to lay the maps hardly stands out from all others";
+  return is_usually_enough(result, accept_probability)
+             ? kNotAsSurely
+             : "this way to lay the maps hardly stands out from all others";
 }
 
 }  // namespace
@@ -44,7 +46,7 @@ std::string explain(const MatchResult& result, double accept_probability) {
       if (!result.hypotheses.empty()) return explain_ambiguous(result, accept_probability);
       return "more than one way to lay the maps explains them";
     case Reason::contradiction:
-      if (is_usually_enough(result)) break;
+      if (is_usually_enough(result, accept_probability)) break;
       return result.scale == 1.0
                  ? "the maps disagree where both know the same places"
                  : "too few walls meet a wall of the other map where both know the same places";
@@ -56,7 +58,8 @@ std::string explain(const MatchResult& result, double accept_probability) {
     case Reason::none:
       break;
   }
-  return is_usually_enough(result) ? kNotAsSurely : "no way to lay the maps explains them well";
+  return is_usually_enough(result, accept_probability) ? kNotAsSurely
+                                                       : "no way to lay the maps explains them well";
 }
 
 }  // namespace gridmerge

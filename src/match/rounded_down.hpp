@@ -5,8 +5,8 @@
 
 namespace gridmerge::internal {
 
-/// A probability or an index, as it is told beside a threshold: what falls short of it must not look as if it
-/// reached it.
+/// A probability or an index, as it is written beside a threshold: what falls short of it must not look as if
+/// it reached it.
 inline double rounded_down(double share, int digits = 4) {
   constexpr double kSums = 1e-9;  // 0.57 is 5699.999999999999 of ten thousand
   const double parts = std::pow(10.0, digits);

@@ -19,7 +19,7 @@
 #include "gridmerge/report/merge_record.hpp"
 #include "io/add_map.hpp"
 #include "io/destination.hpp"
-#include "io/directory_lock.hpp"
+#include "io/file_set.hpp"
 #include "io/directory_names.hpp"
 #include "report/earlier_merge.hpp"
 #include "report/output_names.hpp"

@@ -138,7 +138,7 @@ TEST_F(EveryOption, WithoutAValueTakesNone) {
   for (const Option& option : all_options()) {
     if (option.takes_value) continue;
     SCOPED_TRACE(option.command + " " + option.name);
-    for (const char* value : {"false", "0", "no"})
+    for (const char* value : {"false", "0", "no", "true", ""})
       expect_usage_error(run({option.command, option.name + "=" + value, "--help"}),
                          option.name + ": takes no value");
     ++checked;
@@ -164,6 +164,18 @@ TEST_F(OptionValues, AreDecimal) {
   expect_usage_error(run(too_few), "--restarts: is less than");
   expect_usage_error(run({"simulate", "-o", directory.file("out"), "--robots", "0x10"}),
                      "--robots: '0x10' is not a whole number from 1 to 1000");
+}
+
+TEST_F(OptionValues, AreWrittenAsPeopleWriteNumbers) {
+  for (const char* accept : {"0x1p-1", " 0.5", "0.5 ", "1e-1x", "nan"})
+    expect_usage_error(run({"match", left, right, "--accept", accept}), "--accept: ");
+  for (const char* accept : {"5e-1", "+0.5", ".5"})
+    EXPECT_NE(run({"match", left, right, "--accept", accept}).exit_code, 2) << accept;
+  expect_usage_error(run({"simulate", "-o", "out", "--heading", "0x10"}),
+                     "--heading: '0x10' is not a number");
+  for (const char* const option : {"--cooling", "--first-step"})
+    expect_usage_error(run({"match", left, right, "--search", "random-walk", option, "0x1"}),
+                       std::string(option) + ": '0x1' is not a number");
 }
 
 TEST_F(OptionValues, ThatAreListsHaveNoEmptyPart) {
@@ -194,6 +206,11 @@ TEST_F(OptionValues, BehindTwoDashesAreNamesOfMaps) {
   }
 }
 
+TEST_F(OptionValues, BehindTwoDashesMayBeTooMany) {
+  expect_usage_error(run({"match", left, right, "--", "-c.yaml"}), "-c.yaml");
+  EXPECT_EQ(run({"match", left, right, "--", "-c.yaml"}).err.find("there is no option"), std::string::npos);
+}
+
 TEST_F(OptionValues, ThatAreMissingAreNotTakenFromTheNextWord) {
   const std::string content = read_file(left);
   for (const std::string option : {"--output=", "--init=", "--trace="})
@@ -208,6 +225,10 @@ TEST_F(OptionValues, OfAnOptionThatThereIsNotAreNoMaps) {
   std::filesystem::copy(left, "-d.yaml");
   expect_usage_error(run({"info", "-d.yaml"}), "there is no option '-d.yaml' (./-d.yaml is a file)");
   EXPECT_EQ(run({"info", "./-d.yaml"}).exit_code, 0);
+  expect_usage_error(run({"info", "-q=false", left}), "-q: takes no value");
+  // A hint of a file only where there is one.
+  const std::string without = run({"match", left, right, "--threads", "--quiet"}).err;
+  EXPECT_EQ(without.find("is a file"), std::string::npos) << without;
 }
 
 }  // namespace

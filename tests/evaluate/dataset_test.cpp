@@ -264,6 +264,22 @@ TEST(Dataset, WithoutItsListIsLikeOtherFiles) {
                  "robot_4.pgm, robot_4.yaml, robot_5.pgm, robot_5.yaml and 2 more");
 }
 
+TEST(Dataset, WhatAKilledSimulationHasLeftIsPutInOrder) {
+  const test::TemporaryDirectory directory;
+  write_dataset(directory.path(), simulate(quick(1)), {});
+  // Killed when links stood in the place of its files, those of the first map of a second robot among them.
+  const std::filesystem::path work = directory.path() / ".gridmerge.tmp";
+  std::filesystem::create_directories(work / "old");
+  std::filesystem::create_directories(work / "new");
+  std::filesystem::create_symlink("old", work / "current");
+  for (const char* const name : {"robot_2.pgm", "robot_2.yaml"})
+    std::filesystem::create_symlink(std::filesystem::path(".gridmerge.tmp/current") / name,
+                                    directory.path() / name);
+  EXPECT_NO_THROW(prepare_dataset(directory.path(), {2, 1, 0}));
+  EXPECT_FALSE(std::filesystem::exists(work));
+  EXPECT_TRUE(write_dataset(directory.path(), simulate(quick(2)), {}).empty());
+}
+
 TEST(Dataset, AListNamesFilesOfItsFolderOnly) {
   const test::TemporaryDirectory directory;
   const std::filesystem::path folder = directory.path() / "made";
@@ -271,7 +287,9 @@ TEST(Dataset, AListNamesFilesOfItsFolderOnly) {
   const std::string list = test::read_file(folder / "simulation.sha256");
   const std::string digest = list.substr(list.find('\n') + 1, 64);  // that of building.pgm
   std::filesystem::copy(folder / "building.pgm", directory.path() / "mine");
-  directory.write("made/simulation.sha256", list + digest + "  ../mine\n");
+  std::string more = list;
+  for (const char* const name : {"../mine", "", ".", ".."}) more += digest + "  " + name + "\n";
+  directory.write("made/simulation.sha256", more);
   EXPECT_TRUE(write_dataset(folder, simulate(quick(1)), {}).empty());
   EXPECT_TRUE(std::filesystem::exists(directory.path() / "mine"));
 }

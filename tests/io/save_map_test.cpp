@@ -138,6 +138,10 @@ TEST(SaveProbabilityMap, KeepsWhatMergingCallsFree) {
 TEST(SaveProbabilityMap, FindsThresholdsForWhateverTellsTheCellsApart) {
   expect_kept(row_of({{Cell::free, 0.25F}, {Cell::unknown, 0.5F}, {Cell::occupied, 0.625F}}),
               "occupied_thresh: 0.57\nfree_thresh: 0.37\n");
+  // With room for one percentage between two others, or for none of the usual ones.
+  expect_kept(row_of({{Cell::free, 0.4538F}, {Cell::unknown, 0.4576F}, {Cell::occupied, 0.4618F}}), "");
+  expect_kept(row_of({{Cell::free, 0.645F}, {Cell::unknown, 0.648F}}), "");
+  expect_kept(row_of({{Cell::unknown, 0.195F}, {Cell::occupied, 0.199F}}), "");
   // Without a cell of one kind.
   expect_kept(row_of({{Cell::unknown, 0.0F}, {Cell::unknown, 1.0F}}), "");
   expect_kept(row_of({{Cell::free, 1.0F}}), "");
@@ -171,7 +175,7 @@ TEST(SaveProbabilityMap, KeepsProbabilitiesWhereNoThresholdsTellTheCellsApart) {
   }
 }
 
-RC_GTEST_PROP(SaveProbabilityMap, KeepsCellsThatFollowFromAnyTwoThresholds, ()) {
+RC_GTEST_PROP(SaveProbabilityMap, KeepsCellsThatFollowFromThresholdsTwoPercentApart, ()) {
   const double free = *rc::gen::inRange(0, 1000) / 1000.0,
                occupied = std::min(1.0, free + 0.02 + *rc::gen::inRange(0, 1000) / 1000.0);
   std::vector<std::pair<Cell, float>> cells;

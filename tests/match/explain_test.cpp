@@ -56,6 +56,9 @@ TEST(Explain, OfMoreThanIsUsuallyAskedForNamesNoFault) {
     result.probability = 0.95;
     EXPECT_EQ(explain(result, 0.99998), words);
     result.probability = 0.9499;
+    EXPECT_NE(explain(result, 0.99998), words);
+    // Of a random walk that is its acceptance index, of which more is usual.
+    result.probability = 0.965;
     EXPECT_NE(explain(result), words);
   }
   MatchResult result = refused(Reason::ambiguous);

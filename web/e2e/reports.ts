@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { type ChildProcess, spawn, spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, statSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, rmSync, statSync } from "node:fs";
 import { join } from "node:path";
 import type { Report } from "../src/report";
 import type { SE2 } from "../src/se2";
@@ -50,6 +50,7 @@ export function simulated(name: string, robots: number, options: string[]): stri
   const folder = join(work, "maps", name);
   const last = join(folder, `robot_${robots}.yaml`);
   const made = existsSync(last) && statSync(last).mtimeMs > statSync(program).mtimeMs;
+  if (!made) rmSync(folder, { recursive: true, force: true });
   if (!made) must([0], "simulate", "--robots", String(robots), ...options, "-o", folder, "--quiet");
   return [...Array(robots).keys()].map((i) => join(folder, `robot_${i + 1}.yaml`));
 }

@@ -14,11 +14,11 @@ export function radians(inDegrees: number): number {
   return (inDegrees * Math.PI) / 180;
 }
 
-/** A probability as people read it; never rounded up to certainty. */
+/** A probability as people read it: rounded down, so that what falls short of a bound does not look as if it reached it. */
 export function probability(value: number): string {
   if (value > 0.999 && value < 1) return "> 0.999";
   if (value < 0.001 && value > 0) return "< 0.001";
-  return fixed(value, 3);
+  return fixed(Math.floor(1000 * value + 1e-6) / 1000, 3);
 }
 
 export function percent(share: number): string {

@@ -112,8 +112,8 @@ GRIDMERGE_EXPORT void save_map(const OccupancyGrid& grid, const std::filesystem:
 /// Writes the map with its probabilities: mode `raw`, a pixel the occupancy in percent, 255 unknown. Loading
 /// gives the same cells, and the probabilities to within a percent. A known cell without a probability gets
 /// that of its kind, 0 or 1. The thresholds are 0.65 and 0.196 if these tell the cells apart, and else what
-/// does; nav2's own reader ignores them in this mode. Where no thresholds tell free, unknown and occupied
-/// cells apart by their probabilities, loading gives the cells that follow from 0.65 and 0.196.
+/// does; nav2's own reader ignores them in this mode. Where no percentages tell free, unknown and occupied
+/// cells apart, loading gives the cells that follow from 0.65 and 0.196.
 ///
 /// Throws as save_map(), and std::invalid_argument for a grid without probabilities.
 GRIDMERGE_EXPORT void save_probability_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_path);

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/directory_lock.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <chrono>
 #include <filesystem>
 #include <string>
 #include <thread>
 
 #include "gridmerge/io/file_error.hpp"
+#include "io/file_set.hpp"
 #include "io/support.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -33,7 +31,7 @@ TEST(CheckDirectory, TwoThatLookAtTheSameTimeBothFindThatItCanBeMade) {
     const std::filesystem::path path = directory.file(name);
     std::atomic<bool> is_over{false};
     std::thread other([&] {
-      while (!is_over) check_directory(path);
+      while (!is_over) EXPECT_NO_THROW(check_directory(path));
     });
     for (int i = 0; i < 300; ++i) EXPECT_NO_THROW(check_directory(path));
     is_over = true;
@@ -43,11 +41,9 @@ TEST(CheckDirectory, TwoThatLookAtTheSameTimeBothFindThatItCanBeMade) {
 
 TEST(CheckDirectory, OneInWhichNoFileCanBeMadeIsAnErrorAtOnce) {
   if (!std::filesystem::exists("/proc/self")) GTEST_SKIP() << "/proc takes no files, and is not here";
-  const auto begin = std::chrono::steady_clock::now();
   const std::string error = test::message_of<FileError>([] { check_directory("/proc"); });
   EXPECT_EQ(error.find("/proc: cannot be written to: "), 0U) << error;
   EXPECT_EQ(error.find("another program"), std::string::npos) << error;
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
 TEST(CheckDirectory, AWorkingDirectoryThatIsGoneIsAnErrorAtOnce) {
