@@ -138,7 +138,7 @@ TEST_F(CacheTest, ShardsOfOtherMapsOrOptionsAreNotUsed) {
 TEST_F(CacheTest, AKilledRunGoesOn) {
   RunOptions kill;
   kill.faulty = true;
-  kill.environment = {"GRIDMERGE_FAULT=kill 24"};  // the 24th call that changes what is on the disk
+  kill.environment = {"GRIDMERGE_FAULT=kill 30"};  // the 30th call that changes what is on the disk
   for (int round = 0; round < 3; ++round) {
     EXPECT_EQ(run(with_cache({"-o", directory.file("killed")}), kill).signal, SIGKILL);
   }
@@ -189,7 +189,7 @@ TEST_F(CacheTest, AFullDiskCostsTheCacheAndNotTheMerge) {
   // The merge's own outputs need a disk that is not full, so single calls fail here.
   RunOptions faulty;
   faulty.faulty = true;
-  faulty.environment = {fmt::format("GRIDMERGE_FAULT=fail 12 {}", ENOSPC)};
+  faulty.environment = {fmt::format("GRIDMERGE_FAULT=fail 18 {}", ENOSPC)};
   const Outcome merged = run(with_cache({"-o", directory.file("o")}), faulty);
   EXPECT_EQ(merged.exit_code, 3) << merged.err;
   EXPECT_EQ(count_lines(merged.err), 2u) << merged.err;

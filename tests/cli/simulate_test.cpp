@@ -114,6 +114,11 @@ TEST_F(Simulate, NamesItsFolderOnOneLine) {
 struct WrongWords {
   std::vector<std::string> words;
   const char* said;
+
+  friend std::ostream& operator<<(std::ostream& out, const WrongWords& wrong) {
+    for (const std::string& word : wrong.words) out << word << ' ';
+    return out;
+  }
 };
 
 class WrongSimulation : public testing::TestWithParam<WrongWords> {};
@@ -140,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongWords{{"--start", "3"}, "--start: '3'"}, WrongWords{{"--start", "3,inf"}, "--start: '3,inf'"},
         WrongWords{{"--start", "2,7"}, "--start: there must be a start for every robot"},
         WrongWords{{"--heading", "2"}, "--heading: there must be a heading for every robot"},
-        WrongWords{{"--heading", "2", "--heading", "nan"}, "--heading: headings must be finite"},
+        WrongWords{{"--heading", "2", "--heading", "nan"}, "--heading: 'nan' is not a number"},
         WrongWords{{"--longest-way", "1e6"}, "--longest-way: "}, WrongWords{{"--steps", "0"}, "--steps: "},
         WrongWords{{"--clutter", "11"}, "--clutter: "}, WrongWords{{"--others", "-1"}, "--others: "},
         WrongWords{{"--drift", "-1"}, "--drift: "}, WrongWords{{"--drift", "11"}, "--drift: "},
