@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import html
 import re
 import struct
@@ -13,6 +14,7 @@ from typing import Any
 
 import gridmerge
 import numpy as np
+import pytest
 from conftest import values_in
 from numpy.typing import NDArray
 
@@ -50,6 +52,15 @@ def test_what_they_say(results: list[Any]) -> None:
     left_out = merged.left_out[0]
     assert left_out.explanation
     assert repr(left_out).endswith(f"elsewhere.yaml': {left_out.explanation})")
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [(0.94999, "0.949"), (0.57, "0.570"), (0.9985, "0.998"), (1.0, "1.000"), (0.0, "0.000")],
+)
+def test_probabilities_are_rounded_down(value: float, shown: str, robots: list[str]) -> None:
+    pose = dataclasses.replace(gridmerge.match(robots[0], robots[1]), probability=value)
+    assert f"probability={shown}" in repr(pose)
 
 
 def test_names_are_kept_to_themselves_and_short() -> None:

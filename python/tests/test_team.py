@@ -36,6 +36,9 @@ def test_no_file_that_was_heard_is_written_over(robots: list[str], tmp_path: Pat
         gridmerge.save(gridmerge.load(robot), tmp_path / name)
         team.hear(name, tmp_path / name)
     assert team.wait_until_settled(600.0)
+    part = tmp_path / "part.yaml"
+    gridmerge.save(gridmerge.OccupancyGrid(np.zeros((2, 2), dtype=np.int8), 0.05), part)
+    assert team.hear_part("merged.yaml", 0, 0, gridmerge.load(part))
     kept = {path: path.read_bytes() for path in tmp_path.iterdir()}
     for name in ("merged.yaml", "other.yaml"):  # nor where newer maps of the robots have taken their places
         team.hear(name, gridmerge.load(robots[2]))
@@ -45,6 +48,8 @@ def test_no_file_that_was_heard_is_written_over(robots: list[str], tmp_path: Pat
             result.save(tmp_path)
         with pytest.raises(gridmerge.FileError, match="is an input"):
             result.export("geojson", tmp_path / "other.yaml")
+        with pytest.raises(gridmerge.FileError, match="is an input"):
+            result.export("geojson", part)
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == kept
 
 
