@@ -35,6 +35,11 @@ TEST_F(KnownPoses, FixTakesOneMapAndNoticesACopy) {
   EXPECT_NE(warned.find("copies, which count once: " + copy + " (of " + left + ")\n"), std::string::npos)
       << warned;
   EXPECT_NE(warned.find("given twice, and counted once: " + right + "\n"), std::string::npos) << warned;
+  // Of the two that whose pose is known is the original.
+  const std::string poses = directory.write("of_copy.tsv", "map\tx\ty\ttheta\ncopy.yaml\t1\t2\t0\n");
+  const std::string of_known = run({"merge", left, copy, "--init", poses, "-o", output}).err;
+  EXPECT_NE(of_known.find("copies, which count once: " + left + " (of " + copy + ")\n"), std::string::npos)
+      << of_known;
   // Turned, and on a larger sheet, it is that map all the same.
   const OccupancyGrid turned = internal::quarter_turned(load_map(left).grid, 1);
   OccupancyGrid sheet = make_grid(turned.width + 20, turned.height + 20, turned.resolution, turned.origin);
