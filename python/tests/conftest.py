@@ -120,3 +120,76 @@ def pose_of(transform: gridmerge.Transform) -> dict[str, float]:
 def to_bits(value: Any) -> str:
     """JSON text that tells -0.0 from 0.0 and any two doubles apart."""
     return json.dumps(value, sort_keys=True)
+
+
+def kept_hypotheses(join: gridmerge.Join) -> list[gridmerge.Hypothesis]:
+    """Of a refused join the file has the best one, and two more that may be true."""
+    best, rest = join.match.hypotheses[:1], join.match.hypotheses[1:]
+    if join.outcome != "refused":
+        return [*best, *rest]
+    return [*best, *[one for one in rest if one.probability >= 0.01][:2]]
+
+
+def merge_as_json(result: gridmerge.MergeResult) -> dict[str, Any]:
+    """transforms.json, made of the typed result."""
+    components = []
+    for i, component in enumerate(result.components):
+        members = [
+            {
+                "source": one.name,
+                "transform": pose_of(one.transform),
+                "probability": one.probability,
+                "sd": None
+                if one.sd_position is None
+                else {"position": one.sd_position, "theta": one.sd_theta},
+            }
+            for one in component.members
+        ]
+        held = [one.name for one in component.members if tuple(one.transform) == (0.0, 0.0, 0.0)]
+        frame = next(iter(held), None) if component.in_world_frame else component.members[0].name
+        name = "merged.yaml" if i == 0 else f"merged_{i + 1}.yaml"
+        assert component.omega is not None
+        cells = component.grid.width * component.grid.height
+        omega = {"omega": component.omega, "cells": cells, "omega_share": component.omega / cells}
+        components.append({"map": name, "frame": frame, "members": members, **omega})
+    joins = [
+        {
+            "fixed": result.names[join.fixed],
+            "moving": result.names[join.moving],
+            "transform": pose_of(join.transform),
+            "verdict": "accepted" if join.used else "refused",
+            "probability": join.probability,
+            "outcome": join.outcome,
+            "reason": join.reason,
+            "by_themselves": {
+                "verdict": "accepted" if join.match.accepted else "refused",
+                "reason": None if join.match.accepted else join.match.reason,
+            },
+            "acceptance_index": join.acceptance_index,
+            "agreement": join.agreement,
+            "disagreement": join.disagreement,
+            "overlap": join.overlap,
+            "hypotheses": [
+                {"transform": pose_of(one.transform), "score": one.score, "probability": one.probability}
+                for one in kept_hypotheses(join)
+            ],
+        }
+        for join in result.joins
+    ]
+    return {
+        "maps": list(result.names),
+        "components": components,
+        "joins": joins,
+        "left_out": [one.name for one in result.left_out],
+        "left_out_maps": [{"source": one.name, "reason": one.reason} for one in result.left_out],
+        "open_ways": [
+            {
+                "fixed": result.names[way.fixed],
+                "moving": result.names[way.moving],
+                "transform": pose_of(way.transform),
+                "probability": way.probability,
+            }
+            for way in result.open_ways
+        ],
+        "expected_false_joins": result.expected_false_joins,
+    }

@@ -13,80 +13,7 @@ from typing import Any
 import gridmerge
 import numpy as np
 import pytest
-from conftest import Cli, pose_of, to_bits
-
-
-def kept_hypotheses(join: gridmerge.Join) -> list[gridmerge.Hypothesis]:
-    """Of a refused join the file has the best one, and two more that may be true."""
-    best, rest = join.match.hypotheses[:1], join.match.hypotheses[1:]
-    if join.outcome != "refused":
-        return [*best, *rest]
-    return [*best, *[one for one in rest if one.probability >= 0.01][:2]]
-
-
-def as_json(result: gridmerge.MergeResult) -> dict[str, Any]:
-    """transforms.json, made of the typed result."""
-    components = []
-    for i, component in enumerate(result.components):
-        members = [
-            {
-                "source": one.name,
-                "transform": pose_of(one.transform),
-                "probability": one.probability,
-                "sd": None
-                if one.sd_position is None
-                else {"position": one.sd_position, "theta": one.sd_theta},
-            }
-            for one in component.members
-        ]
-        held = [one.name for one in component.members if tuple(one.transform) == (0.0, 0.0, 0.0)]
-        frame = next(iter(held), None) if component.in_world_frame else component.members[0].name
-        name = "merged.yaml" if i == 0 else f"merged_{i + 1}.yaml"
-        assert component.omega is not None
-        cells = component.grid.width * component.grid.height
-        omega = {"omega": component.omega, "cells": cells, "omega_share": component.omega / cells}
-        components.append({"map": name, "frame": frame, "members": members, **omega})
-    joins = [
-        {
-            "fixed": result.names[join.fixed],
-            "moving": result.names[join.moving],
-            "transform": pose_of(join.transform),
-            "verdict": "accepted" if join.used else "refused",
-            "probability": join.probability,
-            "outcome": join.outcome,
-            "reason": join.reason,
-            "by_themselves": {
-                "verdict": "accepted" if join.match.accepted else "refused",
-                "reason": None if join.match.accepted else join.match.reason,
-            },
-            "acceptance_index": join.acceptance_index,
-            "agreement": join.agreement,
-            "disagreement": join.disagreement,
-            "overlap": join.overlap,
-            "hypotheses": [
-                {"transform": pose_of(one.transform), "score": one.score, "probability": one.probability}
-                for one in kept_hypotheses(join)
-            ],
-        }
-        for join in result.joins
-    ]
-    return {
-        "maps": list(result.names),
-        "components": components,
-        "joins": joins,
-        "left_out": [one.name for one in result.left_out],
-        "left_out_maps": [{"source": one.name, "reason": one.reason} for one in result.left_out],
-        "open_ways": [
-            {
-                "fixed": result.names[way.fixed],
-                "moving": result.names[way.moving],
-                "transform": pose_of(way.transform),
-                "probability": way.probability,
-            }
-            for way in result.open_ways
-        ],
-        "expected_false_joins": result.expected_false_joins,
-    }
+from conftest import Cli, merge_as_json, to_bits
 
 
 def assert_equals_the_command_lines(
@@ -103,7 +30,7 @@ def assert_equals_the_command_lines(
     for join in transforms["joins"]:
         assert join["verdict"] == "accepted" or "sd" not in join
         assert join.pop("sd", 1.0) > 0.0
-    assert to_bits(as_json(result)) == to_bits(transforms)
+    assert to_bits(merge_as_json(result)) == to_bits(transforms)
 
 
 def test_a_way_that_is_not_sure_enough_stays_open(robots: list[str]) -> None:
@@ -158,7 +85,7 @@ def test_known_poses_as_a_table_and_as_a_mapping(cli: Cli, robots: list[str], tm
         robots[2]: gridmerge.InitialPose(third, sd=0.5),
     }
     of_mapping = gridmerge.merge(robots, init=poses, fix=[0])
-    assert to_bits(as_json(of_table)) == to_bits(as_json(of_mapping))
+    assert to_bits(merge_as_json(of_table)) == to_bits(merge_as_json(of_mapping))
     assert of_table.components[0].in_world_frame
     assert of_table.components[0].members[0].transform == first
     with pytest.raises(gridmerge.FileError, match="is an input and would be replaced"):
@@ -229,31 +156,6 @@ def test_fixed_maps_are_told_as_any_others_are(robots: list[str]) -> None:
     ones: list[Any] = [np.int64(1), np.array(1), Path(robots[1]), robots[1], np.uint8(1)]
     for one in ones:
         assert gridmerge.merge(robots[:2], fix=one).components == alone
-
-
-def test_a_merger_names_maps_as_merge_does(robots: list[str]) -> None:
-    messages = [gridmerge.load(robot).to_msg(frame_id="map") for robot in robots[:2]]
-    merger = gridmerge.Merger(accept=None)
-    for message in messages:
-        merger.add(message)
-    assert merger.solve().names == gridmerge.merge(messages).names == ("map 0", "map 1")
-    merger.update(1, gridmerge.load(robots[1]).to_msg(frame_id="other"))
-    assert merger.solve().names == ("map", "other")
-
-
-def test_a_map_goes_by_the_file_that_it_is_of_now(robots: list[str], tmp_path: Path) -> None:
-    merger = gridmerge.Merger()
-    ids = [merger.add(robot) for robot in robots[:2]]
-    named = merger.add(robots[2], name="the third")
-    later = tmp_path / "later.yaml"
-    gridmerge.save(gridmerge.load(robots[0]), later)
-    merger.update(ids[0], later)
-    merger.grow(named, later)
-    merger = pickle.loads(pickle.dumps(merger))
-    result = merger.solve()
-    assert result.names == (str(later), robots[1], "the third")
-    result.save(tmp_path / "merged")
-    assert gridmerge.read_transforms(tmp_path / "merged").components[0].members[0].name == str(later)
 
 
 def test_a_map_may_be_called_as_the_metadata_of_a_bag(robots: list[str], tmp_path: Path) -> None:
@@ -378,49 +280,6 @@ def test_nothing_and_a_single_map(robots: list[str], tmp_path: Path) -> None:
     assert not (tmp_path / "merged.yaml").exists()
 
 
-def test_a_merger_gives_what_merge_gives(robots: list[str], elsewhere: str) -> None:
-    merger = gridmerge.Merger()
-    first = merger.add(elsewhere)
-    ids = [merger.add(path) for path in robots[:2]]
-    merger.solve()
-    merger.update(ids[1], robots[2])
-    merger.update(ids[1], robots[1])
-    merger.remove(first)
-    merger.add(robots[2])
-    assert to_bits(as_json(merger.solve())) == to_bits(as_json(gridmerge.merge(robots)))
-    with pytest.raises(KeyError):
-        merger.remove(first)
-    with pytest.raises(KeyError):
-        merger.update(99, robots[0])
-
-
-def test_a_merger_with_known_poses(robots: list[str]) -> None:
-    merger = gridmerge.Merger()
-    merger.add(robots[0], pose=(10, 5, 0.5), fixed=True)
-    merger.add(robots[1])
-    fixed = gridmerge.merge(robots[:2], init={0: (10, 5, 0.5)}, fix=0)
-    assert to_bits(as_json(merger.solve())) == to_bits(as_json(fixed))
-
-
-def test_a_merger_takes_one_fixed_map_without_a_pose(robots: list[str]) -> None:
-    merger = gridmerge.Merger()
-    first = merger.add(robots[0], fixed=True)
-    for options in ({"fixed": True}, {"pose": (1, 2, 3)}, {"pose": (1, 2, 3), "fixed": True}):
-        with pytest.raises(ValueError, match=r"^pose: "):
-            merger.add(robots[1], **options)
-    assert merger.ids == (first,)
-    merger.add(robots[1])
-    fixed = gridmerge.merge(robots[:2], fix=0)
-    assert to_bits(as_json(merger.solve())) == to_bits(as_json(fixed))
-    merger.remove(first)
-    posed = merger.add(robots[0], pose=(10, 5, 0.5))
-    with pytest.raises(ValueError, match=r"^pose: "):
-        merger.add(robots[2], fixed=True)
-    merger.update(posed, robots[0])
-    merger.remove(np.int64(posed))  # type: ignore[arg-type]
-    merger.add(robots[2], fixed=True)
-
-
 def test_plots(robots: list[str], elsewhere: str) -> None:
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
@@ -488,4 +347,4 @@ def test_a_share_of_missed_joins_that_makes_no_sense_is_refused(share: float, ro
 def test_of_few_maps_the_share_of_missed_joins_changes_nothing(robots: list[str]) -> None:
     some, every = (gridmerge.merge(robots, max_missed=share) for share in (0.9, 0.0))
     assert len(some.joins) == 3
-    assert to_bits(as_json(some)["components"]) == to_bits(as_json(every)["components"])
+    assert to_bits(merge_as_json(some)["components"]) == to_bits(merge_as_json(every)["components"])
