@@ -31,7 +31,6 @@
 #include "scarce_memory.hpp"
 #include "search_options.hpp"
 #include "shown_command.hpp"
-#include "transform_options.hpp"
 
 namespace gridmerge::cli {
 

@@ -108,9 +108,8 @@ class Deformation:
         )
 
     def __hash__(self) -> int:
-        return hash(
-            (self.frame, self.spacing, (self.shifts + 0.0).tobytes())
-        )  # without -0.0, which equals 0.0
+        shifts = self.shifts + 0.0  # without -0.0, which equals 0.0
+        return hash((self.frame, self.spacing, shifts.tobytes()))
 
     def __reduce__(self) -> tuple[type[Deformation], tuple[Transform, float, NDArray[np.float64]]]:
         return Deformation, (self.frame, self.spacing, self.shifts)

@@ -155,9 +155,8 @@ class OccupancyGrid:
         given, topic = _bag.file_and_topic_of(self._source)
         file = os.fsdecode(files[0])
         metadata = "metadata.yaml"
-        if (
-            os.path.basename(file) == metadata and os.path.basename(given) != metadata
-        ):  # of a bag that is a folder
+        # Of a bag that is a folder.
+        if os.path.basename(file) == metadata and os.path.basename(given) != metadata:
             file = os.path.dirname(file)
         return file, topic
 

@@ -137,7 +137,7 @@ def merge(
     else:
         merger = _core.Merger(
             threads,
-            to_joint_accept(accept),
+            to_joint_accept(checked_accept),
             max_false_joins,
             max_missed,
             resolution,
@@ -167,7 +167,7 @@ def merge(
             search,
         )
         more_inputs += tuple(drawing._core.files)
-    return to_merge_result(merged, grids, called, more_inputs, to_joint_accept(accept))
+    return to_merge_result(merged, grids, called, more_inputs, to_joint_accept(checked_accept))
 
 
 def to_joint_accept(accept: float | None) -> float:
