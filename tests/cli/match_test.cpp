@@ -156,6 +156,7 @@ TEST_F(Match, MapsWithNothingToGoByAreRefused) {
   const Outcome quiet = run({"match", left, blank, "--quiet"});
   EXPECT_EQ(quiet.err, "");
   EXPECT_EQ(quiet.out.find("refused: "), 0u) << quiet.out;
+  EXPECT_EQ(quiet.out.find("(probability"), std::string::npos) << quiet.out;
   const Outcome warned = run({"match", left, blank});
   EXPECT_EQ(warned.err, "gridmerge: warning: " + blank + ": the map has no known cell\n");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -125,6 +126,33 @@ TEST(Usage, HelpFitsATerminal) {
   for (const std::string& command : kCommands) {
     std::istringstream lines(run({command, "--help"}).out);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110u) << command << line;
+  }
+}
+
+TEST(Usage, HelpBreaksALineWhereTheNextWordDoesNotFit) {
+  constexpr std::size_t kColumn = 30, kWidth = 100;  // where explanations begin and end
+  int broken = 0;
+  for (const std::string& command : kCommands) {
+    std::istringstream lines(run({command, "--help"}).out);
+    std::string before;
+    for (std::string line; std::getline(lines, line); before = line) {
+      const bool explains = before.size() > kColumn && before[kColumn - 1] == ' ' && before[kColumn] != ' ';
+      if (!explains || line.find_first_not_of(' ') != kColumn) continue;
+      const std::size_t word = std::min(line.find(' ', kColumn), line.size()) - kColumn;
+      EXPECT_LE(before.size(), kWidth) << command << before;
+      EXPECT_GT(before.size() + 1 + word, kWidth) << command << before;
+      ++broken;
+    }
+  }
+  EXPECT_GT(broken, 100);
+}
+
+TEST(Usage, HelpSaysOfEachValueWhatItIs) {
+  for (const std::string& command : kCommands) {
+    const std::string help = run({command, "--help"}).out;
+    // What the library calls a value of which nothing is said.
+    for (const char* unnamed : {" TEXT", " INT", " UINT", " FLOAT"})
+      EXPECT_EQ(help.find(unnamed), std::string::npos) << command << unnamed;
   }
 }
 
