@@ -268,5 +268,18 @@ TEST_F(CacheTest, AnEvaluationThroughItIsThatWithoutIt) {
   EXPECT_EQ(std::regex_replace(evaluate({}), times, ""), std::regex_replace(first, times, ""));
 }
 
+TEST_F(CacheTest, AnEvaluationOfPairsTellsOfMatchesThatItCannotUse) {
+  const std::string negatives = directory.write("negatives.tsv", "fixed\tmoving\nleft.yaml\tother.yaml\n");
+  const auto evaluate = [&](const std::string& accept) {
+    return run({"evaluate", "--negatives", negatives, "--accept", accept, "--cache",
+                directory.file("matches")})
+        .err;
+  };
+  EXPECT_EQ(evaluate("0.95"), "gridmerge: 0 matches of the cache, 1 made\n");
+  EXPECT_NE(evaluate("0.9").find("its matches are not used, as they were made with accept 0.95"),
+            std::string::npos);
+  EXPECT_EQ(evaluate("0.9"), "gridmerge: 1 match of the cache, 0 made\n");
+}
+
 }  // namespace
 }  // namespace gridmerge::test
