@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <system_error>
 
 #include "console.hpp"
@@ -105,7 +106,36 @@ std::string describe_open_ways(const std::vector<std::string>& names, const Merg
                    describe_pose(way.T_fixed_moving), rounded_down(way.probability, 2));
   }
   if (result.open_ways.size() > kMaxTold)
-    fmt::format_to(out, "and {} more such ways: see transforms.json\n", result.open_ways.size() - kMaxTold);
+    fmt::format_to(out, "perhaps: {} more, see transforms.json\n", result.open_ways.size() - kMaxTold);
+  return text;
+}
+
+/// A line for each join whose outcome is not what its two maps say by themselves. Of many maps most joins may
+/// be such, so the first ones of each kind are told.
+std::string describe_joins(const std::vector<std::string>& names, const MergeResult& result) {
+  constexpr std::size_t kMaxTold = 10;
+  std::map<std::string_view, std::vector<std::string>> lines;  // by kind
+  const auto tell = [&](std::string_view kind, const Join& join, std::string_view why) {
+    const std::string said = join.outcome == JoinOutcome::known
+                                 ? std::string{}
+                                 : fmt::format("{:.3f} by themselves, ", rounded_down(join.probability, 3));
+    lines[kind].push_back(fmt::format("{}: {} and {}, {}{}\n", kind, escape_controls(names[join.fixed]),
+                                      escape_controls(names[join.moving]), said, why));
+  };
+  for (const Join& join : result.joins) {
+    if (join.outcome == JoinOutcome::rescued)
+      tell("rescued", join, "but the other maps or known poses agree");
+    if (join.over_budget) tell("over budget", join, "which --max-false-joins has no room for");
+    if (join.outcome == JoinOutcome::rejected)
+      tell("rejected", join, "but other maps or fixed poses contradict");
+    if (join.outcome == JoinOutcome::known) tell("known", join, "from their initial poses");
+  }
+  std::string text;
+  for (const auto& [kind, all] : lines) {
+    for (std::size_t i = 0; i < std::min(all.size(), kMaxTold); ++i) text += all[i];
+    if (all.size() > kMaxTold)
+      text += fmt::format("{}: {} more, see transforms.json\n", kind, all.size() - kMaxTold);
+  }
   return text;
 }
 
@@ -261,21 +291,7 @@ std::string describe_merge(const AskedMerge& asked, const std::vector<OccupancyG
   }
   if (!result.components.empty()) text += describe_remedy(asked, result);
   text += describe_open_ways(names, result);
-  for (const Join& join : result.joins) {
-    const std::string pair =
-        fmt::format("{} and {}", escape_controls(names[join.fixed]), escape_controls(names[join.moving]));
-    if (join.outcome == JoinOutcome::rescued)
-      fmt::format_to(out, "rescued: {}, {:.3f} by themselves, but the other maps or known poses agree\n",
-                     pair, rounded_down(join.probability, 3));
-    if (join.over_budget)
-      fmt::format_to(out, "over budget: {}, {:.3f} by themselves, which --max-false-joins has no room for\n",
-                     pair, rounded_down(join.probability, 3));
-    if (join.outcome == JoinOutcome::rejected)
-      fmt::format_to(out, "rejected: {}, {:.3f} by themselves, but other maps or fixed poses contradict\n",
-                     pair, rounded_down(join.probability, 3));
-    if (join.outcome == JoinOutcome::known)
-      fmt::format_to(out, "known: {}, from their initial poses\n", pair);
-  }
+  text += describe_joins(names, result);
   if (!result.components.empty()) text += unused_poses;
   return text;
 }

@@ -275,7 +275,7 @@ def test_nothing_and_a_single_map(robots: list[str], tmp_path: Path) -> None:
     assert single.left_out[0].explanation == "there is no other map to merge it with"
     blank = gridmerge.OccupancyGrid(np.full((9, 9), -1, dtype=np.int8), 0.05)
     with_blank = gridmerge.merge([*robots[:1], blank])
-    assert with_blank.left_out[1].explanation == "there is too little in it to compare"
+    assert with_blank.left_out[1].explanation == "there is too little in it, or in the others, to compare"
     single.save(tmp_path)
     assert not (tmp_path / "merged.yaml").exists()
 

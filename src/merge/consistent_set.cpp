@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "grid/parallel.hpp"
+#include "merge/group_cuts.hpp"
 #include "merge/group_search.hpp"
 #include "merge/join_weights.hpp"
 
@@ -40,27 +42,28 @@ NodeGroup in_order(NodeGroup group) {
   return group;
 }
 
-/// What holds together from a probability on.
-ConsistentSet kept_from(const GroupSearch& search, double keep_probability) {
-  const JoinWeights& weights = search.weights();
+/// How surely each member of a group lies as it does, given the others.
+void doubt_members(const JoinWeights& weights, NodeGroup& group) {
+  if (group.size() < 2) return;
+  std::vector<double> probabilities(group.size(), 1.0);
+  parallel_for(group.size(), [&](std::size_t i) {
+    if (weights.is_fixed(group[i].map)) return;
+    const auto [rest, alone] = taken_out(group, i);
+    probabilities[i] = weights.probability_of_lying_so(rest, alone);
+  });
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    if (!weights.is_fixed(group[i].map)) group[i].probability = probabilities[i];
+  }
+}
+
+ConsistentSet consistent_set_of(const JoinWeights& weights, const GroupCuts& cuts) {
   ConsistentSet consistent_set;
-  consistent_set.groups = search.cut(keep_probability);
+  consistent_set.groups = cuts.groups();
   for (NodeGroup& group : consistent_set.groups) group = in_order(std::move(group));
   std::sort(consistent_set.groups.begin(), consistent_set.groups.end(),
             [](const NodeGroup& a, const NodeGroup& b) { return a.front().map < b.front().map; });
-  parallel_for(consistent_set.groups.size(), [&](std::size_t g) {
-    NodeGroup& group = consistent_set.groups[g];
-    if (group.size() < 2) return;
-    std::vector<double> probabilities(group.size(), 1.0);
-    parallel_for(group.size(), [&](std::size_t i) {
-      if (weights.is_fixed(group[i].map)) return;
-      const auto [rest, alone] = taken_out(group, i);
-      probabilities[i] = weights.probability_of_lying_so(rest, alone);
-    });
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      if (!weights.is_fixed(group[i].map)) group[i].probability = probabilities[i];
-    }
-  });
+  parallel_for(consistent_set.groups.size(),
+               [&](std::size_t g) { doubt_members(weights, consistent_set.groups[g]); });
   for (const NodeGroup& group : consistent_set.groups) {
     for (const UsedCandidate& used : weights.used_in(group)) consistent_set.used.push_back(used);
   }
@@ -72,9 +75,7 @@ ConsistentSet kept_from(const GroupSearch& search, double keep_probability) {
 }  // namespace
 
 ConsistentSet find_consistent_set(const JoinProblem& problem, double accept_probability) {
-  validate(problem, accept_probability);
-  const JoinWeights weights(problem);
-  return kept_from(GroupSearch(weights, problem, accept_probability), accept_probability);
+  return find_consistent_set_within(problem, accept_probability, std::numeric_limits<double>::max());
 }
 
 std::vector<OpenJoin> find_open_joins(const JoinProblem& problem, const ConsistentSet& consistent_set,
@@ -107,51 +108,14 @@ std::vector<OpenJoin> find_open_joins(const JoinProblem& problem, const Consiste
   return open;
 }
 
-namespace {
-
-/// A member of a group, and how many false joins are expected because of it.
-struct Doubt {
-  double probability;
-  double false_joins;
-};
-
-/// Of all members; none of those that are fixed or alone, whose probability is 1.
-std::vector<Doubt> doubts_of(const ConsistentSet& consistent_set) {
-  std::vector<Doubt> doubts;
+double expected_false_joins(const ConsistentSet& consistent_set) {
+  double expected = 0.0;
   for (const NodeGroup& group : consistent_set.groups) {
     // Every map is doubted given the others: two maps doubt one join twice.
     const double share = static_cast<double>(group.size() - 1) / static_cast<double>(group.size());
-    for (const PlacedNode& node : group) {
-      if (node.probability < 1.0) doubts.push_back({node.probability, share * (1.0 - node.probability)});
-    }
+    for (const PlacedNode& node : group) expected += share * (1.0 - node.probability);
   }
-  return doubts;
-}
-
-double false_joins_of(const std::vector<Doubt>& doubts) {
-  double sum = 0.0;
-  for (const Doubt& doubt : doubts) sum += doubt.false_joins;
-  return sum;
-}
-
-/// From which probability on members fit into a budget that they exceed together, if what is cut left all
-/// others as they are. It lies above the probability of the least sure member.
-double fitting_from(std::vector<Doubt> doubts, double budget) {
-  std::sort(doubts.begin(), doubts.end(),
-            [](const Doubt& a, const Doubt& b) { return a.probability > b.probability; });
-  double sum = 0.0;
-  const auto first_too_many = std::find_if(doubts.begin(), doubts.end(), [&](const Doubt& doubt) {
-    sum += doubt.false_joins;
-    return sum > budget;
-  });
-  // Summed in another order, they may fit after all.
-  return std::nextafter(std::min(first_too_many, doubts.end() - 1)->probability, 2.0);
-}
-
-}  // namespace
-
-double expected_false_joins(const ConsistentSet& consistent_set) {
-  return false_joins_of(doubts_of(consistent_set));
+  return expected;
 }
 
 double false_joins_allowed(double max_false_joins, std::size_t maps) {
@@ -164,22 +128,13 @@ ConsistentSet find_consistent_set_within(const JoinProblem& problem, double acce
   validate_budget(max_false_joins);
   validate(problem, accept_probability);
   const JoinWeights weights(problem);
-  const GroupSearch search(weights, problem, accept_probability);
-  ConsistentSet consistent_set = kept_from(search, accept_probability);
-  // After some cuts each takes a share of the doubt that is still allowed, so that this ends.
-  constexpr int kFreeCuts = 8;
-  constexpr double kMinStep = 0.2;
-  constexpr double kMinDoubt = 1e-9;  // from there on nothing is surer
+  GroupCuts cuts(weights, GroupSearch(weights, problem, accept_probability).groups());
+  cuts.cut_below(accept_probability);
+  ConsistentSet consistent_set = consistent_set_of(weights, cuts);
   const std::vector<UsedCandidate> without_budget = consistent_set.used;
-  double keep = accept_probability;
-  for (int cuts = 0; 1.0 - keep > kMinDoubt; ++cuts) {
-    const std::vector<Doubt> doubts = doubts_of(consistent_set);
-    if (false_joins_of(doubts) <= max_false_joins) break;
-    const double fitting = fitting_from(doubts, max_false_joins);
-    // A group's members may be as unsure after a cut as before: probabilities hang on its frame, a little.
-    const bool gains = fitting > keep && cuts < kFreeCuts;
-    keep = std::min(1.0, gains ? fitting : std::max(fitting, keep + kMinStep * (1.0 - keep)));
-    consistent_set = kept_from(search, keep);
+  while (expected_false_joins(consistent_set) > max_false_joins && cuts.cut_least()) {
+    cuts.cut_below(accept_probability);
+    consistent_set = consistent_set_of(weights, cuts);
   }
   const std::vector<UsedCandidate>& used = consistent_set.used;
   for (const UsedCandidate& one : without_budget) {

@@ -71,9 +71,9 @@ inline constexpr std::size_t kFewMaps = 50;
 GRIDMERGE_INTERNAL_EXPORT double false_joins_allowed(double max_false_joins, std::size_t maps);
 
 /// find_consistent_set() with no more joins than a budget of false ones allows. While more are expected, the
-/// groups are cut at a higher probability: the one from which on the surest members fit into the budget. What
-/// a cut makes surer afterwards is not joined again. Groups are joined from `accept_probability` on: what two
-/// maps alone say is seldom as sure as what many say in the end. At most about 100 cuts of one search.
+/// least sure cut of all groups is made, and no other: where many members are as sure as each other, a limit
+/// for all of them would cut all or none. What a cut makes surer afterwards is not joined again. A smaller
+/// budget only cuts further. O(maps) cuts at most, each as find_consistent_set() makes them.
 /// Throws std::invalid_argument as find_consistent_set(), and for a budget that is negative or not finite.
 ConsistentSet find_consistent_set_within(const JoinProblem& problem, double accept_probability,
                                          double max_false_joins);

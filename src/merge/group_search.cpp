@@ -222,40 +222,6 @@ class Arranger {
   std::map<std::size_t, int> moves_;         // of a map, so far
 };
 
-/// The group itself if all its halves belong together surely enough.
-NodeGroups weakest_halves(const JoinWeights& weights, const NodeGroup& group, double keep_probability) {
-  const std::vector<std::pair<NodeGroup, NodeGroup>> halves = weights.halves(group);
-  std::vector<double> probabilities(halves.size());
-  parallel_for(halves.size(), [&](std::size_t i) {
-    probabilities[i] = weights.probability_of_lying_so(halves[i].first, halves[i].second);
-  });
-  const auto least = std::min_element(probabilities.begin(), probabilities.end());
-  if (least == probabilities.end() || *least >= keep_probability) return {group};
-  const auto& weakest = halves[static_cast<std::size_t>(least - probabilities.begin())];
-  return {weakest.first, weakest.second};
-}
-
-/// Cuts a group where its parts belong together least surely, as long as that is not surely enough, and where
-/// nothing holds them together.
-NodeGroups cut_group(const JoinWeights& weights, NodeGroup group, double keep_probability) {
-  NodeGroups whole, uncertain{std::move(group)};
-  while (!uncertain.empty()) {
-    NodeGroup next = std::move(uncertain.back());
-    uncertain.pop_back();
-    NodeGroups parts;
-    if (next.size() > 1) {
-      parts = weights.connected(next);
-      if (parts.size() == 1) parts = weakest_halves(weights, next, keep_probability);
-    }
-    if (parts.size() < 2) {
-      whole.push_back(std::move(next));
-    } else {
-      for (NodeGroup& part : parts) uncertain.push_back(weights.adjusted(std::move(part)));
-    }
-  }
-  return whole;
-}
-
 /// Maps that candidates or being fixed connect, each part ascending: first that of the lowest map.
 std::vector<std::vector<std::size_t>> connected_maps(const JoinProblem& problem, const JoinWeights& weights) {
   DisjointSets maps(problem.maps.size());
@@ -273,8 +239,7 @@ std::vector<std::vector<std::size_t>> connected_maps(const JoinProblem& problem,
 
 }  // namespace
 
-GroupSearch::GroupSearch(const JoinWeights& weights, const JoinProblem& problem, double accept_probability)
-    : weights_(weights) {
+GroupSearch::GroupSearch(const JoinWeights& weights, const JoinProblem& problem, double accept_probability) {
   const std::vector<std::vector<std::size_t>> parts = connected_maps(problem, weights);
   parts_.resize(parts.size());
   parallel_for(parts.size(), [&](std::size_t i) {
@@ -293,18 +258,9 @@ GroupSearch::GroupSearch(const JoinWeights& weights, const JoinProblem& problem,
   });
 }
 
-NodeGroups GroupSearch::cut(double keep_probability) const {
-  std::vector<const NodeGroup*> groups;
-  for (const NodeGroups& part : parts_) {
-    for (const NodeGroup& group : part) groups.push_back(&group);
-  }
-  std::vector<NodeGroups> cut(groups.size());
-  parallel_for(groups.size(),
-               [&](std::size_t i) { cut[i] = cut_group(weights_, *groups[i], keep_probability); });
+NodeGroups GroupSearch::groups() const {
   NodeGroups all;
-  for (NodeGroups& some : cut) {
-    for (NodeGroup& group : some) all.push_back(std::move(group));
-  }
+  for (const NodeGroups& part : parts_) all.insert(all.end(), part.begin(), part.end());
   return all;
 }
 

@@ -18,13 +18,9 @@ class GroupSearch {
   /// O(joins * (log(joins) + pairs of a group)) joins are weighed; a group of n maps is adjusted n times.
   GroupSearch(const JoinWeights& weights, const JoinProblem& problem, double accept_probability);
 
-  const JoinWeights& weights() const { return weights_; }
-
-  /// The groups cut where their parts belong together less surely than so. Runs in the calling TBB arena.
-  NodeGroups cut(double keep_probability) const;
+  NodeGroups groups() const;
 
  private:
-  const JoinWeights& weights_;
   std::vector<NodeGroups> parts_;  // groups of each connected part
 };
 

@@ -6,7 +6,7 @@ namespace gridmerge::internal {
 const char* explain_left_out(Reason reason) {
   switch (reason) {
     case Reason::nothing_to_compare:
-      return "there is too little in it to compare";
+      return "there is too little in it, or in the others, to compare";
     case Reason::ambiguous:
       return "it fits in more than one way";
     case Reason::contradiction:

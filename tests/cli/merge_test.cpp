@@ -218,6 +218,34 @@ TEST_F(Merge, SaysWhereTheBudgetIsWhatLeavesAMapOut) {
   EXPECT_EQ(enough.find("budget"), std::string::npos) << enough;
 }
 
+TEST_F(Merge, OfManyJoinsOfAKindTellsTheFirstTen) {
+  std::vector<std::string> arguments{"merge", "--max-false-joins", "0", "-o", output};
+  for (int i = 0; i < 6; ++i) {
+    const double x = i;
+    arguments.push_back(write_map(directory, "part_" + std::to_string(i),
+                                  map_part(draw_building(1), {x, 0, 13 + x, 13}, {x, 0.3 * x, 0.2 * x})));
+  }
+  std::istringstream lines(run(arguments).out);
+  int told = 0;
+  std::string last;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("over budget: ")) continue;
+    ++told;
+    last = line;
+  }
+  EXPECT_EQ(told, 11);
+  EXPECT_EQ(last, "over budget: 5 more, see transforms.json");
+}
+
+/// Which of the two has too little in it, the reason cannot tell.
+TEST_F(Merge, OfAMapBesideABlankOneSaysNotThatItIsBlank) {
+  const std::string blank = write_map(directory, "blank", make_grid(40, 30, 0.1));
+  const std::string out = run({"merge", left, blank, "-o", output}).out;
+  EXPECT_NE(out.find("left out: " + left + ": there is too little in it, or in the others, to compare\n"),
+            std::string::npos)
+      << out;
+}
+
 TEST_F(Merge, NamesWhatToAskOfAMapThatIsLeftOut) {
   const std::string out = run({"merge", left, right, other, "-o", output}).out;
   const std::size_t at = out.find("\ntry: gridmerge match ");
@@ -233,7 +261,7 @@ TEST_F(Merge, OfMapsWithNothingToCompareAsksForNothingThatCannotHelp) {
     for (const char* const hint :
          {"nearest to it", "--accept", "--max-false-joins", "gridmerge match", "--plan"})
       EXPECT_EQ(out.find(hint), std::string::npos) << out;
-    EXPECT_NE(out.find("there is too little in it to compare"), std::string::npos) << out;
+    EXPECT_NE(out.find("there is too little in it, or in the others, to compare"), std::string::npos) << out;
     EXPECT_NE(out.find("--init TABLE and --fix MAP"), std::string::npos) << "which place them all the same";
     // Beside maps that can be compared, these are the nearest.
     const std::string beside = run({"merge", a, left, other, "-o", output}).out;

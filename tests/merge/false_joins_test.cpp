@@ -88,6 +88,94 @@ TEST(ConsistentSetWithin, CutsTheLeastSurePairWhereSumsDifferByRounding) {
   EXPECT_EQ(odds[found.over_budget[0]], 4.0);
 }
 
+/// One map that each of the others lies on, at a place of its own.
+JoinProblem star(const std::vector<double>& odds) {
+  JoinProblem problem;
+  problem.maps.assign(odds.size() + 1, {{{0.0, 0.0}, 5.0, 20.0}});
+  for (std::size_t i = 0; i < odds.size(); ++i)
+    problem.pairs.push_back(
+        {0, i + 1, {CandidateJoin{{50.0 * static_cast<double>(i), 0.0, 0.0}, odds[i], 0.1}}});
+  return problem;
+}
+
+/// Where all are as sure, a budget that has room for some has to keep some.
+TEST(ConsistentSetWithin, OfEquallySureJoinsKeepsAsManyAsFit) {
+  const std::vector<double> odds(20, 4.0);
+  for (const JoinProblem& problem : {lone_pairs(odds), star(odds)}) {
+    const ConsistentSet all = find_consistent_set(problem, 0.8);
+    ASSERT_EQ(problem.maps.size() - all.groups.size(), 20U);
+    for (const double share : {0.9, 0.5, 0.1}) {
+      const double budget = share * expected_false_joins(all);
+      const ConsistentSet found = find_consistent_set_within(problem, 0.8, budget);
+      const std::size_t joins = problem.maps.size() - found.groups.size();
+      EXPECT_LE(expected_false_joins(found), budget);
+      EXPECT_NEAR(static_cast<double>(joins), 20.0 * share, 1.5);
+      EXPECT_EQ(found.over_budget.size(), 20U - joins);
+    }
+  }
+}
+
+/// The maps of each group, for two sets of the same problem.
+std::vector<std::size_t> group_of_maps(const ConsistentSet& consistent_set, std::size_t maps) {
+  std::vector<std::size_t> group_of(maps);
+  for (std::size_t g = 0; g < consistent_set.groups.size(); ++g) {
+    for (const PlacedNode& node : consistent_set.groups[g]) group_of[node.map] = g;
+  }
+  return group_of;
+}
+
+/// Maps in one place, of which some pairs are in doubt, and some have a wrong candidate.
+JoinProblem drawn(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  JoinProblem problem;
+  std::vector<SE2> T_world_map;
+  for (int i = 0; i < 12; ++i) {
+    problem.maps.push_back({{{0.0, 0.0}, 8.0, 25.0}});
+    T_world_map.push_back({uniform(-30.0, 30.0), uniform(-30.0, 30.0), uniform(-3.0, 3.0)});
+  }
+  for (std::size_t a = 0; a < 12; ++a) {
+    for (std::size_t b = a + 1; b < 12; ++b) {
+      if (random() % 3 != 0) continue;
+      PairCandidates pair{a, b, {{inverse(T_world_map[a]) * T_world_map[b], uniform(-2.0, 6.0), 0.1}}};
+      if (random() % 3 == 0)
+        pair.candidates.push_back(
+            {{uniform(-30.0, 30.0), uniform(-30.0, 30.0), uniform(-3.0, 3.0)}, uniform(-4.0, 2.0), 0.1});
+      problem.pairs.push_back(std::move(pair));
+    }
+  }
+  return problem;
+}
+
+TEST(ConsistentSetWithin, ASmallerBudgetOnlyCutsFurtherAndNoMoreThanItHasTo) {
+  std::size_t cut = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const JoinProblem problem = drawn(seed);
+    ConsistentSet larger = find_consistent_set(problem, 0.8);
+    const double expected = expected_false_joins(larger);
+    for (const double share : {0.8, 0.5, 0.2, 0.05}) {
+      const ConsistentSet found = find_consistent_set_within(problem, 0.8, share * expected);
+      EXPECT_LE(expected_false_joins(found), share * expected) << seed;
+      const std::vector<std::size_t> of_larger = group_of_maps(larger, 12),
+                                     of_found = group_of_maps(found, 12);
+      for (std::size_t a = 0; a < 12; ++a) {
+        for (std::size_t b = 0; b < a; ++b) {
+          if (of_found[a] != of_found[b]) continue;
+          EXPECT_EQ(of_larger[a], of_larger[b]) << seed;
+        }
+      }
+      // With room for just what is expected of it, it is the same.
+      const ConsistentSet again = find_consistent_set_within(problem, 0.8, expected_false_joins(found));
+      EXPECT_EQ(group_of_maps(again, 12), of_found) << seed;
+      cut += found.groups.size() - larger.groups.size();
+      larger = found;
+    }
+  }
+  EXPECT_GT(cut, 50U);
+}
+
 TEST(ConsistentSetWithin, RefusesABudgetThatIsNone) {
   EXPECT_THROW(find_consistent_set_within({}, 0.8, -0.1), std::invalid_argument);
   EXPECT_THROW(find_consistent_set_within({}, 0.8, std::nan("")), std::invalid_argument);

@@ -14,6 +14,7 @@
 
 #include "grid/parallel.hpp"
 #include "merge/consistent_set.hpp"
+#include "merge/group_cuts.hpp"
 #include "merge/join_weights.hpp"
 
 namespace gridmerge::internal {
@@ -288,7 +289,9 @@ TEST(GroupSearch, IsThatOfTheLiteralOneToTheBit) {
     const JoinProblem problem = drawn(seed);
     const double keep = seed % 2 == 0 ? 0.8 : 0.97;
     const JoinWeights weights(problem);
-    const NodeGroups found = sorted(GroupSearch(weights, problem, 0.8).cut(keep));
+    GroupCuts cuts(weights, GroupSearch(weights, problem, 0.8).groups());
+    cuts.cut_below(keep);
+    const NodeGroups found = sorted(cuts.groups());
     const NodeGroups expected = sorted(LiteralArranger(problem, 0.8, keep).settle());
     ASSERT_EQ(found.size(), expected.size()) << seed;
     for (std::size_t g = 0; g < found.size(); ++g) {

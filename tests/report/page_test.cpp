@@ -204,7 +204,7 @@ TEST(ReportPage, SaysWhyMapsWereLeftOut) {
       Json::array({{{"map", 1}, {"reason", "ambiguous"}, {"explanation", "it fits in more than one way"}},
                    {{"map", 3},
                     {"reason", "nothing_to_compare"},
-                    {"explanation", "there is too little in it to compare"}}}));
+                    {"explanation", "there is too little in it, or in the others, to compare"}}}));
 }
 
 TEST(ReportPage, NamesAreDataWhateverTheyHold) {

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "merge/group_cuts.hpp"
+
+#include <algorithm>
+
+#include "grid/parallel.hpp"
+
+namespace gridmerge::internal {
+
+GroupCuts::GroupCuts(const JoinWeights& weights, const NodeGroups& groups) : weights_(weights) {
+  for (const NodeGroup& group : groups) add(group);
+  find_least_from(0);
+}
+
+NodeGroups GroupCuts::groups() const {
+  NodeGroups all;
+  for (const Part& part : parts_) all.push_back(part.group);
+  return all;
+}
+
+void GroupCuts::cut_below(double keep_probability) {
+  while (true) {
+    std::vector<std::size_t> unsure;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (parts_[i].least && parts_[i].least->probability < keep_probability) unsure.push_back(i);
+    }
+    if (unsure.empty()) return;
+    cut(unsure);
+  }
+}
+
+bool GroupCuts::cut_least() {
+  std::optional<std::size_t> which;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const std::optional<Cut>& cut = parts_[i].least;
+    if (cut && (!which || cut->probability < parts_[*which].least->probability)) which = i;
+  }
+  if (which) cut({*which});
+  return which.has_value();
+}
+
+/// Poses may agree less after they were adjusted, so that a part falls apart again.
+void GroupCuts::add(NodeGroup group) {
+  NodeGroups held_together = weights_.connected(group);
+  if (held_together.size() == 1) {
+    parts_.push_back({std::move(group), {}});
+    return;
+  }
+  for (NodeGroup& part : held_together) add(weights_.adjusted(std::move(part)));
+}
+
+void GroupCuts::find_least_from(std::size_t first) {
+  parallel_for(parts_.size() - first,
+               [&](std::size_t i) { parts_[first + i].least = least_cut_of(parts_[first + i].group); });
+}
+
+std::optional<GroupCuts::Cut> GroupCuts::least_cut_of(const NodeGroup& group) const {
+  if (group.size() < 2) return std::nullopt;
+  std::vector<std::pair<NodeGroup, NodeGroup>> halves = weights_.halves(group);
+  if (halves.empty()) return std::nullopt;
+  std::vector<double> probabilities(halves.size());
+  parallel_for(halves.size(), [&](std::size_t i) {
+    probabilities[i] = weights_.probability_of_lying_so(halves[i].first, halves[i].second);
+  });
+  const auto least = std::min_element(probabilities.begin(), probabilities.end());
+  return Cut{*least, std::move(halves[static_cast<std::size_t>(least - probabilities.begin())])};
+}
+
+/// `places` are ascending.
+void GroupCuts::cut(const std::vector<std::size_t>& places) {
+  std::vector<std::pair<NodeGroup, NodeGroup>> halves;
+  for (auto place = places.rbegin(); place != places.rend(); ++place) {
+    halves.push_back(std::move(parts_[*place].least->halves));
+    parts_.erase(parts_.begin() + static_cast<std::ptrdiff_t>(*place));
+  }
+  const std::size_t first = parts_.size();
+  for (auto& [one, other] : halves) {
+    add(weights_.adjusted(std::move(one)));
+    add(weights_.adjusted(std::move(other)));
+  }
+  find_least_from(first);
+}
+
+}  // namespace gridmerge::internal
