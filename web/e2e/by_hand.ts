@@ -194,6 +194,25 @@ test("with gridmerge view the engine refines what was placed by hand", async () 
     assert.ok(near(refined, truth), `${JSON.stringify(refined)}, not ${JSON.stringify(truth)}`);
     await tab.screenshot("refined");
 
+    // What was said of that pose is said of no other, whatever moves the map.
+    const refineAgain = async () => {
+      await page.click("#hand-refine");
+      await page.waitForSelector(".answer:has-text('Moved by')");
+    };
+    for (const leave of [
+      () => type(page, { ...refined, x: refined.x + 1 }),
+      () => page.press("canvas", "Shift+ArrowRight"),
+      () => page.press("canvas", "q"),
+      () => page.click("#hand-next"),
+    ]) {
+      await leave();
+      assert.equal(await page.textContent(".answer"), "");
+      await refineAgain();
+    }
+    await page.click("button:text-is('Let go')");
+    await page.selectOption("#hand-map", "1");
+    assert.equal(await page.textContent(".answer"), "");
+
     // An answer that comes late is for a pose that is no more.
     let letPass = () => {};
     const held = new Promise<void>((resolve) => (letPass = resolve));

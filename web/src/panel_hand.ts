@@ -60,6 +60,8 @@ export class HandPanel {
   private place = -1;
   /** Whether the engine is at work on a pose. */
   private isRefining = false;
+  /** Of which places of the maps the answer tells. */
+  private saidOf = "";
 
   constructor(state: State, middleOfView: () => { x: number; y: number }) {
     this.state = state;
@@ -80,7 +82,6 @@ export class HandPanel {
     if (this.state.handled !== null && this.state.handled !== map) this.state.letGo();
     const middle = this.state.grids[map]?.middle() ?? { x: 0, y: 0 };
     const to = this.middleOfView();
-    this.answer.textContent = "";
     this.places = placesOf(this.state.report, map, middle, this.others(map));
     this.place = this.state.poseOf(map) ? -1 : 0;
     this.state.take(map, this.places[0]?.T_scene_map ?? { x: to.x - middle.x, y: to.y - middle.y, theta: 0 });
@@ -114,27 +115,42 @@ export class HandPanel {
     if (!inHand || this.isRefining) return;
     const { map, pose } = inHand;
     if (!state.report.live) {
-      this.answer.textContent = "Only a running gridmerge can refine: open the folder with gridmerge view.";
+      this.say("Only a running gridmerge can refine: open the folder with gridmerge view.");
       return;
     }
-    this.answer.textContent = "Refining…";
+    this.say("Refining…");
     this.isRefining = true;
-    const { scene } = state;
-    const isAsAsked = () => state.scene === scene && state.handled === map && JSON.stringify(state.poseOf(map)) === JSON.stringify(pose);
+    const asked = this.situation();
     try {
       const refined = await refine(map, pose, this.others(map));
-      if (!isAsAsked()) {
-        this.answer.textContent = "";
+      if (this.situation() !== asked) {
+        this.say("");
         return;
       }
       state.put(map, refined.transform);
-      this.answer.textContent = `Moved by ${fixed(refined.moved, 2)} m. Score ${fixed(refined.start_score, 0)} → ` +
-        `${fixed(refined.score, 0)}. Probability by the maps alone ${probability(refined.probability)}.`;
+      this.say(`Moved by ${fixed(refined.moved, 2)} m. Score ${fixed(refined.start_score, 0)} → ` +
+        `${fixed(refined.score, 0)}. Probability by the maps alone ${probability(refined.probability)}.`);
     } catch (error) {
-      this.answer.textContent = `Not refined: ${error instanceof Error ? error.message : String(error)}`;
+      this.say(`Not refined: ${error instanceof Error ? error.message : String(error)}`);
     } finally {
       this.isRefining = false;
     }
+  }
+
+  /** What the engine is asked about: the map in hand, and where it and the others lie. */
+  private situation(): string {
+    return JSON.stringify([this.state.scene.id, this.state.handled, this.state.placed()]);
+  }
+
+  /** Says something of where the maps lie now. */
+  private say(text: string): void {
+    this.answer.textContent = text;
+    this.saidOf = this.situation();
+  }
+
+  /** What was said of other places says nothing of these. */
+  private dropAnswer(): void {
+    if (!this.isRefining && this.answer.textContent !== "" && this.saidOf !== this.situation()) this.say("");
   }
 
   private others(map: number): Placed[] {
@@ -163,6 +179,7 @@ export class HandPanel {
       if (pose && document.activeElement !== input.element) input.element.value = fixed(input.get(pose), 3);
     }
     this.tellPlace(handled, pose);
+    this.dropAnswer();
     if (this.scoring === 0) this.scoring = requestAnimationFrame(() => this.score());
     this.updateSaving();
   }
