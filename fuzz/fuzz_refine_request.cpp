@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr std::size_t kMaps = 4;
   RefineRequest request;
   try {
-    request = parse_refine_request(fuzz::as_bytes(data, size), kMaps);
+    request = parse_refine_request(fuzz::as_bytes(data, size), [](const std::string&) { return kMaps; });
   } catch (const std::invalid_argument&) {
     return 0;
   }

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "gridmerge/grid/execution.hpp"
-#include "refine_answer.hpp"
 #include "report/page.hpp"
 
 namespace gridmerge::cli {
@@ -22,9 +22,12 @@ constexpr const char* kWaitingPage = R"(<!DOCTYPE html>
 </head><body><h1>Merged maps</h1><p>No map was heard yet. This page shows the maps as soon as there are any.</p></body></html>
 )";
 
-std::string page_of(const TeamAnswer& answer) {
+/// Pages on which readers may still be at work. A page that nobody works on shows the newest answer.
+constexpr std::size_t kMostShown = 3;
+
+LiveReportPage page_of(const TeamAnswer& answer) {
   const TeamMerge& merge = *answer.merge;
-  if (merge.maps.empty()) return kWaitingPage;
+  if (merge.maps.empty()) return {kWaitingPage, {}};
   std::vector<OccupancyGrid> maps;
   for (const auto& map : merge.maps) maps.push_back(*map);
   return live_report_page({merge.names, maps, merge_result(answer)}, answer.number);
@@ -46,33 +49,33 @@ PageAnswers LivePage::answers() {
   PageAnswers answers;
   answers.page = [this] { return page(); };
   answers.news = [this] { return fmt::format("{{\"answer\": {}}}\n", newest()->number); };
-  answers.refine = [this](const std::string& body) { return refine(body); };
+  answers.refine = [this](const std::string& body) {
+    return answer_refine(
+        body, [this](const std::string& merge) { return maps_of(merge); }, threads_);
+  };
   return answers;
-}
-
-std::shared_ptr<const TeamAnswer> LivePage::shown() const {
-  const std::lock_guard lock(mutex_);
-  return shown_;
 }
 
 std::shared_ptr<const std::string> LivePage::page() {
   const std::shared_ptr<const TeamAnswer> answer = newest();
-  if (!page_ || shown() != answer) {
-    std::string made;
-    with_threads(threads_, [&] { made = page_of(*answer); });
-    page_ = std::make_shared<const std::string>(std::move(made));
-    const std::lock_guard lock(mutex_);
-    shown_ = answer;
-  }
+  if (page_answer_ == answer) return page_;
+  LiveReportPage made;
+  with_threads(threads_, [&] { made = page_of(*answer); });
+  page_ = std::make_shared<const std::string>(std::move(made.html));
+  page_answer_ = answer;
+  const std::lock_guard lock(mutex_);
+  std::erase_if(shown_, [&](const Shown& shown) { return shown.merge == made.merge; });
+  shown_.push_front({std::move(made.merge), answer->merge->maps});
+  if (shown_.size() > kMostShown) shown_.pop_back();
   return page_;
 }
 
-std::string LivePage::refine(const std::string& body) const {
-  // The question numbers the maps as the page does that asks, which may not be of the newest answer.
-  const std::shared_ptr<const TeamAnswer> answer = shown();
-  const auto& maps = answer->merge->maps;
-  return answer_refine(
-      body, maps.size(), [&](std::size_t i) -> const OccupancyGrid& { return *maps[i]; }, threads_);
+ShownMaps LivePage::maps_of(const std::string& merge) const {
+  const std::lock_guard lock(mutex_);
+  const auto found =
+      std::find_if(shown_.begin(), shown_.end(), [&](const Shown& shown) { return shown.merge == merge; });
+  if (found == shown_.end()) throw OtherMerge();
+  return found->maps;
 }
 
 }  // namespace gridmerge::cli

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
 
 #include "gridmerge/online/team.hpp"
 #include "page_server.hpp"
+#include "refine_answer.hpp"
 
 namespace gridmerge::cli {
 
@@ -23,16 +25,23 @@ class LivePage {
   PageAnswers answers();
 
  private:
+  struct Shown {
+    std::string merge;  ///< as its page calls it
+    ShownMaps maps;
+  };
+
   std::shared_ptr<const TeamAnswer> newest() const;
-  std::shared_ptr<const TeamAnswer> shown() const;
   std::shared_ptr<const std::string> page();
-  std::string refine(const std::string& body) const;
+  /// Throws OtherMerge.
+  ShownMaps maps_of(const std::string& merge) const;
 
   const int threads_;
   mutable std::mutex mutex_;
   std::shared_ptr<const TeamAnswer> answer_ = std::make_shared<const TeamAnswer>();  // with mutex_ held
-  std::shared_ptr<const TeamAnswer> shown_ = answer_;  // by the page that was made last; likewise
-  std::shared_ptr<const std::string> page_;            // the serving thread's own
+  std::deque<Shown> shown_;  // by the pages that were made last, the newest first; likewise
+  // The serving thread's own.
+  std::shared_ptr<const TeamAnswer> page_answer_;
+  std::shared_ptr<const std::string> page_;
 };
 
 }  // namespace gridmerge::cli

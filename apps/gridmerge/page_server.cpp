@@ -223,6 +223,8 @@ class PageServer::State {
       return error_response(Status::service_unavailable, "the server has been ended");
     } catch (const std::invalid_argument& error) {
       return error_response(Status::bad_request, error.what());
+    } catch (const OtherMerge& error) {
+      return error_response(Status::conflict, error.what());
     } catch (const std::bad_alloc&) {
       return error_response(Status::internal_server_error, "out of memory");
     } catch (const std::exception& error) {

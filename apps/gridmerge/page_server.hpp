@@ -3,11 +3,18 @@
 
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "console.hpp"
 
 namespace gridmerge::cli {
+
+/// A page asks about a merge that is not served: it was made by another server, or long ago.
+class OtherMerge : public std::runtime_error {
+ public:
+  OtherMerge() : std::runtime_error("this page is of another merge: reload it") {}
+};
 
 /// What a PageServer says. Each may throw; what is asked for is then answered with an error.
 struct PageAnswers {
@@ -17,7 +24,7 @@ struct PageAnswers {
   /// Called by the thread that serves.
   std::function<std::string()> news = {};
   /// Answers the body of a POST at "/refine" with JSON. Throws std::invalid_argument for a body that makes no
-  /// sense. Runs under with_cancellation().
+  /// sense, and OtherMerge. Runs under with_cancellation().
   std::function<std::string(const std::string& body)> refine;
 };
 

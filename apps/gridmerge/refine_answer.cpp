@@ -11,10 +11,14 @@ namespace gridmerge::cli {
 
 using namespace internal;
 
-std::string answer_refine(const std::string& body, std::size_t maps,
-                          const std::function<const OccupancyGrid&(std::size_t)>& map, int threads) {
-  const RefineRequest request = parse_refine_request(body, maps);
-  const auto placed = [&](const LaidMap& laid) { return PlacedMap{&map(laid.map), laid.T_page_map}; };
+std::string answer_refine(const std::string& body,
+                          const std::function<ShownMaps(const std::string& merge)>& maps_of, int threads) {
+  ShownMaps maps;
+  const RefineRequest request = parse_refine_request(body, [&](const std::string& merge) {
+    maps = maps_of(merge);
+    return maps.size();
+  });
+  const auto placed = [&](const LaidMap& laid) { return PlacedMap{maps[laid.map].get(), laid.T_page_map}; };
   std::vector<PlacedMap> fixed;
   for (const LaidMap& laid : request.fixed) fixed.push_back(placed(laid));
   RefinedPose refined;

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
 
 namespace gridmerge::cli {
 
-/// The best fit near where a page lays a map, as it asks for with the body of a request, in JSON. Of `maps`
-/// maps `map(i)` is one. Throws std::invalid_argument for a body that makes no sense. May be cancelled.
-std::string answer_refine(const std::string& body, std::size_t maps,
-                          const std::function<const OccupancyGrid&(std::size_t)>& map, int threads);
+/// In the order of a page that shows them.
+using ShownMaps = std::vector<std::shared_ptr<const OccupancyGrid>>;
+
+/// The best fit near where a page lays a map, as it asks for with the body of a request, in JSON. `maps_of`
+/// has the maps of the merge that the page names, and throws OtherMerge where it is not served. Throws that
+/// too, and std::invalid_argument for a body that makes no sense. May be cancelled.
+std::string answer_refine(const std::string& body,
+                          const std::function<ShownMaps(const std::string& merge)>& maps_of, int threads);
 
 }  // namespace gridmerge::cli

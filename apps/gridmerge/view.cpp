@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -29,25 +30,38 @@ struct ViewCommandOptions {
   int port = 0;
 };
 
+/// For as long as the merge is there.
+ShownMaps shown_maps(const SavedMerge& merge) {
+  std::vector<std::optional<OccupancyGrid>> bent = bent_maps(merge.maps, merge.result);
+  ShownMaps maps;
+  for (std::size_t i = 0; i < bent.size(); ++i) {
+    if (bent[i])
+      maps.push_back(std::make_shared<const OccupancyGrid>(*std::move(bent[i])));
+    else
+      maps.emplace_back(std::shared_ptr<void>(), &merge.maps[i]);
+  }
+  return maps;
+}
+
 int run_view(const ViewCommandOptions& options) {
   Console console(options.common);
   const SavedMerge merge = load_saved_merge(options.merge, console);
-  std::string page;
+  LiveReportPage page;
   with_threads(options.common.threads, [&] { page = live_report_page(merge.named()); });
-  auto shared = std::make_shared<const std::string>(std::move(page));
+  const auto html = std::make_shared<const std::string>(std::move(page.html));
   PageAnswers answers;
-  answers.page = [shared] { return shared; };
+  answers.page = [html] { return html; };
   // As the page draws and scores them: drawn when they are first asked for.
-  std::vector<std::optional<OccupancyGrid>> bent;
+  ShownMaps maps;
   std::once_flag are_drawn;
+  const auto maps_of = [&](const std::string& asked) {
+    if (asked != page.merge) throw OtherMerge();
+    std::call_once(are_drawn,
+                   [&] { with_threads(options.common.threads, [&] { maps = shown_maps(merge); }); });
+    return maps;
+  };
   answers.refine = [&](const std::string& body) {
-    std::call_once(are_drawn, [&] {
-      with_threads(options.common.threads, [&] { bent = bent_maps(merge.maps, merge.result); });
-    });
-    const auto map = [&](std::size_t i) -> const OccupancyGrid& {
-      return bent[i] ? *bent[i] : merge.maps[i];
-    };
-    return answer_refine(body, merge.maps.size(), map, options.common.threads);
+    return answer_refine(body, maps_of, options.common.threads);
   };
   PageServer server(options.address, options.port, std::move(answers));
   warn_of_visitors(server, console);

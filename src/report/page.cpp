@@ -50,11 +50,11 @@ std::string report_page(const NamedMerge& merge) {
   return assemble("'none'", page_data(merge));
 }
 
-std::string live_report_page(const NamedMerge& merge, std::optional<std::uint64_t> answer) {
+LiveReportPage live_report_page(const NamedMerge& merge, std::optional<std::uint64_t> answer) {
   Json data = page_data(merge);
   data["live"] = true;
   if (answer) data["answer"] = *answer;
-  return assemble("'self'", data);
+  return {assemble("'self'", data), data.at("merge").get<std::string>()};
 }
 
 }  // namespace gridmerge::internal

@@ -19,10 +19,16 @@ namespace gridmerge::internal {
 /// same bytes. O(cells): about 0.1 s for a map of 4000 x 4000.
 std::string report_page(const NamedMerge& merge);
 
+/// A page for a server, and the name of its merge, by which it asks about maps (page_data()).
+struct LiveReportPage {
+  std::string html;
+  std::string merge;
+};
+
 /// The same for a server that answers what the page asks: its data says that it is `live`, and the policy
 /// lets it talk to where it came from. With the number of an `answer` the page asks the server at "/news"
 /// which one is the newest, and loads itself anew when that is another. Throws as report_page().
-GRIDMERGE_INTERNAL_EXPORT std::string live_report_page(const NamedMerge& merge,
-                                                       std::optional<std::uint64_t> answer = {});
+GRIDMERGE_INTERNAL_EXPORT LiveReportPage live_report_page(const NamedMerge& merge,
+                                                          std::optional<std::uint64_t> answer = {});
 
 }  // namespace gridmerge::internal

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "grid/parallel.hpp"
+#include "grid/sha256.hpp"
 #include "gridmerge/report/merge_output.hpp"
 #include "gridmerge/report/merge_record.hpp"
 #include "gridmerge/version.hpp"
@@ -91,6 +92,12 @@ Json refused_json(const MergeResult& result, const ToldJoins& told) {
   return {{"count", count}, {"rows", std::move(rows)}};
 }
 
+/// 64 bits: enough to tell the merges apart that come under one address.
+std::string name_of_content(const Json& content) {
+  constexpr std::size_t kDigits = 16;
+  return to_hex(Sha256().add(text_of(content, -1)).digest()).substr(0, kDigits);
+}
+
 /// What takes time is done for several at once. If they take more than `bytes`, the largest are shown
 /// coarser.
 std::vector<ShownMap> show_all(const std::vector<const OccupancyGrid*>& grids, std::size_t bytes) {
@@ -145,15 +152,12 @@ Json page_data(const NamedMerge& merge) {
   for (const LeftOut& one : result.left_out)
     left_out.push_back(
         {{"map", one.map}, {"reason", name_of(one.reason)}, {"explanation", explain(result, one)}});
-  Json page{{"version", kVersion},
-            {"live", false},
-            {"maps", std::move(shown_maps)},
-            {"components", std::move(components)},
-            {"joins", std::move(joins)},
-            {"refused", refused_json(result, told)},
-            {"left_out", std::move(left_out)},
-            {"open_ways", std::move(open_ways)}};
-  if (result.plan) page["plan"] = plan_page_json(merge);
+  Json content{{"maps", std::move(shown_maps)},   {"components", std::move(components)},
+               {"joins", std::move(joins)},       {"refused", refused_json(result, told)},
+               {"left_out", std::move(left_out)}, {"open_ways", std::move(open_ways)}};
+  if (result.plan) content["plan"] = plan_page_json(merge);
+  Json page{{"version", kVersion}, {"live", false}, {"merge", name_of_content(content)}};
+  page.update(content);
   return page;
 }
 

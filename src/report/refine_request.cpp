@@ -45,10 +45,12 @@ RefineRequest read_request(const JsonReader& json, std::size_t maps) {
 
 }  // namespace
 
-RefineRequest parse_refine_request(std::string_view text, std::size_t maps) {
+RefineRequest parse_refine_request(std::string_view text,
+                                   const std::function<std::size_t(const std::string& merge)>& maps_of) {
   try {
     const nlohmann::json json = parse_json(text);
-    return read_request(JsonReader(json), maps);
+    const JsonReader request(json);
+    return read_request(request, maps_of(request.at("merge").text()));
   } catch (const JsonError& error) {
     throw std::invalid_argument(error.what());
   }

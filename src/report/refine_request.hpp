@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,9 +25,11 @@ struct RefineRequest {
   std::vector<LaidMap> fixed;  ///< one or more, each another map
 };
 
-/// Reads a request (docs/view.md) about one of `maps` maps. Throws std::invalid_argument, "fixed[1].map is no
-/// map: ...", for what it cannot use: coordinates beyond 1e7 m and angles beyond 100 rad, too. O(bytes).
-GRIDMERGE_INTERNAL_EXPORT RefineRequest parse_refine_request(std::string_view text, std::size_t maps);
+/// Reads a request (docs/view.md). It numbers maps as the page of the merge does that it names, and `maps_of`
+/// says how many that merge has, or throws. Throws std::invalid_argument, "fixed[1].map is no map: ...", for
+/// what it cannot use: coordinates beyond 1e7 m and angles beyond 100 rad, too. O(bytes).
+GRIDMERGE_INTERNAL_EXPORT RefineRequest parse_refine_request(
+    std::string_view text, const std::function<std::size_t(const std::string& merge)>& maps_of);
 
 /// The answer: one line of JSON, with its end.
 GRIDMERGE_INTERNAL_EXPORT std::string refined_pose_json(const RefinedPose& pose);

@@ -58,9 +58,12 @@ TEST_F(StretchedMerge, AMapRefinedWhereItLiesStaysThere) {
   RunningProgram server({"view", output});
   const HttpClient client(port_of(server.read_line()));
   const Json found = members();
+  const Json merge = data_of_page(read_file(output + "/report.html")).at("merge");
   for (const std::size_t moving : {0u, 1u, 2u}) {
-    Json question{
-        {"moving", moving}, {"transform", found.at(moving).at("transform")}, {"fixed", Json::array()}};
+    Json question{{"merge", merge},
+                  {"moving", moving},
+                  {"transform", found.at(moving).at("transform")},
+                  {"fixed", Json::array()}};
     for (std::size_t i = 0; i < 3; ++i) {
       if (i != moving) question["fixed"].push_back({{"map", i}, {"transform", found.at(i).at("transform")}});
     }

@@ -19,6 +19,13 @@ inline int port_of(const std::string& line) {
   return std::stoi(line.substr(start.size()));
 }
 
+/// What a page was given.
+inline Json data_of_page(const std::string& html) {
+  const std::string start = R"(id="report-data">)";
+  const std::size_t from = html.find(start) + start.size();
+  return Json::parse(html.substr(from, html.find("</script>", from) - from));
+}
+
 /// `gridmerge view` of two maps that were merged, and one that was left out.
 class View : public CliTest {
  protected:
@@ -31,6 +38,9 @@ class View : public CliTest {
 
   HttpClient client() const { return HttpClient(port); }
 
+  /// What the page was given, as the merge wrote it.
+  Json page_data() const { return data_of_page(read_file(output + "/report.html")); }
+
   /// A question about the second map, displaced from where it lies on the first.
   Json question() const {
     const Json members =
@@ -38,7 +48,8 @@ class View : public CliTest {
     Json transform = members.at(1).at("transform");
     transform["x"] = transform.at("x").get<double>() + 0.4;
     transform["y"] = transform.at("y").get<double>() - 0.3;
-    return {{"moving", 1},
+    return {{"merge", page_data().at("merge")},
+            {"moving", 1},
             {"transform", transform},
             {"fixed", {{{"map", 0}, {"transform", members.at(0).at("transform")}}}}};
   }

@@ -58,6 +58,17 @@ TEST_F(View, OfAMapThatDoesNotBelongItSaysSo) {
   EXPECT_LT(Json::parse(answer->body).at("probability"), 0.1);
 }
 
+// The same numbers stand for other maps there.
+TEST_F(View, OfAnotherMergeItAnswersNothing) {
+  Json body = question();
+  body["merge"] = "0123456789abcdef";
+  body["moving"] = 99;
+  const auto answer = client().post("/refine", body.dump(), kJson);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->status, 409);
+  EXPECT_EQ(Json::parse(answer->body), Json({{"error", "this page is of another merge: reload it"}}));
+}
+
 TEST_F(View, NamesWhatIsWrongWithABody) {
   const auto expect_bad = [&](const std::string& body, const std::string& error) {
     const auto answer = client().post("/refine", body, kJson);
@@ -77,7 +88,7 @@ TEST_F(View, NamesWhatIsWrongWithABody) {
   expect_bad("\xff\xfe", "JSON");
   expect_bad(std::string(100000, '['), "JSON");
   expect_bad("[]", "object");
-  expect_bad("{}", "moving");
+  expect_bad("{}", "merge");
   expect_bad(changed("/moving", 3), "moving is no map");
   expect_bad(changed("/moving", -1), "moving");
   expect_bad(changed("/moving", 0), "fixed[0].map is the moving map");

@@ -109,7 +109,8 @@ TEST_F(NodePage, RefinesWhatIsPlacedByHand) {
   const Json& members = page.at("components").at(0).at("members");
   Json displaced = members.at(1).at("transform");
   displaced["x"] = displaced.at("x").get<double>() + 0.3;
-  const Json question{
+  Json question{
+      {"merge", page.at("merge")},
       {"moving", members.at(1).at("map")},
       {"transform", displaced},
       {"fixed", {{{"map", members.at(0).at("map")}, {"transform", members.at(0).at("transform")}}}}};
@@ -118,6 +119,18 @@ TEST_F(NodePage, RefinesWhatIsPlacedByHand) {
   ASSERT_EQ(answer->status, 200) << answer->body;
   const Json refined = Json::parse(answer->body).at("transform");
   EXPECT_NEAR(refined.at("x").get<double>(), members.at(1).at("transform").at("x").get<double>(), 0.1);
+
+  // A reader who is at work asks on about the maps of that page, while others load newer ones.
+  const MapTopic stranger = peer.maps("/c/map");
+  publish(stranger, "c/map", 3, Explorers::kSteps);
+  ASSERT_TRUE(comes_true([&] { return data().at("maps").size() == 3; }));
+  const auto later = HttpClient(port).post("/refine", question.dump(), "application/json");
+  ASSERT_TRUE(later);
+  EXPECT_EQ(later->status, 200) << later->body;
+  question["merge"] = "0123456789abcdef";
+  const auto other = HttpClient(port).post("/refine", question.dump(), "application/json");
+  ASSERT_TRUE(other);
+  EXPECT_EQ(other->status, 409) << other->body;
 }
 
 TEST_F(NodePage, IsForItsOwnPageAlone) {

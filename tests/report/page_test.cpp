@@ -237,12 +237,31 @@ TEST(ReportPage, AFileFetchesNothing) {
 }
 
 TEST(ReportPage, ALiveOneAsksItsServerAlone) {
-  const std::string page = live_report_page({kNames, kMaps, two_of_four()});
+  const std::string page = live_report_page({kNames, kMaps, two_of_four()}).html;
   EXPECT_TRUE(contains(page, "connect-src 'self'; "));
   Json data = data_of(page);
   EXPECT_EQ(data.at("live"), true);
   data["live"] = false;
   EXPECT_EQ(data, data_of(report_page({kNames, kMaps, two_of_four()})));
+}
+
+TEST(ReportPage, NamesItsMerge) {
+  const auto name = [](const std::string& page) { return data_of(page).at("merge").get<std::string>(); };
+  const MergeResult result = two_of_four();
+  const std::string merge = name(report_page({kNames, kMaps, result}));
+  EXPECT_EQ(merge.size(), 16u);
+  const LiveReportPage served = live_report_page({kNames, kMaps, result}, 7);
+  EXPECT_EQ(served.merge, merge) << "whoever serves it";
+  EXPECT_EQ(name(served.html), merge);
+  std::vector<std::string> names = kNames;
+  std::swap(names[0], names[1]);
+  EXPECT_NE(name(report_page({names, kMaps, result})), merge);
+  std::vector<OccupancyGrid> maps = kMaps;
+  maps[2].origin.x += 0.01;
+  EXPECT_NE(name(report_page({kNames, maps, result})), merge);
+  MergeResult moved = result;
+  moved.components[0].members[1].T_component_map.x += 0.01;
+  EXPECT_NE(name(report_page({kNames, kMaps, moved})), merge);
 }
 
 TEST(ReportPage, OfNothing) {

@@ -181,6 +181,27 @@ test("a map that is only looked at in hand is not placed", async () => {
   await tab.close();
 });
 
+test("a page is told that another merge is served at its address now", async () => {
+  const first = await view(mergeInto("pair", pair, "--accept", "1"));
+  const tab = await open(first.address);
+  const { page } = tab;
+  await takeThird(tab);
+  const before = await pose(page);
+  const ended = new Promise((done) => first.server.once("exit", done));
+  first.server.kill("SIGKILL");
+  await ended;
+  const second = await view(mergeInto("three", examples), Number(new URL(first.address).port));
+  try {
+    await page.click("#hand-refine");
+    await page.waitForSelector(".answer:has-text('Not refined: this page is of another merge: reload it')");
+    assert.deepEqual(await pose(page), before);
+    tab.problems.length = 0; // The browser itself reports the answer.
+    await tab.close();
+  } finally {
+    second.server.kill("SIGKILL");
+  }
+});
+
 test("with gridmerge view the engine refines what was placed by hand", async () => {
   const { server, address } = await view(mergeInto("pair", pair, "--accept", "1"));
   try {

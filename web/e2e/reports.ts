@@ -63,8 +63,8 @@ export const large = () =>
   simulated("large", 3, ["--kind", "office", "--size", "80x80", "--resolution", "0.02", "--overlap", "0.5", "--seed", "3"]);
 
 /** Starts `gridmerge view` and gives the address that it prints. */
-export function view(folder: string): Promise<{ server: ChildProcess; address: string }> {
-  const server = spawn(program, ["view", folder, "--port", "0"], { cwd: source });
+export function view(folder: string, port = 0): Promise<{ server: ChildProcess; address: string }> {
+  const server = spawn(program, ["view", folder, "--port", String(port)], { cwd: source });
   return new Promise((resolve, reject) => {
     let text = "";
     server.stdout.on("data", (data: Buffer) => {

@@ -14,14 +14,22 @@ export interface Refined {
   moved: number;
 }
 
-/** Asks the gridmerge that serves the page. Poses take each map's frame to a common one. Throws Error with its words. */
-export async function refine(
-  moving: number, pose: SE2, fixed: { map: number; T_scene_map: SE2 }[]): Promise<Refined> {
+/** Where the page lays a map, and others that it may fit to. Poses take each map's frame to a common one. */
+export interface Question {
+  /** What the page's merge is called: another one numbers its maps otherwise. */
+  merge: string;
+  moving: number;
+  pose: SE2;
+  fixed: { map: number; T_scene_map: SE2 }[];
+}
+
+/** Asks the gridmerge that serves the page. Throws Error with its words. */
+export async function refine({ merge, moving, pose, fixed }: Question): Promise<Refined> {
   const response = await fetch("/refine", {
     method: "POST",
     headers: { "Content-Type": "application/json" },
     body: JSON.stringify({
-      moving, transform: pose, fixed: fixed.map(({ map, T_scene_map }) => ({ map, transform: T_scene_map })),
+      merge, moving, transform: pose, fixed: fixed.map(({ map, T_scene_map }) => ({ map, transform: T_scene_map })),
     }),
   });
   const answer: unknown = await response.json().catch(() => ({}));

@@ -122,7 +122,7 @@ export class HandPanel {
     this.isRefining = true;
     const asked = this.situation();
     try {
-      const refined = await refine(map, pose, this.others(map));
+      const refined = await refine({ merge: state.report.merge, moving: map, pose, fixed: this.others(map) });
       if (this.situation() !== asked) {
         this.say("");
         return;

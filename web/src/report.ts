@@ -136,6 +136,8 @@ export interface Report {
   version: string;
   /** Served by a running gridmerge, which can refine poses. */
   live: boolean;
+  /** What this merge is called: a digest of all that is told of it. */
+  merge: string;
   /** The number of a node's answer, whose newest one the page follows; not in other reports. */
   answer?: number;
   maps: InputMap[];

@@ -17,7 +17,7 @@ export function reportOf(poses: SE2[], joins: Join[] = trueJoins(poses)): Report
     members: poses.map((transform, map) => ({ map, transform, probability: null, sd: null })),
   };
   return {
-    version: "", live: false, maps: poses.map((_, i) => ({ ...grid, name: `${i}.yaml`, color: "#000000" })), components: [component],
+    version: "", live: false, merge: "0123456789abcdef", maps: poses.map((_, i) => ({ ...grid, name: `${i}.yaml`, color: "#000000" })), components: [component],
     joins, refused: { count: 0, rows: [] }, left_out: [], open_ways: [],
   };
 }
