@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type SharedView, defaultView, fromHash, toHash } from "../src/link";
+import type { SE2 } from "../src/se2";
 import { randomNumbers } from "./random";
 import { join, reportOf } from "./reports";
 
@@ -39,6 +40,15 @@ test("any view comes back from its link", () => {
     assert.match(hash, /^[a-z0-9=&:;,.-]*$/, "nothing that a mail or a chat would break");
     assert.deepEqual(fromHash(`#${hash}`, report, tabs), view);
   }
+});
+
+test("poses come back to the bit, however far off they are", () => {
+  const poses: [number, SE2][] = [[0, { x: 500101.123456789, y: 4649776.1, theta: 0.7123456789012345 }], [1, { x: -1 / 3, y: 1e-9, theta: -1e-7 }],
+    [2, { x: -0.1, y: 9999999.999, theta: Math.PI }]];
+  const placed = new Map(poses);
+  const hash = toHash({ ...defaultView(report), placed }, report);
+  assert.match(hash, /^[a-z0-9=&:;,.-]*$/);
+  assert.deepEqual(fromHash(hash, report, tabs).placed, placed);
 });
 
 test("what is damaged, or of another report, is left as it is", () => {
