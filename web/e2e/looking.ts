@@ -283,7 +283,7 @@ test("a link to a view restores it", async () => {
   const seen = await tab.picture();
   await page.click("button[aria-label^='Copy a link']");
   const link = await lastCopied(page);
-  assert.match(link, /report\.html#at=[\d.,-]+&tab=joins&maps=1:0\.3,2:0&colors=0:990099&placed=3:[\d.,-]+&grid=0&ruler=/);
+  assert.match(link, /report\.html#at=[\d.,-]+&tab=joins&maps=1:0\.3,2:0&colors=0:990099&placed=3:[\d.,e-]+&grid=0&ruler=/);
   assert.equal(page.url(), link);
   await tab.close();
 
@@ -300,6 +300,8 @@ test("a link to a view restores it", async () => {
   await other.page.evaluate(() => (location.hash = "#show=join-0-1&merged=1"));
   await other.settled();
   assert.match((await other.page.textContent("#scene option:checked"))!, /^join: robot_1\.yaml and robot_2\.yaml/);
+  await other.page.evaluate(() => (location.hash = "#at=999999999,0,0.0000000001"));
+  await other.settled();
   await other.page.evaluate(() => (location.hash = "#show=<script>&at=1,2,nonsense"));
   await other.page.click("#tab-layers");
   assert.equal(await other.page.inputValue("#scene"), "0");

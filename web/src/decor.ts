@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { fixed } from "./numbers";
 import { type Ruler, lengthOf } from "./ruler";
-import { type Viewport, roundStep, toScreen, visibleBox } from "./viewport";
+import { type Viewport, multiples, roundStep, toScreen, visibleBox } from "./viewport";
 
 /** Colours of what is drawn over maps, as the page's style has them. */
 export interface DecorColors {
@@ -45,10 +45,8 @@ export function drawGrid(context: CanvasRenderingContext2D, view: Viewport, colo
   context.strokeStyle = colors.line;
   context.lineWidth = 1;
   context.beginPath();
-  const columns: number[] = [];
-  const rows: number[] = [];
-  for (let i = Math.ceil(box.left / step); i * step <= box.right; i++) columns.push(i * step);
-  for (let i = Math.ceil(box.bottom / step); i * step <= box.top; i++) rows.push(i * step);
+  const columns = multiples(step, box.left, box.right);
+  const rows = multiples(step, box.bottom, box.top);
   for (const x of columns) {
     const at = Math.round(toScreen(view, { x, y: 0 }).x) + 0.5;
     context.moveTo(at, 0);

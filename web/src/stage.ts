@@ -10,7 +10,7 @@ import type { Point, SE2 } from "./se2";
 import { Stamp, handleOf, outline } from "./stamp";
 import type { State } from "./state";
 import { Tiles } from "./tiles";
-import { type Viewport, boxAround, fit, panned, toScene, zoomed } from "./viewport";
+import { type Viewport, boxAround, fit, looking, panned, toScene, zoomed } from "./viewport";
 
 const paintBudget = 9; // milliseconds a frame
 
@@ -81,7 +81,7 @@ export class Stage {
     const { width, height } = this.view;
     this.awaited = this.sized ? null : aim;
     if (!aim) this.fit();
-    else this.look({ width, height, center: aim.center, scale: Math.min(width, height) / aim.metres });
+    else this.look(looking(aim.center, aim.metres, width, height));
   }
 
   /** A map of the scene, with what lies around it. */

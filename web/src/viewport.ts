@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Point } from "./se2";
 
+/** Pixels per metre. Nearer there is nothing more to see, and coordinates far from the origin have no finer steps. */
+const mostScale = 2000;
+const leastScale = 1e-6;
+
 /** A rectangle of a scene, in metres. */
 export interface Box {
   left: number;
@@ -62,12 +66,17 @@ export function fit(box: Box, width: number, height: number, margin = 0.04): Vie
   const scale = Math.min(
     (width * room) / Math.max(box.right - box.left, least), (height * room) / Math.max(box.top - box.bottom, least));
   const center = { x: (box.left + box.right) / 2, y: (box.bottom + box.top) / 2 };
-  return { width, height, center, scale: Math.max(scale, 1e-6) };
+  return { width, height, center, scale: Math.max(scale, leastScale) };
+}
+
+/** The view with `center` in its middle whose shorter side shows so many metres, as far as a view can. */
+export function looking(center: Point, metres: number, width: number, height: number): Viewport {
+  return { width, height, center, scale: Math.min(mostScale, Math.max(leastScale, Math.min(width, height) / metres)) };
 }
 
 /** Zooms by `factor` so that what is under the pixel `at` stays there. */
 export function zoomed(view: Viewport, factor: number, at: Point): Viewport {
-  const scale = Math.min(2000, Math.max(0.01, view.scale * factor));
+  const scale = Math.min(mostScale, Math.max(0.01, view.scale * factor));
   const held = toScene(view, at);
   return {
     ...view,
@@ -89,4 +98,13 @@ export function roundStep(least: number): number {
   const power = 10 ** Math.floor(Math.log10(least));
   for (const factor of [1, 2, 5]) if (factor * power >= least * (1 - 1e-9)) return factor * power;
   return 10 * power;
+}
+
+/** The multiples of `step` from `from` to `to`, as far as so many lines can be told apart. */
+export function multiples(step: number, from: number, to: number): number[] {
+  const most = 1000;
+  const first = Math.ceil(from / step);
+  // By count: far from zero the next number may be the same one.
+  const number = Math.floor(to / step) - first + 1;
+  return number > 0 ? Array.from({ length: Math.min(most, number) }, (_, i) => (first + i) * step) : [];
 }

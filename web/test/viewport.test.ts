@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type Point } from "../src/se2";
-import { boxAround, fit, panned, roundStep, toScene, toScreen, visibleBox, zoomed } from "../src/viewport";
+import { boxAround, fit, looking, multiples, panned, roundStep, toScene, toScreen, visibleBox, zoomed } from "../src/viewport";
 import { randomNumbers } from "./random";
 
 function near(a: Point, b: Point): void {
@@ -50,4 +50,20 @@ test("steps are round and no smaller than asked", () => {
     const digit = Number(step.toExponential(6).split("e")[0]);
     assert.ok([1, 2, 5].includes(digit), `${step}`);
   }
+});
+
+test("a view looks no nearer than there is something to see, and no further than fits a number", () => {
+  const center = { x: 999999999, y: 0 };
+  for (const [metres, scale] of [[1e-10, 2000], [30, 20], [1e300, 1e-6], [Infinity, 1e-6]]) {
+    assert.deepEqual(looking(center, metres, 800, 600), { width: 800, height: 600, center, scale });
+  }
+});
+
+test("lines of a grid are counted, wherever they lie", () => {
+  assert.deepEqual(multiples(0.5, -0.6, 1), [-0.5, 0, 0.5, 1]);
+  assert.deepEqual(multiples(5, 1, 4), []);
+  assert.deepEqual(multiples(5, 5, 5), [5]);
+  assert.ok(multiples(1e-10, 1e9, 1e9 + 1e-6).length <= 1000);
+  assert.ok(multiples(1e-9, -1e9, 1e9).length <= 1000);
+  for (const nowhere of [NaN, Infinity]) assert.ok(multiples(1, 0, nowhere).length <= 1000);
 });
