@@ -300,6 +300,11 @@ test("a link to a view restores it", async () => {
   await other.page.evaluate(() => (location.hash = "#show=join-0-1&merged=1"));
   await other.settled();
   assert.match((await other.page.textContent("#scene option:checked"))!, /^join: robot_1\.yaml and robot_2\.yaml/);
+  assert.equal(await other.page.isVisible("#link-problem"), false);
+  await other.page.evaluate(() => (location.hash = "#show=join-0-1&merged=1&of=0123456789abcdef"));
+  await other.page.waitForSelector("#link-problem:has-text('This link is to another merge')");
+  await other.screenshot("foreign_link");
+  assert.equal(await other.page.inputValue("#scene"), "0");
   await other.page.evaluate(() => (location.hash = "#at=999999999,0,0.0000000001"));
   await other.settled();
   await other.page.evaluate(() => (location.hash = "#show=<script>&at=1,2,nonsense"));

@@ -37,6 +37,9 @@ export function defaultView(report: Report): SharedView {
   };
 }
 
+/** What numbers maps and scenes, or lies in the frame of one, and says nothing of another merge. */
+const ownParts = ["show", "at", "maps", "colors", "placed", "ruler"];
+
 /** As the part of an address behind its "#": only what differs from the default, so that links stay short. */
 export function toHash(view: SharedView, report: Report): string {
   const usual = defaultView(report);
@@ -62,16 +65,27 @@ export function toHash(view: SharedView, report: Report): string {
     const { from, to } = view.ruler;
     parts.set("ruler", [from.x, from.y, to.x, to.y].map((value) => short(value)).join(","));
   }
+  if (ownParts.some((key) => parts.has(key))) parts.set("of", report.merge);
   return [...parts].map(([key, value]) => `${key}=${value}`).join("&");
 }
 
-/** Reads a hash, with its "#" or without. What is damaged, or not of this report, is as in the default. */
-export function fromHash(hash: string, report: Report, tabs: readonly string[]): SharedView {
-  const view = defaultView(report);
-  const parts = new Map(hash.replace(/^#/, "").split("&").map((part) => {
+/** Whether a hash is of another merge than the report's. Links of before do not say of which they are. */
+export function isForeign(hash: string, report: Report): boolean {
+  return ![undefined, report.merge].includes(partsOf(hash).get("of"));
+}
+
+function partsOf(hash: string): Map<string, string> {
+  return new Map(hash.replace(/^#/, "").split("&").map((part) => {
     const at = part.indexOf("=");
     return [part.slice(0, at), part.slice(at + 1)] as const;
   }));
+}
+
+/** Reads a hash, with its "#" or without. What is damaged, or of another merge, is as in the default. */
+export function fromHash(hash: string, report: Report, tabs: readonly string[]): SharedView {
+  const view = defaultView(report);
+  const parts = partsOf(hash);
+  if (isForeign(hash, report)) for (const key of ownParts) parts.delete(key);
   const get = (key: string) => parts.get(key) ?? "";
   view.scene = sceneOf(get("show"), report) ?? view.scene;
   const at = numbers(get("at"), 3);

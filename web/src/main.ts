@@ -283,6 +283,7 @@ function build(report: Report): void {
     document.querySelector("dialog[open], input[type=number]:focus, input[type=text]:focus, input[type=search]:focus, select:focus") !== null;
   const following = report.answer === undefined ? null : follow(report.answer, { isBusy, keepView: () => shared.keep() });
   replace(document.getElementById("app")!,
+    shared.note,
     h("header", {},
       h("h1", {}, "Merged maps"), h("p", { id: "summary" }, summary(report)), following, mergedSwitch(state, toggleMerged), scenePicker(state)),
     h("main", {},

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 import { copy } from "./clipboard";
-import { type SharedView, fromHash, toHash } from "./link";
+import { h } from "./dom";
+import { type SharedView, fromHash, isForeign, toHash } from "./link";
 import type { Look, State } from "./state";
 import type { Stage } from "./stage";
 import type { Tabs } from "./tabs";
 
 /** Between what the page shows and links to it. */
 export class SharedState {
+  /** Says that a link does not fit. */
+  readonly note = h("p", { class: "problem", id: "link-problem", role: "alert" });
   private readonly state: State;
   private readonly stage: Stage;
   private readonly tabs: Tabs;
@@ -34,6 +37,8 @@ export class SharedState {
   restore(hash: string): void {
     const { state, stage } = this;
     const view = fromHash(hash, state.report, this.tabs.ids);
+    this.note.textContent = isForeign(hash, state.report)
+      ? "This link is to another merge. What it says of maps, and their poses, is left out." : "";
     state.show(view.scene);
     set(state.merged, view.merged);
     set(state.agreement, view.agreement);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type SharedView, defaultView, fromHash, toHash } from "../src/link";
+import { type SharedView, defaultView, fromHash, isForeign, toHash } from "../src/link";
 import type { SE2 } from "../src/se2";
 import { randomNumbers } from "./random";
 import { join, reportOf } from "./reports";
@@ -49,6 +49,21 @@ test("poses come back to the bit, however far off they are", () => {
   const hash = toHash({ ...defaultView(report), placed }, report);
   assert.match(hash, /^[a-z0-9=&:;,.-]*$/);
   assert.deepEqual(fromHash(hash, report, tabs).placed, placed);
+});
+
+test("a link of another merge moves, hides and colours no map", () => {
+  const of = { ...report, merge: "fedcba9876543210" };
+  const view: SharedView = {
+    ...defaultView(report), scene: { kind: "map", map: 2 }, center: { x: 1, y: 2 }, metres: 3, tab: "joins", merged: 0.5, maps: new Map([[0, 0]]),
+    colors: new Map([[1, "#0a00ff"]]), placed: new Map([[1, at]]), grid: false, ruler: { from: { x: 1, y: 2 }, to: { x: 3, y: 4 } },
+  };
+  const hash = toHash(view, report);
+  assert.deepEqual(fromHash(hash, report, tabs), view);
+  assert.equal(isForeign(hash, report), false);
+  assert.equal(isForeign(hash, of), true);
+  assert.deepEqual(fromHash(hash, of, tabs), { ...defaultView(of), tab: "joins", merged: 0.5, grid: false }, "what is of any merge holds");
+  assert.equal(isForeign(toHash({ ...defaultView(report), tab: "joins" }, report), of), false, "nor is there anything of maps in it");
+  assert.equal(isForeign("#placed=1:1,2,0.5", of), false, "a link of before");
 });
 
 test("what is damaged, or of another report, is left as it is", () => {
