@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
-import { rmSync } from "node:fs";
+import { readFileSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import type { Page } from "playwright-core";
@@ -121,6 +121,47 @@ test("the map in hand is dragged, turned by its handle, and moved by keys", asyn
   await page.selectOption("#hand-map", "3");
   await page.click("button:text-is('Put back')");
   assert.ok(!await page.isVisible("#hand-save"));
+  await tab.close();
+});
+
+test("no other numbers are saved than those that the fields show", async () => {
+  const tab = await open(mergeInto("three", examples));
+  const { page } = tab;
+  await page.click("#tab-hand");
+  await page.selectOption("#hand-map", "1");
+  await page.fill("#hand-x", "4.5");
+  const saved = async () => {
+    const download = page.waitForEvent("download");
+    await page.click("#hand-save");
+    const file = join(source, "build/web/poses.tsv");
+    await (await download).saveAs(file);
+    const [, , row] = readFileSync(file, "utf8").split("\n");
+    rmSync(file);
+    return row.split("\t");
+  };
+  assert.deepEqual((await saved()).slice(4), ["0.3", String((2 * Math.PI) / 180)]);
+  const fields = [["#hand-sd", "0.05"], ["#hand-sd-theta", "1"], ["#hand-x", "2.25"], ["#hand-y", "3"], ["#hand-theta", "30"]];
+  for (const [field, right] of fields) {
+    for (const wrong of ["0", "-5", "", "1e9", "1e300"].filter((text) => field.startsWith("#hand-sd") || Math.abs(Number(text)) > 5 || text === "")) {
+      const pose = await page.inputValue("#hand-x");
+      await page.fill(field, wrong);
+      assert.equal(await page.getAttribute(field, "aria-invalid"), "true", `${field} ${wrong}`);
+      assert.match((await page.textContent("#hand-reason"))!, /^Not to be saved: .+ has to be a number from -?[\d.]+ to \d+\.$/);
+      for (const button of ["#hand-save", "button:text-is('Copy command')"]) assert.ok(await page.isDisabled(button), `${field} ${wrong}`);
+      if (field === "#hand-x") {
+        if (wrong === "") await tab.screenshot("wrong_number");
+        await page.focus("#hand-map");
+        assert.equal(await page.inputValue(field), pose, "who leaves the field sees where the map lies");
+        assert.ok(await page.isEnabled("#hand-save"));
+      }
+    }
+    await page.fill(field, right);
+    assert.equal(await page.getAttribute(field, "aria-invalid"), "false");
+    assert.equal(await page.textContent("#hand-reason"), "");
+  }
+  const [, x, y, theta, sd, sdTheta] = (await saved()).map(Number);
+  assert.deepEqual([x, y, sd, sdTheta], [2.25, 3, 0.05, Math.PI / 180]);
+  assert.ok(Math.abs(theta - Math.PI / 6) < 1e-9);
   await tab.close();
 });
 

@@ -55,6 +55,7 @@ test("the page of a node follows its answers, and stays where its reader looks",
     node.newest = 3;
     await says(page, "Answer 2; a newer one is there");
     await page.fill("#hand-x", "4.5");
+    assert.equal(await page.textContent(".saving pre"), "gridmerge node --init poses.tsv");
     await page.waitForTimeout(2000);
     assert.equal(node.loaded, loaded);
     await page.click("#load-newest");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { degrees, fixed } from "./numbers";
+import type { Report } from "./report";
 import type { SE2 } from "./se2";
 import { flat } from "./text";
 
@@ -76,9 +77,14 @@ export function asInitialPoses(poses: { name: string; transform: SE2; sd: number
   return "map\tx\ty\ttheta\tsd\tsd_theta\n" + lines.join("");
 }
 
-/** The command that merges with the file of initial poses. Null if a name cannot be written in it. */
-export function mergeCommand(names: string[], poses: string): string | null {
+/**
+ * The command that merges what a report shows with the file of initial poses. A node hears its robots again, whose names are no
+ * files. Null if a name cannot be written in the command or the file.
+ */
+export function commandWith({ maps, answer }: Pick<Report, "maps" | "answer">, poses: string): string | null {
+  const names = maps.map((map) => map.name);
   if (!names.every(isWritable)) return null;
+  if (answer !== undefined) return `gridmerge node --init ${shellQuoted(poses)}`;
   return `gridmerge merge ${names.map((name) => shellQuoted(asArgument(name))).join(" ")} --init ${shellQuoted(poses)} -o merged_by_hand`;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { type Report, isLarge, isPlanBelieved } from "./report";
 import { type SceneId, firstScene } from "./scene";
-import { type Point, type SE2, normalizeAngle } from "./se2";
+import { type Point, type SE2, farthest, normalizeAngle } from "./se2";
 
 /** All that a link to a view restores. */
 export interface SharedView {
@@ -109,7 +109,7 @@ export function fromHash(hash: string, report: Report, tabs: readonly string[]):
   for (const part of get("placed").split(";")) {
     const [, map, pose] = /^(\d+):(.*)$/.exec(part) ?? [];
     const values = numbers(pose ?? "", 3);
-    if (values && Number(map) < report.maps.length) {
+    if (values && Number(map) < report.maps.length && Math.max(Math.abs(values[0]), Math.abs(values[1])) <= farthest) {
       view.placed.set(Number(map), { x: values[0], y: values[1], theta: normalizeAngle(values[2]) });
     }
   }

@@ -1,32 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 import { mapLabel } from "./badge";
-import { announce, copyButton, download } from "./clipboard";
 import { h, replace } from "./dom";
 import { refine } from "./engine";
-import { asInitialPoses, mergeCommand } from "./formats";
 import { Gauge } from "./gauge";
 import type { Grid } from "./grid";
+import { NumberField } from "./number_field";
 import { degrees, fixed, probability, radians } from "./numbers";
 import { type Place, placesOf } from "./places";
+import { Saving } from "./saving";
 import type { Placed } from "./scene";
 import { Scorer } from "./score";
-import { type SE2, normalizeAngle } from "./se2";
+import { type SE2, farthest, normalizeAngle } from "./se2";
 import type { State } from "./state";
 import { flat } from "./text";
 import { type Yardstick, laid, yardstickOf } from "./yardstick";
 
-const fileName = "poses.tsv";
-/** How well the poses of maps that were not moved are taken to be known, if the merge does not say; and never better than the last. */
-const keptSd = { position: 0.1, theta: 0.01 };
-const leastSd = { position: 0.02, theta: 0.002 };
+const mostTurned = 3600; // degrees: whole turns may have been counted
 const yardstickBudget = 4; // milliseconds a frame
-/** Of those that were, in metres and degrees, unless the user knows better. */
-const handSd = { position: 0.3, degrees: 2 };
-
+/** A field for a part of a pose. */
 interface PoseInput {
-  element: HTMLInputElement;
+  field: NumberField;
   get(pose: SE2): number;
-  set(pose: SE2, value: number): SE2;
 }
 
 /** Placing maps by hand: takes one, moves it, judges how it fits, and saves poses for the next merge. */
@@ -39,15 +33,8 @@ export class HandPanel {
   private readonly gauge = new Gauge();
   private readonly placeLine = h("p", { class: "soft", id: "hand-place" });
   private readonly answer = h("p", { class: "answer", role: "status" });
-  private readonly saving = h("div", { class: "saving" });
-  private readonly sure = h("input", {
-    type: "number", id: "hand-sd", min: 0.01, step: 0.1, value: handSd.position,
-    "aria-label": "Standard deviation of the positions, in metres",
-  });
-  private readonly sureAngle = h("input", {
-    type: "number", id: "hand-sd-theta", min: 0.1, step: 0.5, value: handSd.degrees,
-    "aria-label": "Standard deviation of the directions, in degrees",
-  });
+  private readonly saving: Saving;
+  private readonly poseNote = h("p", { class: "invalid", id: "hand-pose-note", role: "status" });
   private inputs: PoseInput[] = [];
   private toolsOf: number | null = null;
   private scorers = new Map<number, Scorer>();
@@ -66,10 +53,11 @@ export class HandPanel {
   constructor(state: State, middleOfView: () => { x: number; y: number }) {
     this.state = state;
     this.middleOfView = middleOfView;
+    this.saving = new Saving(state, () => this.poseProblem());
     replace(this.element,
       h("p", { class: "soft" },
         "Put a map where you know it belongs, save the poses, and merge again with them. Nothing here changes the merged map itself."),
-      h("label", { class: "field" }, "Map in hand ", this.picker), this.tools, this.saving);
+      h("label", { class: "field" }, "Map in hand ", this.picker), this.tools, this.saving.element);
     state.on("scene", () => this.rebuild());
     state.on("hand", () => this.update());
     for (const topic of ["grids", "bend"] as const) state.on(topic, () => this.score());
@@ -175,13 +163,14 @@ export class HandPanel {
     this.picker.value = handled === null ? "" : String(handled);
     if (handled !== this.toolsOf) this.rebuildTools();
     const pose = handled === null ? null : this.state.poseOf(handled);
-    for (const input of this.inputs) {
-      if (pose && document.activeElement !== input.element) input.element.value = fixed(input.get(pose), 3);
+    for (const { field, get } of this.inputs) {
+      if (pose && document.activeElement !== field.element) field.show(fixed(get(pose), 3));
     }
+    this.tellPose();
     this.tellPlace(handled, pose);
     this.dropAnswer();
     if (this.scoring === 0) this.scoring = requestAnimationFrame(() => this.score());
-    this.updateSaving();
+    this.saving.update();
   }
 
   private rebuildTools(): void {
@@ -192,16 +181,16 @@ export class HandPanel {
       return;
     }
     this.inputs = [
-      this.poseInput("hand-x", 0.05, (pose) => pose.x, (pose, x) => ({ ...pose, x })),
-      this.poseInput("hand-y", 0.05, (pose) => pose.y, (pose, y) => ({ ...pose, y })),
-      this.poseInput("hand-theta", 1, (pose) => degrees(pose.theta), (pose, value) => ({ ...pose, theta: normalizeAngle(radians(value)) })),
+      this.poseInput("x", farthest, 0.05, (pose) => pose.x, (pose, x) => ({ ...pose, x })),
+      this.poseInput("y", farthest, 0.05, (pose) => pose.y, (pose, y) => ({ ...pose, y })),
+      this.poseInput("theta", mostTurned, 1, (pose) => degrees(pose.theta), (pose, value) => ({ ...pose, theta: normalizeAngle(radians(value)) })),
     ];
     const labels = ["x [m] ", "y [m] ", "θ [°] "];
     const live = this.state.report.live;
     replace(this.tools,
       h("p", { class: "soft" }, "Drag the map; turn it by its handle, or drag with Shift. Keys: arrows by a cell, q and e by half a degree, with Shift more."),
-      h("div", { class: "pose-inputs" }, ...this.inputs.map((input, i) => h("label", {}, labels[i], input.element))),
-      this.placeLine, this.gauge.element,
+      h("div", { class: "pose-inputs" }, ...this.inputs.map((input, i) => h("label", {}, labels[i], input.field.element))),
+      this.poseNote, this.placeLine, this.gauge.element,
       h("div", { class: "buttons" },
         h("button", {
           type: "button", id: "hand-refine", disabled: !live, click: () => void this.refine(),
@@ -224,17 +213,27 @@ export class HandPanel {
   }
 
   private poseInput(
-    id: string, step: number, get: (pose: SE2) => number, set: (pose: SE2, value: number) => SE2): PoseInput {
-    const element = h("input", {
-      type: "number", id, step, input: () => {
+    part: "x" | "y" | "theta", most: number, step: number, get: (pose: SE2) => number, set: (pose: SE2, value: number) => SE2): PoseInput {
+    const field = new NumberField({
+      id: `hand-${part}`, what: part === "theta" ? "θ" : part, least: -most, most, step, typed: () => {
         const map = this.state.handled;
         const pose = map === null ? null : this.state.poseOf(map);
-        if (map !== null && pose && Number.isFinite(element.valueAsNumber)) {
-          this.state.put(map, set(pose, element.valueAsNumber));
-        }
+        if (map !== null && pose && field.value !== null) this.state.put(map, set(pose, field.value));
+        else this.update();
       },
     });
-    return { element, get, set };
+    // Who leaves the field sees where the map lies.
+    field.element.addEventListener("blur", () => this.update());
+    return { field, get };
+  }
+
+  private poseProblem(): string | null {
+    return this.inputs.map(({ field }) => field.problem).find((problem) => problem !== null) ?? null;
+  }
+
+  private tellPose(): void {
+    const problem = this.poseProblem();
+    this.poseNote.textContent = problem === null ? "" : `${problem}: the map stays where it was.`;
   }
 
   private score(): void {
@@ -278,52 +277,5 @@ export class HandPanel {
     let scorer = this.scorers.get(map);
     if (!scorer) this.scorers.set(map, (scorer = new Scorer(grid)));
     return scorer;
-  }
-
-  private updateSaving(): void {
-    const moved = [...this.state.byHand().keys()];
-    if (this.saving.dataset.maps === moved.join(" ")) return;
-    this.saving.dataset.maps = moved.join(" ");
-    if (moved.length === 0) {
-      replace(this.saving);
-      return;
-    }
-    const names = this.state.report.maps.map((map) => map.name);
-    const command = mergeCommand(names, fileName);
-    replace(this.saving,
-      h("h3", {}, "Placed by hand"),
-      h("ul", {}, ...moved.map((map) => h("li", {}, mapLabel(this.state, map)))),
-      h("p", {}, "Known to within ", this.sure, " m and ", this.sureAngle, " °"),
-      h("div", { class: "buttons" }, h("button", { type: "button", id: "hand-save", class: "primary", click: () => this.save() },
-        `Save ${fileName}`)),
-      command === null
-        ? h("p", { class: "soft" }, "The maps' names hold characters that a table of poses cannot: rename the files first.")
-        : h("div", {}, h("p", { class: "soft" },
-          "Then, from the folder in which the maps were merged, with the file there too, and with the options of that merge if it had any:"),
-          h("pre", {}, command), copyButton("Copy command", () => command, "Copy the command")));
-  }
-
-  private keptDeviation(map: number): { sd: number; sdTheta: number } {
-    const { component } = this.state.scene;
-    const members = component === null ? [] : this.state.report.components[component].members;
-    const { position, theta } = members.find((member) => member.map === map)?.sd ?? keptSd;
-    return { sd: Math.max(position, leastSd.position), sdTheta: Math.max(theta, leastSd.theta) };
-  }
-
-  private save(): void {
-    const sd = Math.max(0.001, this.sure.valueAsNumber || handSd.position);
-    const sdTheta = radians(Math.max(0.01, this.sureAngle.valueAsNumber || handSd.degrees));
-    const byHand = this.state.byHand();
-    const text = asInitialPoses(this.state.placed().map(({ map, T_scene_map }) => ({
-      name: this.state.report.maps[map].name,
-      transform: T_scene_map,
-      ...(byHand.has(map) ? { sd, sdTheta } : this.keptDeviation(map)),
-    })));
-    if (text === null) {
-      announce("Not saved: a map's name cannot be written in a table");
-      return;
-    }
-    download(fileName, text);
-    announce(`${fileName} saved`);
   }
 }

@@ -12,6 +12,9 @@ export interface Point {
   y: number;
 }
 
+/** Poses that lie further off are refused by gridmerge, along x or along y [m]. */
+export const farthest = 1e7;
+
 export const identity: SE2 = { x: 0, y: 0, theta: 0 };
 
 /** The same angle in (-pi, pi]. */

@@ -2,12 +2,17 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { test } from "node:test";
-import { asInitialPoses, asJson, asStaticTransforms, asYaml, childFrames, frameIds, frameName, mergeCommand } from "../src/formats";
+import { asInitialPoses, asJson, asStaticTransforms, asYaml, childFrames, commandWith, frameIds, frameName } from "../src/formats";
+import { identity } from "../src/se2";
+import { reportOf } from "./reports";
 
 const hostileNames = [
   "$(touch /tmp/owned)", "`id`; rm -rf ~", "a b'c\"d", "</script><script>alert(1)</script>", "-o", "two\nlines", "tab\there",
   "\u202eover", "{}%s\\", "", "x".repeat(3000), "\u2028\u0085", "\ufffd",
 ];
+
+const maps = (names: string[]) => names.map((name) => ({ ...reportOf([identity]).maps[0], name }));
+const mergeCommand = (names: string[]) => commandWith({ maps: maps(names) }, "poses.tsv");
 
 const pose = { x: 1.25, y: -3, theta: 0.1 + 0.2 };
 
@@ -69,18 +74,23 @@ test("frames are called as somebody asks", () => {
 });
 
 test("a shell reads back every name that the merge command holds", () => {
-  const names = hostileNames.filter((name) => mergeCommand([name], "poses.tsv") !== null);
+  const names = hostileNames.filter((name) => mergeCommand([name]) !== null);
   assert.ok(names.length >= 6);
-  const command = mergeCommand(names, "poses.tsv")!;
+  const command = mergeCommand(names)!;
   const read = execFileSync("/bin/sh", ["-c", command.replace("gridmerge merge", "printf '%s\\n'")], { encoding: "utf8" });
   const expected = [...names.map((name) => (name === "-o" ? "./-o" : name)), "--init", "poses.tsv", "-o", "merged_by_hand"];
   assert.deepEqual(read.trimEnd().split("\n"), expected);
 });
 
+test("a node is started anew with the poses: its robots are no files", () => {
+  assert.equal(commandWith({ maps: maps(["tb1", "tb2"]), answer: 0 }, "poses.tsv"), "gridmerge node --init poses.tsv");
+  assert.equal(commandWith({ maps: maps(["tb1", "two\nlines"]), answer: 3 }, "poses.tsv"), null);
+});
+
 test("names that a table cannot hold are not written", () => {
   for (const name of ["two\nlines", "tab\there", "", "\ufffd", "\u0000", "\u202eover", "\u0085", "\u2066"]) {
     assert.equal(asInitialPoses([{ name, transform: pose, sd: 1, sdTheta: 0.1 }]), null);
-    assert.equal(mergeCommand(["a.yaml", name], "poses.tsv"), null);
+    assert.equal(mergeCommand(["a.yaml", name]), null);
   }
 });
 

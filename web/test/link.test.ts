@@ -69,7 +69,7 @@ test("a link of another merge moves, hides and colours no map", () => {
 test("what is damaged, or of another report, is left as it is", () => {
   for (const hash of ["#", "#show=join-0-3", "#show=join-0", "#show=join-9-0", "#show=merged-1", "#show=map-3", "#show=map--1", "#at=1,2",
     "#at=1,2,0", "#at=1,2,-5", "#at=1e999,2,3", "#at=NaN,0,1", "#at=Infinity,0,1", "#at=9999999999,0,1", "#tab=evil", "#merged=2",
-    "#merged=-1", "#maps=7:0.5", "#colors=0:red", "#colors=9:00ff00", "#colors=0:00ff00ff", "#placed=9:1,2,3", "#placed=0:1,2", "#placed=0:1,2,x", "#maps=0:x", "#maps=__proto__:0", "#ruler=1,2,3", "#%00", "#grid", "#====&&&&", "#show=<script>"]) {
+    "#merged=-1", "#maps=7:0.5", "#colors=0:red", "#colors=9:00ff00", "#colors=0:00ff00ff", "#placed=9:1,2,3", "#placed=0:1,2", "#placed=0:1,2,x", "#placed=0:10000001,0,0", "#maps=0:x", "#maps=__proto__:0", "#ruler=1,2,3", "#%00", "#grid", "#====&&&&", "#show=<script>"]) {
     assert.deepEqual(fromHash(hash, report, tabs), defaultView(report), hash);
   }
   assert.equal(fromHash("#tab=joins&at=oops&merged=1", report, tabs).merged, 1, "the rest holds");

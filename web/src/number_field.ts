@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+import { h } from "./dom";
+
+export interface NumberFieldOptions {
+  id: string;
+  /** What it is a number of, as sentences begin with it: "x". */
+  what: string;
+  /** For readers that see no text beside the field. */
+  label?: string;
+  least: number;
+  most: number;
+  step: number;
+  /** Of each text that is typed, of numbers and of others. */
+  typed(): void;
+}
+
+/** A field for a number within bounds. What is no such number stays in it, is marked, and counts for nothing. */
+export class NumberField {
+  readonly element: HTMLInputElement;
+  private readonly options: NumberFieldOptions;
+
+  constructor(options: NumberFieldOptions) {
+    this.options = options;
+    const { id, label, least, most, step } = options;
+    this.element = h("input", {
+      type: "number", id, min: least, max: most, step, ...(label === undefined ? {} : { "aria-label": label }),
+      input: () => {
+        this.mark();
+        options.typed();
+      },
+    });
+  }
+
+  /** Null: there is none. */
+  get value(): number | null {
+    const { valueAsNumber } = this.element;
+    return valueAsNumber >= this.options.least && valueAsNumber <= this.options.most ? valueAsNumber : null;
+  }
+
+  show(text: string): void {
+    this.element.value = text;
+    this.mark();
+  }
+
+  /** What is wrong with what it holds; null: nothing. */
+  get problem(): string | null {
+    const { what, least, most } = this.options;
+    return this.value === null ? `${what} has to be a number from ${least} to ${most}` : null;
+  }
+
+  private mark(): void {
+    this.element.setAttribute("aria-invalid", String(this.value === null));
+  }
+}
