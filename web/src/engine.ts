@@ -23,16 +23,37 @@ export interface Question {
   fixed: { map: number; T_scene_map: SE2 }[];
 }
 
-/** Asks the gridmerge that serves the page. Throws Error with its words. */
-export async function refine({ merge, moving, pose, fixed }: Question): Promise<Refined> {
-  const response = await fetch("/refine", {
-    method: "POST",
-    headers: { "Content-Type": "application/json" },
-    body: JSON.stringify({
-      merge, moving, transform: pose, fixed: fixed.map(({ map, T_scene_map }) => ({ map, transform: T_scene_map })),
-    }),
-  });
-  const answer: unknown = await response.json().catch(() => ({}));
-  if (!response.ok) throw new Error((answer as { error?: string }).error ?? `gridmerge answered ${response.status}`);
-  return answer as Refined;
+/** An answer may wait for others, and takes as long as two matches. For longer nobody waits [ms]. */
+const patience = 120000;
+
+/** Asks the gridmerge that serves the page, until `asking` is aborted. Throws Error with its words, or with why there are none. */
+export async function refine({ merge, moving, pose, fixed }: Question, asking: AbortController, longest = patience): Promise<Refined> {
+  let isLate = false;
+  const timer = setTimeout(() => {
+    isLate = true;
+    asking.abort();
+  }, longest);
+  try {
+    const response = await fetch("/refine", {
+      method: "POST",
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify({
+        merge, moving, transform: pose, fixed: fixed.map(({ map, T_scene_map }) => ({ map, transform: T_scene_map })),
+      }),
+      signal: asking.signal,
+    });
+    const answer: unknown = await response.json().catch((error: unknown) => {
+      if (asking.signal.aborted) throw error;
+      return {};
+    });
+    if (!response.ok) throw new Error((answer as { error?: string }).error ?? `gridmerge answered ${response.status}`);
+    return answer as Refined;
+  } catch (error) {
+    if (isLate) throw new Error(`gridmerge has not answered for ${longest / 1000} s`);
+    // What a browser says of a server that is gone names no cause.
+    if (error instanceof TypeError) throw new Error("gridmerge does not answer: it has ended, or cannot be reached. Start it again, and reload this page");
+    throw error;
+  } finally {
+    clearTimeout(timer);
+  }
 }

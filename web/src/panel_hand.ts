@@ -15,6 +15,7 @@ import type { State } from "./state";
 import { flat } from "./text";
 import { type Yardstick, laid, yardstickOf } from "./yardstick";
 
+const longWait = 10000; // milliseconds
 const mostTurned = 3600; // degrees: whole turns may have been counted
 const yardstickBudget = 4; // milliseconds a frame
 /** A field for a part of a pose. */
@@ -45,8 +46,8 @@ export class HandPanel {
   /** Where comparisons have the map in hand, and which of them it was laid at; -1: none. */
   private places: Place[] = [];
   private place = -1;
-  /** Whether the engine is at work on a pose. */
-  private isRefining = false;
+  /** While the engine is at work on a pose. */
+  private asking: AbortController | null = null;
   /** Of which places of the maps the answer tells. */
   private saidOf = "";
 
@@ -100,28 +101,29 @@ export class HandPanel {
   async refine(): Promise<void> {
     const { state } = this;
     const inHand = state.inHand();
-    if (!inHand || this.isRefining) return;
+    if (!inHand || this.asking) return;
     const { map, pose } = inHand;
     if (!state.report.live) {
       this.say("Only a running gridmerge can refine: open the folder with gridmerge view.");
       return;
     }
+    const asking = this.asking = new AbortController();
     this.say("Refining…");
-    this.isRefining = true;
-    const asked = this.situation();
+    const timer = setTimeout(() => this.say("Refining… gridmerge takes long to answer. Move a map to stop waiting."), longWait);
     try {
-      const refined = await refine({ merge: state.report.merge, moving: map, pose, fixed: this.others(map) });
-      if (this.situation() !== asked) {
-        this.say("");
-        return;
-      }
+      const refined = await refine({ merge: state.report.merge, moving: map, pose, fixed: this.others(map) }, asking);
+      if (this.asking !== asking) return;
+      this.asking = null;
       state.put(map, refined.transform);
       this.say(`Moved by ${fixed(refined.moved, 2)} m. Score ${fixed(refined.start_score, 0)} → ` +
         `${fixed(refined.score, 0)}. Probability by the maps alone ${probability(refined.probability)}.`);
     } catch (error) {
+      // Who has moved a map since may ask for another pose already.
+      if (this.asking !== asking) return;
+      this.asking = null;
       this.say(`Not refined: ${error instanceof Error ? error.message : String(error)}`);
     } finally {
-      this.isRefining = false;
+      clearTimeout(timer);
     }
   }
 
@@ -136,9 +138,12 @@ export class HandPanel {
     this.saidOf = this.situation();
   }
 
-  /** What was said of other places says nothing of these. */
+  /** What was said of other places, or is asked about them, says nothing of these. */
   private dropAnswer(): void {
-    if (!this.isRefining && this.answer.textContent !== "" && this.saidOf !== this.situation()) this.say("");
+    if (this.answer.textContent === "" || this.saidOf === this.situation()) return;
+    this.asking?.abort();
+    this.asking = null;
+    this.say("");
   }
 
   private others(map: number): Placed[] {
