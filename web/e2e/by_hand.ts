@@ -6,7 +6,7 @@ import { test } from "node:test";
 import type { Page } from "playwright-core";
 import type { InputMap } from "../src/report";
 import { type SE2, apply, compose, normalizeAngle } from "../src/se2";
-import { type Tab, cursor, drag, lastCopied, middle, open } from "./browser";
+import { type Tab, cursor, drag, farthestApart, lastCopied, middle, open } from "./browser";
 import { elsewhere, examples, gridmerge, mergeInto, reportData, source, transforms, view } from "./reports";
 
 /** Robots 1 and 3 saw little in common, so that they are refused by themselves. */
@@ -162,6 +162,32 @@ test("no other numbers are saved than those that the fields show", async () => {
   const [, x, y, theta, sd, sdTheta] = (await saved()).map(Number);
   assert.deepEqual([x, y, sd, sdTheta], [2.25, 3, 0.05, Math.PI / 180]);
   assert.ok(Math.abs(theta - Math.PI / 6) < 1e-9);
+  await tab.close();
+});
+
+test("what was placed by hand outlives a page that is loaded anew, and not the tab", async () => {
+  const folder = mergeInto("three", examples);
+  const tab = await open(folder);
+  const { page } = tab;
+  await page.click("#tab-hand");
+  await page.selectOption("#hand-map", "1");
+  await page.fill("#hand-x", "4.5");
+  await page.click("button:text-is('Let go')");
+  await page.click("button[aria-label='Zoom in']");
+  await page.mouse.move(5, 5);
+  const seen = await tab.picture();
+  await page.reload();
+  assert.ok(await farthestApart(page, await tab.picture(), seen) < 32);
+  assert.deepEqual(await page.locator(".saving li").allTextContents(), ["2robot_2.yaml"]);
+  // In the same tab the report of another merge is another page.
+  const [own, other] = [page.url(), open(mergeInto("pair", pair, "--accept", "1"))];
+  await page.goto((await other).page.url());
+  await (await other).close();
+  await tab.settled();
+  assert.ok(!await page.isVisible("#hand-save"));
+  await page.goto(own);
+  await tab.settled();
+  assert.ok(!await page.isVisible("#hand-save"), "who opens the report begins afresh");
   await tab.close();
 });
 

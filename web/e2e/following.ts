@@ -2,8 +2,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Page } from "playwright-core";
-import { open } from "./browser";
-import { examples, mergeInto, view } from "./reports";
+import type { Report } from "../src/report";
+import { reordered } from "../test/reports";
+import { type Tab, open } from "./browser";
+import { elsewhere, examples, mergeInto, view } from "./reports";
 
 /** A node as the page sees it, whose answers all show one merge. */
 class Node {
@@ -11,12 +13,18 @@ class Node {
   newest: number | null = 1;
   /** How often the page was asked for. */
   loaded = 0;
+  /** In which order its answers have the maps. */
+  order: number[] | null = null;
 
   async serve(page: Page, address: string): Promise<void> {
     await page.route(address, async (route) => {
       this.loaded++;
       const response = await route.fetch();
-      const body = (await response.text()).replace('"live":true', `"live":true,"answer":${this.newest}`);
+      const body = (await response.text()).replace(/(id="report-data">)(.*?)(<\/script>)/s, (_, start: string, json: string, end: string) => {
+        const report = { ...JSON.parse(json) as Report, answer: this.newest! };
+        const ordered = this.order ? reordered(report, this.order) : report;
+        return start + JSON.stringify(ordered).replace(/</g, "\\u003c") + end;
+      });
       await route.fulfill({ response, body });
     });
     await page.route("**/news", (route) => this.newest === null ? route.abort() : route.fulfill({ json: { answer: this.newest } }));
@@ -24,6 +32,27 @@ class Node {
 }
 
 const says = (page: Page, text: string) => page.waitForSelector(`#following:has-text('${text}')`);
+
+/** Opens the page of a node that merges what a folder has. */
+async function follow(folder: string, use: (tab: Tab, page: Page, node: Node, next: () => Promise<void>) => Promise<void>): Promise<void> {
+  const { server, address } = await view(folder);
+  try {
+    const tab = await open(address);
+    const node = new Node();
+    await node.serve(tab.page, address);
+    await tab.page.goto("about:blank");
+    await tab.page.goto(address);
+    await tab.settled();
+    await use(tab, tab.page, node, async () => {
+      node.newest!++;
+      await says(tab.page, `Live: answer ${node.newest}`);
+      await tab.settled();
+    });
+    await tab.close();
+  } finally {
+    server.kill("SIGKILL");
+  }
+}
 
 test("the page of a node follows its answers, and stays where its reader looks", async () => {
   const { server, address } = await view(mergeInto("three", examples));
@@ -61,6 +90,9 @@ test("the page of a node follows its answers, and stays where its reader looks",
     await page.click("#load-newest");
     await says(page, "Live: answer 3");
     assert.equal(node.loaded, loaded + 1);
+    assert.equal(await page.inputValue("#hand-map"), "1", "it is still in hand");
+    await page.click("button:text-is('Let go')");
+    await page.focus("canvas");
 
     node.newest = null;
     await says(page, "The node does not answer: this is its answer 3");
@@ -72,3 +104,102 @@ test("the page of a node follows its answers, and stays where its reader looks",
     server.kill("SIGKILL");
   }
 });
+
+test("poses, colours and what is hidden stay with their maps when an answer numbers them otherwise", () => follow(mergeInto("three", examples), async (tab, page, node) => {
+  await page.click("#layer-2");
+  await page.fill("input[type=color][data-map='1']", "#990099");
+  await page.click("#tab-hand");
+  await page.selectOption("#hand-map", "0");
+  await page.fill("#hand-x", "4.5");
+  assert.match((await page.textContent(".saving li"))!, /^1robot_1/);
+  node.newest = 2;
+  node.order = [1, 2, 0];
+  await says(page, "Answer 1; a newer one is there");
+  await page.click("#load-newest");
+  await says(page, "Live: answer 2");
+  await tab.settled();
+  assert.deepEqual(await page.locator(".saving li").allTextContents(), ["3robot_1.yaml"]);
+  assert.equal(await page.inputValue("#hand-map"), "2", "it is still in hand");
+  assert.equal(await page.inputValue("#hand-x"), "4.500");
+  await tab.screenshot("following_reordered");
+  await page.click("#tab-layers");
+  assert.deepEqual(await Promise.all([0, 1, 2].map((map) => page.isChecked(`#layer-${map}`))), [true, false, true]);
+  assert.equal(await page.inputValue("input[type=color][data-map='0']"), "#990099");
+}));
+
+test("a new answer loses nothing that the reader has done", () => follow(mergeInto("four", [...examples, elsewhere]), async (_tab, page, _node, next) => {
+  await page.setViewportSize({ width: 1280, height: 400 });
+  // In one scene a map is placed, and another is looked at.
+  await page.click("#tab-hand");
+  await page.selectOption("#hand-map", "1");
+  await page.fill("#hand-x", "3.3");
+  await page.fill("#hand-sd", "0.05");
+  await page.click("button:text-is('Let go')");
+  await page.selectOption("#scene", { index: 1 });
+  await page.click("#tab-transforms");
+  await page.fill("#tf-parent", "site");
+  await page.fill("#tf-child", "{name}/map");
+  await page.click("#tab-joins");
+  await page.click("#outcome-refused");
+  await page.click("button[data-column='4']");
+  await page.click("button[data-column='4']");
+  await page.evaluate(() => document.querySelector("#panel-joins")!.scrollTo({ top: 150 }));
+  const shown = () => page.evaluate(() => ({
+    scene: document.querySelector<HTMLSelectElement>("#scene")!.value,
+    sorted: [...document.querySelectorAll("th[aria-sort]")].map((head) => head.getAttribute("aria-sort")),
+    refused: document.querySelector<HTMLInputElement>("#outcome-refused")!.checked,
+    rows: document.querySelectorAll("#panel-joins tbody tr").length,
+    scrolled: document.querySelector("#panel-joins")!.scrollTop,
+    focus: document.activeElement!.id,
+  }));
+  const before = await shown();
+  assert.ok(before.scrolled > 0 && before.focus === "sort-4" && before.scene === "1", JSON.stringify(before));
+  await next();
+  assert.deepEqual(await shown(), before);
+  await page.click("#tab-transforms");
+  assert.equal(await page.inputValue("#tf-parent"), "site");
+  assert.equal(await page.inputValue("#tf-child"), "{name}/map");
+  await page.click("#tab-hand");
+  await page.selectOption("#scene", { index: 0 });
+  assert.deepEqual(await page.locator(".saving li").allTextContents(), ["2robot_2.yaml"]);
+  await page.selectOption("#hand-map", "1");
+  assert.equal(await page.inputValue("#hand-x"), "3.300");
+}));
+
+test("the page waits while its reader is at work, and when it is told to", () => follow(mergeInto("three", examples), async (tab, page, node, next) => {
+  /** While `begin` has been done the page stays, and after `end` it goes on. */
+  const staysWhile = async (begin: () => Promise<unknown>, end: () => Promise<unknown>) => {
+    await begin();
+    const loaded = node.loaded;
+    node.newest!++;
+    await says(page, `Answer ${node.newest! - 1}; a newer one is there`);
+    await page.waitForTimeout(1700);
+    assert.equal(node.loaded, loaded);
+    await end();
+    await says(page, `Live: answer ${node.newest}`);
+    await tab.settled();
+  };
+  await staysWhile(async () => {
+    await page.focus("#layer-0");
+    await page.keyboard.press("Tab");
+    await page.keyboard.press("Tab");
+    assert.equal(await page.evaluate(() => (document.activeElement as HTMLInputElement).type), "range");
+  }, () => page.focus("#tab-layers"));
+  await staysWhile(() => page.evaluate(() => getSelection()!.selectAllChildren(document.querySelector("#summary")!)),
+    () => page.evaluate(() => getSelection()!.removeAllRanges()));
+  await staysWhile(async () => {
+    await page.click("button[aria-label='Measure']");
+    await page.mouse.click(300, 250);
+  }, () => page.mouse.click(350, 300));
+  assert.match((await page.textContent("#measured"))!, / m: x /, "what is measured is kept");
+  await next();
+
+  await page.click("#pause:text-is('Pause')");
+  await says(page, "paused");
+  await staysWhile(async () => {}, async () => {
+    await tab.screenshot("following_paused");
+    await page.click("#load-newest");
+    await says(page, `Answer ${node.newest}, paused`);
+    await page.click("#pause:text-is('Follow')");
+  });
+}));

@@ -7,14 +7,6 @@ const pause = 1500;
 /** A node that does not answer for so long is taken for ended [ms]. */
 const patience = 5000;
 
-/** What a page that follows has to know of what its reader does. */
-export interface Follower {
-  /** The reader is at something that a new page would end. */
-  isBusy(): boolean;
-  /** Puts the view into the address, so that the next page shows it too. */
-  keepView(): void;
-}
-
 /** The newest answer's number, of the node that serves the page. */
 async function ask(): Promise<number> {
   const response = await fetch("news", { cache: "no-store", signal: AbortSignal.timeout(patience) });
@@ -24,41 +16,64 @@ async function ask(): Promise<number> {
 }
 
 /**
- * Loads the page anew when the node that serves it has another answer than `shown`, with the view that the reader has chosen.
- * Where the reader is at work, it says that there is one.
+ * Loads the page anew when the node that serves it has another answer than `shown`. Where the reader is at work, or has said that
+ * the page is to stay, it says that there is one.
  */
-export function follow(shown: number, follower: Follower): HTMLElement {
-  const text = h("span", {});
-  const element = h("p", { id: "following", role: "status" }, text);
-  const load = () => {
-    follower.keepView();
-    location.reload();
-  };
-  const button = h("button", { type: "button", id: "load-newest", click: load }, "Show it");
-  const say = (state: "live" | "newer" | "ended") => {
-    if (element.dataset.state === state) return; // what is said once is not said again
-    element.dataset.state = state;
-    replace(text, {
-      live: `Live: answer ${shown}`,
-      newer: `Answer ${shown}; a newer one is there. `,
-      ended: `The node does not answer: this is its answer ${shown}`,
-    }[state]);
-    if (state === "newer") text.append(button);
-  };
-  const look = async () => {
+export class Following {
+  readonly element: HTMLElement;
+  private readonly shown: number;
+  /** The reader is at something that a new page would end. */
+  private readonly isBusy: () => boolean;
+  private readonly text = h("span", { role: "status" });
+  private readonly load = h("button", { type: "button", id: "load-newest", hidden: true, click: () => location.reload() }, "Show it");
+  private readonly pauseButton = h("button", { type: "button", id: "pause", click: () => this.pause(!this.isPaused) });
+  private news: "none" | "newer" | "ended" = "none";
+  private isPaused = false;
+
+  constructor(shown: number, isBusy: () => boolean) {
+    this.shown = shown;
+    this.isBusy = isBusy;
+    this.element = h("p", { id: "following" }, this.text, this.load, this.pauseButton);
+    this.say();
+    setTimeout(() => void this.look(), pause);
+  }
+
+  get paused(): boolean {
+    return this.isPaused;
+  }
+
+  pause(isPaused: boolean): void {
+    this.isPaused = isPaused;
+    this.say();
+  }
+
+  private async look(): Promise<void> {
     // Where nobody looks there is nothing to follow.
     if (!document.hidden) {
       try {
-        if (await ask() === shown) say("live");
-        else if (follower.isBusy()) say("newer");
-        else return load();
+        this.news = await ask() === this.shown ? "none" : "newer";
+        if (this.news === "newer" && !this.isPaused && !this.isBusy()) return location.reload();
       } catch {
-        say("ended");
+        this.news = "ended";
       }
+      this.say();
     }
-    setTimeout(() => void look(), pause);
-  };
-  say("live");
-  setTimeout(() => void look(), pause);
-  return element;
+    setTimeout(() => void this.look(), pause);
+  }
+
+  private say(): void {
+    const { shown, news, isPaused } = this;
+    const state = news === "none" ? (isPaused ? "paused" : "live") : news;
+    this.load.hidden = news !== "newer";
+    this.pauseButton.textContent = isPaused ? "Follow" : "Pause";
+    this.pauseButton.title = isPaused ? "Show newer answers as they come" : "Stay with this answer";
+    if (this.element.dataset.state === state) return; // what is said once is not said again
+    this.element.dataset.state = state;
+    replace(this.text, {
+      live: `Live: answer ${shown}`,
+      paused: `Answer ${shown}, paused`,
+      newer: `Answer ${shown}; a newer one is there. `,
+      ended: `The node does not answer: this is its answer ${shown}`,
+    }[state]);
+  }
 }

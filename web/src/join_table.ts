@@ -7,6 +7,12 @@ import { type Join, type Outcome, hasFigures, isLarge, outcomes } from "./report
 import { moreNote, mostRows } from "./search";
 import type { State } from "./state";
 
+/** By which column, and whether its largest come first. */
+export interface Sorting {
+  column: number;
+  isDescending: boolean;
+}
+
 interface Column {
   head: string;
   title: string;
@@ -30,12 +36,21 @@ export class JoinTable {
   private readonly state: State;
   private readonly shown: Set<Outcome>;
   private readonly choose: (join: number) => void;
-  private sorting = { column: 1, isDescending: false };
+  private sorting: Sorting = { column: 1, isDescending: false };
 
   constructor(state: State, shown: Set<Outcome>, choose: (join: number) => void) {
     this.state = state;
     this.shown = shown;
     this.choose = choose;
+  }
+
+  get sortedBy(): Sorting {
+    return this.sorting;
+  }
+
+  sortBy(sorting: Sorting): void {
+    this.sorting = sorting;
+    this.update();
   }
 
   update(): void {
@@ -77,9 +92,8 @@ export class JoinTable {
       class: index > 1 ? "number" : "", scope: "col", title,
       "aria-sort": !isSorted ? "none" : sorting.isDescending ? "descending" : "ascending",
     }, h("button", {
-      type: "button", class: "sort", "data-column": index, click: () => {
-        this.sorting = { column: index, isDescending: isSorted ? !sorting.isDescending : isDescending };
-        this.update();
+      type: "button", class: "sort", id: `sort-${index}`, "data-column": index, click: () => {
+        this.sortBy({ column: index, isDescending: isSorted ? !sorting.isDescending : isDescending });
         this.element.querySelector<HTMLElement>(`button[data-column="${index}"]`)?.focus();
       },
     }, head, h("span", { "aria-hidden": "true" }, arrow)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { announce, download } from "./clipboard";
 import { h, replace } from "./dom";
-import { follow } from "./follow";
+import { Following } from "./follow";
 import { type Grid, unpack } from "./grid";
 import { helpDialog } from "./help";
 import { type Icon, icon } from "./icons";
@@ -10,9 +10,10 @@ import { HandPanel } from "./panel_hand";
 import { JoinsPanel } from "./panel_joins";
 import { LayersPanel } from "./panel_layers";
 import { OverviewPanel } from "./panel_overview";
+import { PageMemory } from "./page_memory";
 import { TransformsPanel } from "./panel_transforms";
 import { type PackedGrid, type Report, expandRefused, isLarge, summary } from "./report";
-import { describeRuler } from "./ruler";
+import { describeRuler, isUnfinished } from "./ruler";
 import { type SceneId, firstScene } from "./scene";
 import { type SE2, compose } from "./se2";
 import { SharedState } from "./shared_state";
@@ -277,24 +278,43 @@ function build(report: Report): void {
     help: () => help.showModal(),
     refine: () => void hand.refine(),
   });
-  // What a new page would end: a map in hand, a pointer that is down, a field that is filled in, a dialogue. And a join, which may
-  // have another place in the next answer.
-  const isBusy = () => state.handled !== null || state.scene.id.kind === "join" || stage.canvas.classList.contains("grabbing") ||
-    document.querySelector("dialog[open], input[type=number]:focus, input[type=text]:focus, input[type=search]:focus, select:focus") !== null;
-  const following = report.answer === undefined ? null : follow(report.answer, { isBusy, keepView: () => shared.keep() });
+  // What a new page would end: a map in hand, a pointer that is down, a measurement, a selection, a field that is filled in or worked
+  // by keyboard, a dialogue. And a join, which may be no more in the next answer.
+  const isBusy = () => state.handled !== null || state.scene.id.kind === "join" || (state.ruler !== null && isUnfinished(state.ruler)) ||
+    stage.canvas.classList.contains("grabbing") || getSelection()?.isCollapsed === false || document.querySelector(busyFields) !== null;
+  const following = report.answer === undefined ? null : new Following(report.answer, isBusy);
   replace(document.getElementById("app")!,
     shared.note,
     h("header", {},
-      h("h1", {}, "Merged maps"), h("p", { id: "summary" }, summary(report)), following, mergedSwitch(state, toggleMerged), scenePicker(state)),
+      h("h1", {}, "Merged maps"), h("p", { id: "summary" }, summary(report)), following?.element ?? null, mergedSwitch(state, toggleMerged), scenePicker(state)),
     h("main", {},
       h("div", { class: "stage" }, stage.canvas, stageButtons(stage, state, actions), said.element,
         h("div", { class: "readings" }, rulerReading(state), cursorReading(state))),
       h("aside", {}, tabs.element)),
     help);
-  shared.restore(location.hash);
+  const memory = new PageMemory(state, {
+    shared,
+    take: (map) => hand.take(map),
+    get sorting() {
+      return joins.table.sortedBy;
+    },
+    set sorting(sorting) {
+      joins.table.sortBy(sorting);
+    },
+    get paused() {
+      return following?.paused ?? false;
+    },
+    set paused(isPaused) {
+      following?.pause(isPaused);
+    },
+  });
+  if (!memory.restore()) shared.restore(location.hash);
   window.addEventListener("hashchange", () => shared.restore(location.hash));
   void unpackAll(state);
 }
+
+const busyFields = "dialog[open], select:focus, input:focus-visible, input:active, input[type=color]:focus, input[type=number]:focus, " +
+  "input[type=text]:focus, input[type=search]:focus";
 
 /** A title as a file may be called. */
 function fileNameOf(title: string): string {

@@ -10,6 +10,8 @@ export interface NumberFieldOptions {
   least: number;
   most: number;
   step: number;
+  /** Whether it is as it was when the page is loaded anew. */
+  isKept?: boolean;
   /** Of each text that is typed, of numbers and of others. */
   typed(): void;
 }
@@ -21,9 +23,9 @@ export class NumberField {
 
   constructor(options: NumberFieldOptions) {
     this.options = options;
-    const { id, label, least, most, step } = options;
+    const { id, label, least, most, step, isKept = false } = options;
     this.element = h("input", {
-      type: "number", id, min: least, max: most, step, ...(label === undefined ? {} : { "aria-label": label }),
+      type: "number", id, min: least, max: most, step, "data-kept": isKept, ...(label === undefined ? {} : { "aria-label": label }),
       input: () => {
         this.mark();
         options.typed();

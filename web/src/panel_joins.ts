@@ -25,7 +25,7 @@ export class JoinsPanel {
   private readonly state: State;
   private readonly chosen = h("section", { class: "chosen-join" });
   private readonly graph = h("div");
-  private readonly table: JoinTable;
+  readonly table: JoinTable;
   private readonly shown: Set<Outcome>;
   private readonly placeByHand: (map: number, on: number, T_on_map: SE2) => void;
 
@@ -49,7 +49,7 @@ export class JoinsPanel {
       + (outcome === "refused" ? this.state.report.refused.count : 0));
     const boxes = outcomes.map((outcome, i) => {
       const box = h("input", {
-        type: "checkbox", id: `outcome-${outcome}`, change: () => {
+        type: "checkbox", id: `outcome-${outcome}`, "data-kept": true, change: () => {
           if (box.checked) this.shown.add(outcome);
           else this.shown.delete(outcome);
           this.update();

@@ -31,8 +31,8 @@ export class TransformsPanel {
   private readonly content: HTMLElement;
   private pending = 0;
   /** How frames are called in TF: that of the scene as map servers do, and each map's. */
-  private readonly parent = h("input", { type: "text", id: "tf-parent", value: "map", spellcheck: "false" });
-  private readonly child = h("input", { type: "text", id: "tf-child", value: "{name}", spellcheck: "false" });
+  private readonly parent = h("input", { type: "text", id: "tf-parent", "data-kept": true, value: "map", spellcheck: "false" });
+  private readonly child = h("input", { type: "text", id: "tf-child", "data-kept": true, value: "{name}", spellcheck: "false" });
 
   constructor(state: State) {
     this.state = state;

@@ -10,6 +10,11 @@ export interface Ruler {
   open: boolean;
 }
 
+/** Whether there is still an end to put. */
+export function isUnfinished(ruler: Ruler): boolean {
+  return ruler.open || ruler.to === null;
+}
+
 /** How a ruler answers to a point that is put: it begins, or ends, or begins anew. */
 export function put(ruler: Ruler, point: Point): Ruler {
   return ruler.open && ruler.from ? { from: ruler.from, to: point, open: false } : { from: point, to: point, open: true };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { copy } from "./clipboard";
 import { h } from "./dom";
-import { type SharedView, fromHash, isForeign, toHash } from "./link";
+import { type SharedView, defaultView, fromHash, isForeign, toHash } from "./link";
 import type { Look, State } from "./state";
 import type { Stage } from "./stage";
 import type { Tabs } from "./tabs";
@@ -20,25 +20,25 @@ export class SharedState {
     this.tabs = tabs;
   }
 
-  /** Puts the view into the address, and returns that. */
-  keep(): string {
+  /** Puts the view into the address, and copies that; returns whether it could be copied. */
+  async copyLink(): Promise<boolean> {
     const hash = toHash(this.view(), this.state.report);
     const link = location.href.replace(/#.*$/, "") + `#${hash}`;
     history.replaceState(null, "", link);
-    return link;
-  }
-
-  /** The same, and copies it; returns whether it could be copied. */
-  async copyLink(): Promise<boolean> {
-    return copy(this.keep());
+    return copy(link);
   }
 
   /** Shows what a link to a view was copied of. An empty hash is as the report was opened. */
   restore(hash: string): void {
-    const { state, stage } = this;
+    const { state } = this;
     const view = fromHash(hash, state.report, this.tabs.ids);
     this.note.textContent = isForeign(hash, state.report)
       ? "This link is to another merge. What it says of maps, and their poses, is left out." : "";
+    this.show(view);
+  }
+
+  show(view: SharedView): void {
+    const { state, stage } = this;
     state.show(view.scene);
     set(state.merged, view.merged);
     set(state.agreement, view.agreement);
@@ -50,7 +50,7 @@ export class SharedState {
     for (const topic of ["looks", "colors"] as const) state.changed(topic);
     // Those that were placed before stay: they are somebody's work.
     for (const [map, pose] of view.placed) state.put(map, pose);
-    this.tabs.select(view.tab);
+    this.tabs.select(this.tabs.ids.includes(view.tab) ? view.tab : defaultView(state.report).tab);
     stage.showGrid(view.grid);
     state.setBent(view.bent);
     state.showArrows(view.arrows);
@@ -58,7 +58,7 @@ export class SharedState {
     state.measure(view.ruler && { ...view.ruler, open: false });
   }
 
-  private view(): SharedView {
+  view(): SharedView {
     const { state, stage } = this;
     const { aim } = stage;
     const ruler = state.ruler;

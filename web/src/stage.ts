@@ -47,6 +47,7 @@ export class Stage {
   constructor(state: State) {
     this.state = state;
     this.canvas = h("canvas", {
+      id: "stage",
       tabindex: 0,
       role: "application",
       "aria-label": "The maps, drawn over each other. Arrows move, plus and minus zoom, 0 shows all, ? lists all keys.",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { bentGrid } from "./deformation";
 import type { Grid } from "./grid";
+import type { HandPoses } from "./kept";
 import { type PlanPlace, type Report, isPlanBelieved } from "./report";
 import type { Ruler } from "./ruler";
 import { type Placed, type Scene, type SceneId, firstScene, makeScene, planPlace } from "./scene";
@@ -108,6 +109,16 @@ export class State {
     let poses = this.handPoses.get(scene);
     if (!poses) this.handPoses.set(scene, (poses = new Map()));
     return poses;
+  }
+
+  /** Poses given by hand in all scenes. */
+  allByHand(): HandPoses {
+    return [...this.handPoses].filter(([, poses]) => poses.size > 0).map(([id, poses]) => [JSON.parse(id) as SceneId, poses]);
+  }
+
+  layByHand(hand: HandPoses): void {
+    for (const [id, poses] of hand) this.handPoses.set(JSON.stringify(id), new Map(poses));
+    this.changed("hand");
   }
 
   /** Where the maps of the scene lie, those that were put there by hand included. */

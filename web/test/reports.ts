@@ -25,3 +25,19 @@ export function reportOf(poses: SE2[], joins: Join[] = trueJoins(poses)): Report
 function trueJoins(poses: SE2[]): Join[] {
   return poses.flatMap((pose, moving) => poses.slice(0, moving).map((on, fixed) => join(fixed, moving, compose(inverse(on), pose))));
 }
+
+/** The same merge with its maps in another order: map i of it is map `order[i]` of the report. */
+export function reordered(report: Report, order: number[]): Report {
+  const now = (map: number) => order.indexOf(map);
+  return {
+    ...report, merge: `${report.merge} as ${order.join()}`,
+    maps: order.map((then, i) => ({ ...report.maps[then], color: report.maps[i].color })),
+    components: report.components.map((component) => ({
+      ...component, frame: component.frame === null ? null : now(component.frame),
+      members: component.members.map((member) => ({ ...member, map: now(member.map) })),
+    })),
+    joins: report.joins.map((one) => ({ ...one, fixed: now(one.fixed), moving: now(one.moving) })),
+    left_out: report.left_out.map((one) => ({ ...one, map: now(one.map) })),
+    open_ways: report.open_ways.map((way) => ({ ...way, fixed: now(way.fixed), moving: now(way.moving) })),
+  };
+}
