@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
+import { mkdirSync, writeFileSync } from "node:fs";
+import { join as inside } from "node:path";
 import { test } from "node:test";
 import { open } from "./browser";
-import { eighteen, elsewhere, examples, mergeInto, reportData, six } from "./reports";
+import { eighteen, elsewhere, examples, mergeInto, reportData, six, source } from "./reports";
 
 test("a join is chosen in the table and shows its two maps, its figures and its hypotheses", async () => {
   const tab = await open(mergeInto("four", [...examples, elsewhere]));
@@ -162,5 +164,45 @@ test("joins of many maps are a matrix, with a square for each two", async () => 
   assert.ok(await tab.changes(() => page.locator(".edge .reach").first().click()));
   assert.equal(await page.locator(".edge.chosen").count(), 1);
   await tab.screenshot("matrix");
+  await tab.close();
+});
+
+/** A map of which nothing is known. */
+function unknownMap(): string {
+  const folder = inside(source, "build/web/maps/unknown");
+  mkdirSync(folder, { recursive: true });
+  writeFileSync(inside(folder, "map.pgm"), Buffer.concat([Buffer.from("P5\n20 20\n255\n"), Buffer.alloc(400, 205)]));
+  const path = inside(folder, "map.yaml");
+  writeFileSync(path, "image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  return path;
+}
+
+test("of two maps that have nothing to compare no way is shown", async () => {
+  const tab = await open(mergeInto("nothing", [examples[0], unknownMap()]));
+  const { page } = tab;
+  await page.click("#tab-joins");
+  assert.deepEqual(await page.locator("#panel-joins tbody td.number").allTextContents(), ["–", "–", "–"]);
+  await page.click("button[data-join='0']");
+  assert.match((await page.textContent(".chosen-join"))!, /refused: not believed: there is too little in them to compare\.So there is no way/);
+  assert.equal(await page.locator("button.adopt, .figures, .hypotheses").count(), 0);
+  await tab.screenshot("nothing_to_compare");
+  await page.click("#tab-transforms");
+  assert.equal(await page.locator("#panel-transforms tbody tr").count(), 0, "there is no transform");
+  await page.click("#tab-layers");
+  assert.equal(await page.locator(".layer[data-map]").count(), 0, "and no picture");
+  await tab.close();
+});
+
+test("a join that the budget has no room for says what the two maps alone say", async () => {
+  const tab = await open(mergeInto("budget", examples, "--max-false-joins", "0"));
+  const { page } = tab;
+  assert.equal(await page.textContent("h1"), "Maps, none merged");
+  await page.click("#tab-joins");
+  await page.click("button[data-join='0']");
+  const text = (await page.textContent(".chosen-join"))!;
+  assert.match(text, /refused: it would be used, but it is too doubtful for the budget of false joins/);
+  assert.match(text, /By themselves they would be joined in way 1\. The most probable: way 1 \(> 0\.9/);
+  assert.ok(!/not believed/.test(text), "its probability is above 0.999");
+  await tab.screenshot("over_budget");
   await tab.close();
 });

@@ -2,7 +2,7 @@
 import { readableOn } from "./badge";
 import { svg } from "./dom";
 import { probability } from "./numbers";
-import type { Join, Outcome } from "./report";
+import { type Join, type Outcome, hasWay } from "./report";
 import type { State } from "./state";
 import { flat } from "./text";
 
@@ -53,7 +53,8 @@ function spotsOf(state: State): { x: number; y: number }[] {
 
 /** "robot_1.yaml and robot_2.yaml: accepted, probability 0.98". */
 export function joinTitle(state: State, join: Join): string {
-  return `${flat(state.names[join.fixed])} and ${flat(state.names[join.moving])}: ${join.outcome}, probability ${probability(join.probability)}`;
+  const what = hasWay(join) ? `${join.outcome}, probability ${probability(join.probability)}` : "nothing to compare";
+  return `${flat(state.names[join.fixed])} and ${flat(state.names[join.moving])}: ${what}`;
 }
 
 function lineOf(

@@ -3,7 +3,7 @@ import { badge } from "./badge";
 import { h, replace } from "./dom";
 import { joinTitle } from "./join_graph";
 import { fixed, percent, probability } from "./numbers";
-import { type Join, type Outcome, hasFigures, isLarge, outcomes } from "./report";
+import { type Join, type Outcome, hasFigures, hasWay, isLarge, outcomes } from "./report";
 import { moreNote, mostRows } from "./search";
 import type { State } from "./state";
 
@@ -103,7 +103,7 @@ export class JoinTable {
     const { id } = this.state.scene;
     const isChosen = id.kind === "join" && id.join === index;
     const title = joinTitle(this.state, join);
-    const large = isLarge(this.state.report);
+    const isTold = hasWay(join) && (!isLarge(this.state.report) || hasFigures(join));
     const button = h("button", {
       type: "button", class: "link", title, "aria-pressed": String(isChosen), "data-join": index, "aria-label": `Show ${title}`,
       click: () => {
@@ -114,8 +114,8 @@ export class JoinTable {
     return h("tr", { class: isChosen ? "chosen" : "" },
       h("td", {}, button),
       h("td", { class: `outcome ${join.outcome}` }, join.outcome),
-      h("td", { class: "number" }, probability(join.probability)),
-      h("td", { class: "number" }, !large || hasFigures(join) ? fixed(join.acceptance_index, 3) : "–"),
-      h("td", { class: "number" }, !large || hasFigures(join) ? percent(join.overlap) : "–"));
+      h("td", { class: "number" }, hasWay(join) ? probability(join.probability) : "–"),
+      h("td", { class: "number" }, isTold ? fixed(join.acceptance_index, 3) : "–"),
+      h("td", { class: "number" }, isTold ? percent(join.overlap) : "–"));
   }
 }

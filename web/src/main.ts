@@ -12,7 +12,7 @@ import { LayersPanel } from "./panel_layers";
 import { OverviewPanel } from "./panel_overview";
 import { PageMemory } from "./page_memory";
 import { TransformsPanel } from "./panel_transforms";
-import { type PackedGrid, type Report, expandRefused, isLarge, summary } from "./report";
+import { type PackedGrid, type Report, expandRefused, heading, isLarge, summary } from "./report";
 import { describeRuler, isUnfinished } from "./ruler";
 import { type SceneId, firstScene } from "./scene";
 import { type SE2, compose } from "./se2";
@@ -286,7 +286,7 @@ function build(report: Report): void {
   replace(document.getElementById("app")!,
     shared.note,
     h("header", {},
-      h("h1", {}, "Merged maps"), h("p", { id: "summary" }, summary(report)), following?.element ?? null, mergedSwitch(state, toggleMerged), scenePicker(state)),
+      h("h1", {}, heading(report)), h("p", { id: "summary" }, summary(report)), following?.element ?? null, mergedSwitch(state, toggleMerged), scenePicker(state)),
     h("main", {},
       h("div", { class: "stage" }, stage.canvas, stageButtons(stage, state, actions), said.element,
         h("div", { class: "readings" }, rulerReading(state), cursorReading(state))),

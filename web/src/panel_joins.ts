@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 import { mapLabel } from "./badge";
+import { decision, needsExplanation, ownVerdict, placementOf, withoutWitnesses } from "./decision";
 import { h, replace } from "./dom";
 import { describe } from "./formats";
 import { joinGraph } from "./join_graph";
 import { joinMatrix } from "./join_matrix";
 import { JoinTable } from "./join_table";
-import { ownVerdict, sayOffset, sayWitnesses } from "./join_words";
+import { sayOffset, sayWitnesses } from "./join_words";
 import { fixed, percent, probability } from "./numbers";
-import { type Join, type Outcome, hasFigures, isLarge, isUsed, outcomeMeaning, outcomes, reasons } from "./report";
+import { type Join, type Outcome, hasFigures, hasWay, isLarge, isUsed, outcomeMeaning, outcomes } from "./report";
 import type { SE2 } from "./se2";
 import { searchBox } from "./search";
 import type { State } from "./state";
@@ -105,15 +106,15 @@ export class JoinsPanel {
       return;
     }
     const join = this.state.report.joins[id.join];
-    const reason = join.reason ? ` (${reasons[join.reason] ?? join.reason})` : "";
     replace(this.chosen,
       h("h3", {}, mapLabel(this.state, join.fixed), h("span", { class: "soft" }, " and "), mapLabel(this.state, join.moving)),
-      h("p", {}, h("strong", { class: `outcome ${join.outcome}` }, join.outcome), `: ${outcomeMeaning[join.outcome]}${reason}.`),
-      join.outcome === "rescued" || join.outcome === "rejected" ? this.explain(join) : null,
-      hasFigures(join) || !isLarge(this.state.report) ? figures(join, id.hypothesis) : null, this.hypotheses(join, id.join, id.hypothesis),
+      h("p", {}, h("strong", { class: `outcome ${join.outcome}` }, join.outcome), `: ${decision(join, placementOf(this.state.report, join))}.`),
+      needsExplanation(join) ? this.explain(join) : null,
+      !hasWay(join) ? h("p", { class: "soft" }, "So there is no way to show how they lie.")
+        : hasFigures(join) || !isLarge(this.state.report) ? figures(join, id.hypothesis) : null, this.hypotheses(join, id.join, id.hypothesis),
       h("div", { class: "buttons" },
         h("button", { type: "button", class: "back", click: () => this.goBack(id.join) }, "Back to the whole"),
-        h("button", {
+        !hasWay(join) ? null : h("button", {
           type: "button", class: "adopt", title: "Take the second map in hand, as it lies here, to save its pose for the next merge",
           click: () => this.placeByHand(join.moving, join.fixed, this.state.poseOf(join.moving)!),
         }, "Place it so by hand")));
@@ -121,13 +122,16 @@ export class JoinsPanel {
 
   /** Why the merge decides otherwise than the two maps by themselves. */
   private explain(join: Join): HTMLElement {
+    const { report } = this.state;
     const merged = mergedHypothesis(join);
-    const way = join.hypotheses.length === 0 ? null : merged >= 0 ? `way ${merged + 1}` : "a way that is none of theirs";
-    const decision = join.outcome === "rescued" ? "The merge lays them in" : "The merge does not lay them in";
+    const way = join.hypotheses.length === 0 || join.outcome === "refused" ? null
+      : merged >= 0 ? `way ${merged + 1}` : "a way that is none of theirs";
+    const lays = join.outcome === "rescued" ? "The merge lays them in" : "The merge does not lay them in";
+    const witnesses = witnessesOf(report, join, this.middleOf(join.moving));
     return h("ul", { class: "explanation" },
       h("li", {}, ownVerdict(join)),
-      h("li", {}, way === null ? null : `${decision} ${way}, whose own probability is ${probability(join.probability)}.`),
-      h("li", {}, sayWitnesses(this.state, witnessesOf(this.state.report, join, this.middleOf(join.moving)))));
+      h("li", {}, way === null ? null : `${lays} ${way}, whose own probability is ${probability(join.probability)}.`),
+      h("li", {}, witnesses.length > 0 ? sayWitnesses(this.state, witnesses) : withoutWitnesses(join, placementOf(report, join))));
   }
 
   private hypotheses(join: Join, index: number, current: number): HTMLElement | null {

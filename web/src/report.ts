@@ -49,17 +49,7 @@ export const outcomeMeaning: Record<Outcome, string> = {
   rescued: "too weak by itself, but it agrees with the other maps, or with a pose that was given",
   known: "they lie so because their poses were given",
   rejected: "would be believed by itself, but contradicts the other maps",
-  refused: "not believed",
-};
-
-export const reasons: Record<string, string> = {
-  ambiguous: "another way to lay them fits nearly as well",
-  contradiction: "too much of what both know contradicts",
-  too_little_overlap: "too little in common",
-  several: "several things speak against it",
-  nothing_to_compare: "nothing to compare",
-  contradicts_others: "contradicts the other maps",
-  over_budget: "too doubtful for the budget of false joins (--max-false-joins)",
+  refused: "not believed, or too doubtful for the budget of false joins",
 };
 
 export interface Hypothesis {
@@ -74,8 +64,8 @@ export interface Join {
   outcome: Outcome;
   /** Why the merge does not use it. */
   reason: string | null;
-  /** What the two maps alone say. */
-  by_themselves: { verdict: "accepted" | "refused"; reason: string | null };
+  /** What the two maps alone say; null where the data does not tell. */
+  by_themselves: { verdict: "accepted" | "refused"; reason: string | null } | null;
   /** The pose that the merge uses, or the best hypothesis; the figures below are this pose's. */
   transform: SE2;
   probability: number;
@@ -161,7 +151,7 @@ export function expandRefused(report: Report): void {
   for (const [fixed, moving, reason, probability, x, y, theta] of report.refused.rows) {
     const transform = { x, y, theta };
     report.joins.push({
-      fixed, moving, outcome: "refused", reason, by_themselves: { verdict: "refused", reason }, transform, probability,
+      fixed, moving, outcome: "refused", reason, by_themselves: null, transform, probability,
       acceptance_index: 0, agreement: 0, disagreement: 0, overlap: 0, hypotheses: [{ transform, score: 0, probability }],
     });
   }
@@ -178,9 +168,21 @@ export function hasFigures(join: Join): boolean {
   return join.agreement + join.disagreement > 0;
 }
 
+/** Whether there is a way to lay the two maps: two that could not be compared have a placeholder instead. */
+export function hasWay(join: Join): boolean {
+  return isUsed(join) || join.hypotheses.length > 0 || join.probability > 0;
+}
+
 /** Whether maps lie in the result as the join says. */
 export function isUsed(join: Join): boolean {
   return join.outcome !== "refused" && join.outcome !== "rejected";
+}
+
+/** What the page shows, in a word or two. */
+export function heading(report: Report): string {
+  if (report.components.length > 0) return "Merged maps";
+  if (report.maps.length !== 1) return "Maps, none merged";
+  return isPlanBelieved(report) ? "Map on a plan" : "One map";
 }
 
 /** How the merge went: a sentence, and one of the plan if there is one. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Deformation } from "./deformation";
-import type { PlanPlace, Report } from "./report";
+import { type PlanPlace, type Report, hasWay } from "./report";
 import { type SE2, identity } from "./se2";
 import { shortNames } from "./text";
 
@@ -63,7 +63,7 @@ export function makeScene(report: Report, id: SceneId): Scene {
         id,
         title: `${names[join.fixed]} and ${names[join.moving]}`,
         frame: join.fixed,
-        placed: [{ map: join.fixed, T_scene_map: identity }, { map: join.moving, T_scene_map: transform }],
+        placed: hasWay(join) ? [{ map: join.fixed, T_scene_map: identity }, { map: join.moving, T_scene_map: transform }] : [],
         component: null,
       };
     }
