@@ -7,6 +7,7 @@ import "./looking";
 import "./joins";
 import "./transforms";
 import "./by_hand";
+import "./as_merged";
 import "./following";
 import "./bent";
 import "./hostile";

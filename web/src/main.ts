@@ -66,6 +66,17 @@ function mergedSwitch(state: State, toggle: () => void): HTMLElement | null {
   return h("div", { class: "segments", role: "group", "aria-label": "What is drawn" }, ...buttons);
 }
 
+/** Says that maps do not lie as they were merged; over the maps, since in the head it would shift them while one is dragged. */
+function byHandNote(state: State): HTMLElement {
+  const element = h("div", { class: "measured", id: "by-hand-note" });
+  const follow = () => {
+    const moved = state.byHand().size;
+    element.textContent = moved === 0 ? "" : `${count(moved, "map")} ${moved === 1 ? "is" : "are"} shown as placed by hand`;
+  };
+  for (const topic of ["hand", "scene"] as const) state.on(topic, follow);
+  return element;
+}
+
 function cursorReading(state: State): HTMLElement {
   const element = h("output", { class: "cursor", id: "cursor" });
   state.on("cursor", () => {
@@ -289,7 +300,7 @@ function build(report: Report): void {
       h("h1", {}, heading(report)), h("p", { id: "summary" }, summary(report)), following?.element ?? null, mergedSwitch(state, toggleMerged), scenePicker(state)),
     h("main", {},
       h("div", { class: "stage" }, stage.canvas, stageButtons(stage, state, actions), said.element,
-        h("div", { class: "readings" }, rulerReading(state), cursorReading(state))),
+        h("div", { class: "readings" }, byHandNote(state), rulerReading(state), cursorReading(state))),
       h("aside", {}, tabs.element)),
     help);
   const memory = new PageMemory(state, {

@@ -53,6 +53,7 @@ export class LayersPanel {
     state.on("query", () => this.list());
     this.rebuild();
     this.list();
+    for (const topic of ["scene", "hand", "query"] as const) state.on(topic, () => this.tellByHand());
   }
 
   toggle(look: Look): void {
@@ -85,7 +86,7 @@ export class LayersPanel {
       maps.length < 2 ? null : this.ownRow("agreement", "Agreement", state.agreement, h("span", { class: "legend" },
         legendItem(ink, "walls in two maps or more"), legendItem(white, "floor in two maps or more"),
         legendItem(disagreement, "they contradict each other"),
-        component === null ? null : agreementCounts(state.report.components[component])), "a"),
+        component === null ? null : h("div", { class: "soft", id: "agreement-counts" }, agreementCounts(state.report.components[component], false))), "a"),
       this.planRow(),
       state.hasBent() ? bendRow(state) : null);
     this.readings = new Map();
@@ -124,7 +125,7 @@ export class LayersPanel {
       },
     });
     return h("div", { class: "layer", "data-map": map },
-      h("label", { class: "layer-name" }, this.checkbox(`layer-${map}`, look), mapLabel(state, map),
+      h("label", { class: "layer-name" }, this.checkbox(`layer-${map}`, look), mapLabel(state, map), byHandTag(),
         map < 9 ? h("kbd", {}, String(map + 1)) : null),
       color, this.slider(mapName, look), reading);
   }
@@ -165,6 +166,18 @@ export class LayersPanel {
     const arrows = this.element.querySelector<HTMLInputElement>("#arrows");
     if (slider) slider.value = String(100 * this.state.bent);
     if (arrows) arrows.checked = this.state.arrows;
+  }
+
+  /** What was placed by hand lies otherwise than was merged and counted. */
+  private tellByHand(): void {
+    const byHand = this.state.byHand();
+    for (const row of this.element.querySelectorAll<HTMLElement>("[data-map]")) {
+      const tag = row.querySelector<HTMLElement>(".by-hand");
+      if (tag) tag.hidden = !byHand.has(Number(row.dataset.map));
+    }
+    const { component } = this.state.scene;
+    const counts = this.element.querySelector("#agreement-counts");
+    if (counts && component !== null) counts.textContent = agreementCounts(this.state.report.components[component], byHand.size > 0);
   }
 
   private recolor(): void {
@@ -211,7 +224,7 @@ export class LayersPanel {
     const leftOut = all.filter(isWanted);
     if (leftOut.length === 0 || maps.length === 1) return null;
     const items = leftOut.slice(0, isLarge(this.state.report) ? mostRows : leftOut.length).map(({ map, explanation }) => h("li", { "data-map": map },
-      h("div", {}, badge(this.state, map), name(this.state.names[map], maps[map].name)),
+      h("div", {}, badge(this.state, map), name(this.state.names[map], maps[map].name), byHandTag()),
       h("p", { class: "soft" }, `${explanation.charAt(0).toUpperCase()}${explanation.slice(1)}.`),
       h("div", { class: "buttons" },
         h("button", { type: "button", click: () => this.showLeftOut(map) }, "Show"),
@@ -241,8 +254,14 @@ function bendRow(state: State): HTMLElement {
     h("span", { class: "legend soft" }, "Left: each map straight, in its best pose. Right: bent, as it is merged. Arrows tell what moves where."));
 }
 
-function agreementCounts({ agreeing, conflicting }: Component): HTMLElement {
-  return h("div", { class: "soft" }, `${count(agreeing, "cell")} that several maps know agree, ${conflicting} do not.`);
+function agreementCounts({ agreeing, conflicting }: Component, isMoved: boolean): string {
+  const counts = `${count(agreeing, "cell")} that several maps know agree, ${conflicting} do not.`;
+  return isMoved ? `As merged, not as placed by hand: ${counts}` : counts;
+}
+
+/** Hidden unless the map was placed by hand in the scene. */
+function byHandTag(): HTMLElement {
+  return h("span", { class: "by-hand", hidden: true }, "by hand");
 }
 
 function legendItem(color: Rgb, meaning: string): HTMLElement {

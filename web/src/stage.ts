@@ -2,7 +2,7 @@
 import { parseColor } from "./color";
 import type { Picture } from "./compose";
 import { drawArrows } from "./arrows";
-import { type DecorColors, drawAxes, drawCrosshair, drawGrid, drawRuler, drawScaleBar } from "./decor";
+import { type DecorColors, drawAxes, drawCrosshair, drawGrid, drawRuler, drawScaleBar, label } from "./decor";
 import { h } from "./dom";
 import { Grid } from "./grid";
 import { placeOf } from "./scene";
@@ -232,6 +232,7 @@ export class Stage {
     if (this.state.arrows) drawArrows(context, view, colors, this.state);
     if (this.gridShown) drawGrid(context, view, colors);
     if (this.gridShown) drawAxes(context, view, colors);
+    this.drawByHand(colors);
     drawScaleBar(context, view, colors);
     if (this.state.ruler) drawRuler(context, view, colors, this.state.ruler);
     if (this.crosshair) drawCrosshair(context, view, colors);
@@ -253,15 +254,39 @@ export class Stage {
     const pose = placed.T_scene_map;
     const { color, visible } = this.state.looks[map];
     if (inHand || visible) this.stampOf(map, grid, color).draw(context, view, pose);
+    this.drawOutline(outline(view, grid, pose), color);
+    if (inHand) this.drawHandle(grid, pose, color);
+  }
+
+  private drawOutline(corners: Point[], color: string): void {
+    const { context } = this;
     context.strokeStyle = color;
     context.lineWidth = 2;
     context.setLineDash([6, 4]);
     context.beginPath();
-    for (const corner of outline(view, grid, pose)) context.lineTo(corner.x, corner.y);
+    for (const corner of corners) context.lineTo(corner.x, corner.y);
     context.closePath();
     context.stroke();
     context.setLineDash([]);
-    if (inHand) this.drawHandle(grid, pose, color);
+  }
+
+  /** Says in the picture itself, which is saved and printed, what does not lie as it was merged. */
+  private drawByHand(colors: DecorColors): void {
+    const { context, state, view } = this;
+    context.font = "bold 12px system-ui, sans-serif";
+    context.textAlign = "center";
+    context.textBaseline = "bottom";
+    for (const [map, pose] of state.byHand()) {
+      const grid = state.grids[map];
+      const { color, visible } = state.looks[map];
+      if (!grid || !(visible || map === state.handled)) continue;
+      const corners = outline(view, grid, pose);
+      if (map !== state.handled) this.drawOutline(corners, color);
+      const top = corners.reduce((highest, corner) => (corner.y < highest.y ? corner : highest));
+      // In sight, where the corner is not: below the numbers of the grid.
+      const x = Math.min(Math.max(top.x, 60), view.width - 60);
+      label(context, colors, `${map + 1} by hand`, x, Math.min(Math.max(top.y - 4, 36), view.height - 30));
+    }
   }
 
   private drawHandle(grid: Grid, pose: SE2, color: string): void {
