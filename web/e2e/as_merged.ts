@@ -3,8 +3,9 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
+import { constants, inflateSync } from "node:zlib";
 import { open } from "./browser";
-import { elsewhere, examples, mergeInto } from "./reports";
+import { elsewhere, examples, mergeInto, screenshots } from "./reports";
 
 test("what was placed by hand is not shown as if it were merged", async () => {
   const folder = mergeInto("four", [...examples, elsewhere]);
@@ -31,3 +32,30 @@ test("what was placed by hand is not shown as if it were merged", async () => {
   assert.equal(await page.textContent("#agreement-counts"), counts);
   await tab.close();
 });
+
+/** Of the square tiles of the map on a PDF's pages: how much wider than high each is. */
+function tileShapes(pdf: Buffer): number[] {
+  return [...pdf.toString("latin1").matchAll(/\/FlateDecode[^]*?stream\r?\n([^]*?)endstream/g)].flatMap(([, data]) => {
+    const content = inflateSync(Buffer.from(data, "latin1"), { finishFlush: constants.Z_SYNC_FLUSH }).toString("latin1");
+    return [...content.matchAll(/([\d.-]+) 0 0 ([\d.-]+) [\d.-]+ [\d.-]+ cm\n(?:.*\n){0,4}?\/X\d+ Do/g)];
+  }).map(([, across, up]) => Math.abs(Number(across) / Number(up)));
+}
+
+for (const landscape of [false, true]) {
+  test(`a page is printed true to scale, with what it shows, ${landscape ? "landscape" : "upright"}`, async () => {
+    const tab = await open(mergeInto("four", [...examples, elsewhere]), { colorScheme: landscape ? "dark" : "light" });
+    const { page } = tab;
+    await page.click("#tab-joins");
+    const pdf = await page.pdf({ format: "A4", landscape, path: join(screenshots, `printed_${landscape ? "landscape" : "upright"}.pdf`) });
+    const shapes = tileShapes(pdf);
+    assert.ok(shapes.length > 3 && shapes.every((shape) => Math.abs(shape - 1) < 0.01), `${shapes}`);
+    await page.emulateMedia({ media: "print" });
+    for (const text of ["robot_1.yaml", "they contradict each other", "It disagrees with the others", "In the frame", "x [m]"]) {
+      assert.ok(await page.locator(`aside :text("${text}"):visible`).count() > 0, text);
+    }
+    assert.equal(await page.locator("aside button:visible, .hypotheses:visible, .stage-buttons:visible").count(), 0);
+    await page.emulateMedia({ media: "screen" });
+    assert.ok(await page.isVisible("#panel-joins") && !await page.isVisible("#panel-layers"), "the screen is as before");
+    await tab.close();
+  });
+}

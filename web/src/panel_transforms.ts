@@ -69,8 +69,8 @@ export class TransformsPanel {
           ...["x [m]", "y [m]", "θ [rad]"].map((head) => h("th", { class: "number", scope: "col" }, head)))),
         h("tbody", {}, ...rows))),
       moreNote(large ? maps.length : 0, "map"),
-      h("div", { class: "buttons" }, h("span", {}, "Copy all:"), ...this.buttons("all transforms", () => state.placed().map(({ map }) => map))),
-      h("div", { class: "pose-inputs", title: "The frames of TF commands. {name} is the map's file without its ending" },
+      h("div", { class: "buttons copying" }, h("span", {}, "Copy all:"), ...this.buttons("all transforms", () => state.placed().map(({ map }) => map))),
+      h("div", { class: "pose-inputs copying", title: "The frames of TF commands. {name} is the map's file without its ending" },
         h("label", {}, "TF from ", this.parent), h("label", {}, "to ", this.child)));
   }
 

@@ -13,6 +13,7 @@ import { Tiles } from "./tiles";
 import { type Viewport, boxAround, fit, looking, panned, toScene, zoomed } from "./viewport";
 
 const paintBudget = 9; // milliseconds a frame
+const printRatio = 2; // pixels of a printed picture for each of the screen
 
 /** Where a view looks: the point in its middle, and how many metres its shorter side shows. */
 export interface Aim {
@@ -59,6 +60,8 @@ export class Stage {
     for (const topic of ["spotlight", "ruler"] as const) state.on(topic, () => this.redraw());
     new ResizeObserver(() => this.resize()).observe(this.canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
+    window.addEventListener("beforeprint", () => this.setPrinting(true));
+    window.addEventListener("afterprint", () => this.setPrinting(false));
   }
 
   /** Shows all of the scene. */
@@ -134,6 +137,19 @@ export class Stage {
     if (this.frame === 0) this.frame = requestAnimationFrame(() => this.draw());
   }
 
+  /** Paper is white and fine, whatever the screen is. */
+  private setPrinting(isPrinting: boolean): void {
+    document.documentElement.classList.toggle("printing", isPrinting);
+    this.setRatio(Math.max(isPrinting ? printRatio : 1, window.devicePixelRatio || 1));
+    this.draw(isPrinting ? Infinity : paintBudget);
+  }
+
+  private setRatio(ratio: number): void {
+    this.ratio = ratio;
+    this.canvas.width = Math.round(this.view.width * ratio);
+    this.canvas.height = Math.round(this.view.height * ratio);
+  }
+
   private look(view: Viewport): void {
     this.view = view;
     this.touched = true;
@@ -142,12 +158,11 @@ export class Stage {
   }
 
   private resize(): void {
-    this.ratio = window.devicePixelRatio || 1;
     const { width, height } = this.canvas.getBoundingClientRect();
-    if (width === 0 || height === 0) return;
-    this.canvas.width = Math.round(width * this.ratio);
-    this.canvas.height = Math.round(height * this.ratio);
+    const isPrinting = document.documentElement.classList.contains("printing");
+    if (width === 0 || height === 0 || isPrinting) return;
     this.view = { ...this.view, width, height };
+    this.setRatio(window.devicePixelRatio || 1);
     this.sized = true;
     if (this.awaited) this.lookAt(this.awaited);
     else if (!this.touched) this.fit();
