@@ -2,6 +2,7 @@
 import { bend } from "./deformation";
 import { type DecorColors, label } from "./decor";
 import { Cell, type Grid } from "./grid";
+import { largest } from "./numbers";
 import { type Placed } from "./scene";
 import { type Point, apply, compose, inverse } from "./se2";
 import type { State } from "./state";
@@ -16,7 +17,7 @@ const head = 7; // pixels
 export function drawArrows(context: CanvasRenderingContext2D, view: Viewport, colors: DecorColors, state: State): void {
   const bent = state.placed().filter(({ map, deformation }) => deformation && map !== state.handled && state.looks[map].visible);
   const pointedOut = bent.filter(({ map }) => map === state.spotlight);
-  const farthest = Math.max(0, ...bent.flatMap(({ deformation }) => deformation!.shifts.map(Math.abs)));
+  const farthest = Math.max(0, largest(bent.map(({ deformation }) => largest(deformation!.shifts.map(Math.abs)))));
   if (farthest === 0) return;
   const enlarged = Math.max(1, roundStep(longest / (farthest * view.scale)));
   context.save();

@@ -6,6 +6,16 @@ export function fixed(value: number, decimals: number): string {
   return /^-0\.?0*$/.test(text) ? text.slice(1) : text;
 }
 
+/** Of as many numbers as there are: as arguments of Math.max() they would have to fit the stack. -Infinity if there are none. */
+export function largest(numbers: number[]): number {
+  return numbers.reduce((most, number) => Math.max(most, number), -Infinity);
+}
+
+/** The same; Infinity if there are none. */
+export function smallest(numbers: number[]): number {
+  return numbers.reduce((least, number) => Math.min(least, number), Infinity);
+}
+
 export function degrees(radians: number): number {
   return (radians * 180) / Math.PI;
 }

@@ -4,7 +4,7 @@ import { ink, white } from "./color";
 import { h, replace } from "./dom";
 import { Cell, type Grid } from "./grid";
 import { joinTitle } from "./join_graph";
-import { degrees, fixed, probability } from "./numbers";
+import { degrees, fixed, probability, smallest } from "./numbers";
 import { openWays } from "./open_ways";
 import { type Component, outcomes } from "./report";
 import type { SE2 } from "./se2";
@@ -70,7 +70,7 @@ export class OverviewPanel {
       type: "button", class: "merged-tile", "data-component": index,
       click: () => this.state.show({ kind: "component", component: index }),
     }, canvas, h("strong", {}, component.file), h("span", {}, count(component.members.length, "map")),
-    sure.length === 0 ? null : h("span", { class: "soft" }, `least sure ${probability(Math.min(...sure))}`));
+    sure.length === 0 ? null : h("span", { class: "soft" }, `least sure ${probability(smallest(sure))}`));
   }
 
   private fillTiles(): void {

@@ -5,6 +5,7 @@ import { drawArrows } from "./arrows";
 import { type DecorColors, drawAxes, drawCrosshair, drawGrid, drawRuler, drawScaleBar, label } from "./decor";
 import { h } from "./dom";
 import { Grid } from "./grid";
+import { smallest } from "./numbers";
 import { placeOf } from "./scene";
 import type { Point, SE2 } from "./se2";
 import { Stamp, handleOf, outline } from "./stamp";
@@ -223,7 +224,7 @@ export class Stage {
     };
     const resolutions = layers.map((layer) => layer.grid.finest.resolution);
     if (grid) resolutions.push(grid.finest.resolution);
-    this.tiles.show(picture, resolutions.length > 0 ? Math.min(...resolutions) : 0.05, similar);
+    this.tiles.show(picture, resolutions.length > 0 ? smallest(resolutions) : 0.05, similar);
   }
 
   private colors(): DecorColors & { unknown: string } {

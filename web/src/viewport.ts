@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { largest, smallest } from "./numbers";
 import type { Point } from "./se2";
 
 /** Pixels per metre. Nearer there is nothing more to see, and coordinates far from the origin have no finer steps. */
@@ -16,12 +17,9 @@ export interface Box {
 /** The smallest box around points; of none, a metre about the origin. */
 export function boxAround(points: Point[]): Box {
   if (points.length === 0) return { left: -0.5, bottom: -0.5, right: 0.5, top: 0.5 };
-  return {
-    left: Math.min(...points.map((p) => p.x)),
-    bottom: Math.min(...points.map((p) => p.y)),
-    right: Math.max(...points.map((p) => p.x)),
-    top: Math.max(...points.map((p) => p.y)),
-  };
+  const xs = points.map(({ x }) => x);
+  const ys = points.map(({ y }) => y);
+  return { left: smallest(xs), bottom: smallest(ys), right: largest(xs), top: largest(ys) };
 }
 
 /** Which part of a scene a canvas of `width` by `height` pixels shows. The scene's y points up, the canvas's down. */

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { drawArrows } from "../src/arrows";
 import { type Deformation, bend, bentGrid, straighten } from "../src/deformation";
 import { Grid } from "../src/grid";
-import { apply, compose, inverse } from "../src/se2";
+import { apply, compose, identity, inverse } from "../src/se2";
+import { State } from "../src/state";
 import { randomNumbers } from "./random";
+import { reportOf } from "./reports";
 
 const random = randomNumbers(7);
 
@@ -58,4 +61,15 @@ test("each cell of a bent map is the one that it comes from", () => {
     assert.ok(known > 5000 && differ < 0.01 * known, `${differ} of ${known}`);
     assert.ok(known > 0.8 * cells.filter((cell) => cell > 0).length, "nothing of it is cut off");
   }
+});
+
+test("arrows are drawn of as many bent maps as a merge has", () => {
+  const report = reportOf(Array(45).fill(identity), []);
+  const shifts = Array.from({ length: 2 * 60 * 60 }, () => random() * 0.1 - 0.05);
+  for (const member of report.components[0].members) member.deformation = { ...anyDeformation(), columns: 60, rows: 60, shifts };
+  const written: string[] = [];
+  const context = { save() {}, restore() {}, strokeText() {}, fillText: (text: string) => written.push(text) };
+  const view = { width: 800, height: 600, center: { x: 0, y: 0 }, scale: 20 };
+  drawArrows(context as unknown as CanvasRenderingContext2D, view, { line: "", text: "", halo: "" }, new State(report));
+  assert.deepEqual(written, ["arrows: 50 times enlarged"]);
 });

@@ -67,3 +67,8 @@ test("lines of a grid are counted, wherever they lie", () => {
   assert.ok(multiples(1e-9, -1e9, 1e9).length <= 1000);
   for (const nowhere of [NaN, Infinity]) assert.ok(multiples(1, 0, nowhere).length <= 1000);
 });
+
+test("a box is put around any number of points", () => {
+  const points = Array.from({ length: 300000 }, (_, i) => ({ x: i, y: 1 - i }));
+  assert.deepEqual(boxAround(points), { left: 0, bottom: -299998, right: 299999, top: 1 });
+});
