@@ -5,6 +5,7 @@ import { start, stop } from "./browser";
 import "./opening";
 import "./looking";
 import "./joins";
+import "./access";
 import "./transforms";
 import "./by_hand";
 import "./as_merged";

@@ -24,12 +24,16 @@ export function badge(state: State, map: number): HTMLElement {
 /** The badge with the map's name; pointing at it shows where the map lies. */
 export function mapLabel(state: State, map: number): HTMLElement {
   const element = h("span", { class: "map-label" }, badge(state, map), name(state.names[map], state.report.maps[map].name));
-  pointsOut(element, state, map);
+  element.addEventListener("pointerenter", () => state.point(map));
+  element.addEventListener("pointerleave", () => state.point(null));
   return element;
 }
 
-/** Makes an element show where a map lies while it is pointed at. */
-function pointsOut(element: HTMLElement, state: State, map: number): void {
-  element.addEventListener("pointerenter", () => state.point(map));
-  element.addEventListener("pointerleave", () => state.point(null));
+/** Makes an element show where a map lies while the keyboard is on something in it: what pointing at the map's label does. */
+export function focusPointsOut<E extends HTMLElement>(element: E, state: State, map: number): E {
+  element.addEventListener("focusin", (event) => {
+    if ((event.target as Element).matches(":focus-visible")) state.point(map);
+  });
+  element.addEventListener("focusout", () => state.point(null));
+  return element;
 }

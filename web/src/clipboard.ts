@@ -23,13 +23,13 @@ function copyBySelection(text: string): boolean {
   return copied;
 }
 
-/** A button that copies what `text` gives when it is pressed, and says so. */
+/** A button that copies what `text` gives when it is pressed, and says so. `hint`, "Copy …", has the label's words in it. */
 export function copyButton(label: string, text: () => string, hint: string): HTMLButtonElement {
   const button = h("button", { type: "button", title: hint, "aria-label": hint, click: () => void press() }, label);
   async function press(): Promise<void> {
     const copied = await copy(text());
     button.textContent = copied ? "Copied" : "Not copied";
-    announce(copied ? `Copied as ${label}` : "The browser did not let the page copy");
+    announce(copied ? hint.replace(/^Copy/, "Copied") : "The browser did not let the page copy");
     setTimeout(() => (button.textContent = label), 1500);
   }
   return button;

@@ -105,7 +105,7 @@ export class JoinTable {
     const title = joinTitle(this.state, join);
     const isTold = hasWay(join) && (!isLarge(this.state.report) || hasFigures(join));
     const button = h("button", {
-      type: "button", class: "link", title, "aria-pressed": String(isChosen), "data-join": index, "aria-label": `Show ${title}`,
+      type: "button", class: "link", title, "aria-pressed": String(isChosen), "data-join": index, "aria-label": `${join.fixed + 1} – ${join.moving + 1}: show ${title}`,
       click: () => {
         this.choose(index);
         this.focus(index, false);

@@ -77,11 +77,15 @@ function byHandNote(state: State): HTMLElement {
   return element;
 }
 
-function cursorReading(state: State): HTMLElement {
-  const element = h("output", { class: "cursor", id: "cursor" });
+/** Where the cursor is. It is read out where the keyboard moves it, once it rests: a mouse moves it a hundred times a second. */
+function cursorReading(state: State, stage: Stage): HTMLElement {
+  const element = h("output", { class: "cursor", id: "cursor", "aria-live": "off" });
+  let timer: ReturnType<typeof setTimeout> | undefined;
   state.on("cursor", () => {
     const { cursor } = state;
     element.textContent = cursor ? `x ${fixed(cursor.x, 2)} m, y ${fixed(cursor.y, 2)} m` : "";
+    clearTimeout(timer);
+    if (cursor && stage.crosshair) timer = setTimeout(() => announce(element.textContent!), rest);
   });
   return element;
 }
@@ -110,11 +114,15 @@ function stageButtons(stage: Stage, state: State, actions: StageActions): HTMLEl
     ruler.setAttribute("aria-pressed", String(state.ruler !== null));
     stage.canvas.classList.toggle("measuring", state.ruler !== null);
   });
+  const grid = button("Metre grid", "grid", () => stage.toggleGrid());
+  const tellGrid = () => grid.setAttribute("aria-pressed", String(stage.gridShown));
+  state.on("metres", tellGrid);
+  tellGrid();
   return h("div", { class: "stage-buttons" },
     button("Zoom in", "plus", () => stage.zoom(1.5)),
     button("Zoom out", "minus", () => stage.zoom(1 / 1.5)),
     button("Show all", "all", () => stage.fit()),
-    button("Metre grid", "grid", () => stage.toggleGrid()),
+    grid,
     ruler,
     button("Save what is seen as a PNG", "picture", actions.savePicture),
     button("Copy a link to this view", "link", actions.copyLink),
@@ -198,6 +206,9 @@ const atOnce = 8;
 /** Between redrawings while many maps are unpacked [ms]. */
 const pause = 300;
 
+/** A cursor that stands still for so long rests [ms]. */
+const rest = 500;
+
 function showProblem(text: string): void {
   document.getElementById("problem")!.textContent = text;
 }
@@ -276,16 +287,36 @@ function build(report: Report): void {
     copyLink: () => void shared.copyLink().then((copied) => said.say(copied ? "Link copied" : "The link is in the address bar")),
     help: () => help.showModal(),
   };
+  // What a key has done cannot be heard from the box or the button that it stands for.
+  const tell = (what: string, isShown: boolean) => announce(`${what} ${isShown ? "shown" : "hidden"}`);
   new StageInput(stage, state, {
-    toggleMap: (map) => layers.toggleMap(map),
+    toggleMap: (map) => {
+      if (!state.poseOf(map)) return;
+      layers.toggle(state.looks[map]);
+      tell(flat(state.names[map]), state.looks[map].visible);
+    },
     toggleMerged: () => {
-      if (report.components.length > 0) toggleMerged();
+      if (report.components.length === 0) return;
+      toggleMerged();
+      tell("Merged map", state.merged.visible);
     },
-    toggleAgreement: () => layers.toggle(state.agreement),
+    toggleAgreement: () => {
+      layers.toggle(state.agreement);
+      tell("Agreement", state.agreement.visible);
+    },
     togglePlan: () => {
-      if (state.planPlace()) layers.toggle(state.plan);
+      if (!state.planPlace()) return;
+      layers.toggle(state.plan);
+      tell("Plan", state.plan.visible);
     },
-    toggleRuler,
+    toggleGrid: () => {
+      stage.toggleGrid();
+      tell("Metre grid", stage.gridShown);
+    },
+    toggleRuler: () => {
+      toggleRuler();
+      tell("Ruler", state.ruler !== null);
+    },
     help: () => help.showModal(),
     refine: () => void hand.refine(),
   });
@@ -300,7 +331,7 @@ function build(report: Report): void {
       h("h1", {}, heading(report)), h("p", { id: "summary" }, summary(report)), following?.element ?? null, mergedSwitch(state, toggleMerged), scenePicker(state)),
     h("main", {},
       h("div", { class: "stage" }, stage.canvas, stageButtons(stage, state, actions), said.element,
-        h("div", { class: "readings" }, byHandNote(state), rulerReading(state), cursorReading(state))),
+        h("div", { class: "readings" }, byHandNote(state), rulerReading(state), cursorReading(state, stage))),
       h("aside", {}, tabs.element)),
     help);
   const memory = new PageMemory(state, {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { mapLabel } from "./badge";
+import { focusPointsOut, mapLabel } from "./badge";
 import { h } from "./dom";
 import { describe } from "./formats";
 import { probability } from "./numbers";
@@ -21,9 +21,9 @@ export function openWays(state: State, ways: OpenWay[], placeByHand: Place): HTM
 }
 
 function itemOf(state: State, way: OpenWay, placeByHand: Place): HTMLElement {
-  return h("li", {},
+  return focusPointsOut(h("li", {},
     h("div", {}, mapLabel(state, way.moving), h("span", { class: "soft" }, " in the frame of "), mapLabel(state, way.fixed)),
     h("p", { class: "soft" }, `${describe(way.transform)}, probability ${probability(way.probability)}`),
     h("div", { class: "buttons" },
-      h("button", { type: "button", click: () => placeByHand(way.moving, way.fixed, way.transform) }, "Place it so by hand")));
+      h("button", { type: "button", click: () => placeByHand(way.moving, way.fixed, way.transform) }, "Place it so by hand"))), state, way.moving);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { badge, mapLabel } from "./badge";
+import { badge, focusPointsOut, mapLabel } from "./badge";
 import { type Rgb, disagreement, ink, sepia, white } from "./color";
 import { straighten } from "./deformation";
 import { h, name, replace, swatch } from "./dom";
@@ -61,11 +61,6 @@ export class LayersPanel {
     this.state.changed("looks");
   }
 
-  /** If the map is of the scene. */
-  toggleMap(map: number): void {
-    if (this.state.poseOf(map)) this.toggle(this.state.looks[map]);
-  }
-
   private setAll(visible: boolean): void {
     for (const { map } of this.state.placed()) this.state.looks[map].visible = visible;
     this.state.changed("looks");
@@ -107,7 +102,7 @@ export class LayersPanel {
 
   private ownRow(id: string, label: string, look: Look, legend: Node | null, key: string): HTMLElement {
     return h("div", { class: "layer" },
-      h("label", { class: "layer-name" }, this.checkbox(`layer-${id}`, look), label, h("kbd", {}, key)),
+      h("label", { class: "layer-name" }, this.checkbox(`layer-${id}`, look), label, keyHint(key)),
       this.slider(label, look), legend);
   }
 
@@ -124,10 +119,10 @@ export class LayersPanel {
         state.changed("colors");
       },
     });
-    return h("div", { class: "layer", "data-map": map },
+    return focusPointsOut(h("div", { class: "layer", "data-map": map },
       h("label", { class: "layer-name" }, this.checkbox(`layer-${map}`, look), mapLabel(state, map), byHandTag(),
-        map < 9 ? h("kbd", {}, String(map + 1)) : null),
-      color, this.slider(mapName, look), reading);
+        map < 9 ? keyHint(String(map + 1)) : null),
+      color, this.slider(mapName, look), reading), state, map);
   }
 
   private checkbox(id: string, look: Look): HTMLInputElement {
@@ -223,13 +218,13 @@ export class LayersPanel {
     const { left_out: all, maps, components } = this.state.report;
     const leftOut = all.filter(isWanted);
     if (leftOut.length === 0 || maps.length === 1) return null;
-    const items = leftOut.slice(0, isLarge(this.state.report) ? mostRows : leftOut.length).map(({ map, explanation }) => h("li", { "data-map": map },
+    const items = leftOut.slice(0, isLarge(this.state.report) ? mostRows : leftOut.length).map(({ map, explanation }) => focusPointsOut(h("li", { "data-map": map },
       h("div", {}, badge(this.state, map), name(this.state.names[map], maps[map].name), byHandTag()),
       h("p", { class: "soft" }, `${explanation.charAt(0).toUpperCase()}${explanation.slice(1)}.`),
       h("div", { class: "buttons" },
         h("button", { type: "button", click: () => this.showLeftOut(map) }, "Show"),
         components.length === 0 && maps.length < 2 ? null
-          : h("button", { type: "button", click: () => this.placeByHand(map) }, "Place by hand"))));
+          : h("button", { type: "button", click: () => this.placeByHand(map) }, "Place by hand"))), this.state, map));
     return h("section", { class: "left-out" },
       h("h3", {}, "Left out"),
       h("p", { class: "soft" }, "Could not be joined to another map with confidence."),
@@ -257,6 +252,11 @@ function bendRow(state: State): HTMLElement {
 function agreementCounts({ agreeing, conflicting }: Component, isMoved: boolean): string {
   const counts = `${count(agreeing, "cell")} that several maps know agree, ${conflicting} do not.`;
   return isMoved ? `As merged, not as placed by hand: ${counts}` : counts;
+}
+
+/** The key that does the same: seen beside a name, and no part of it. */
+function keyHint(key: string): HTMLElement {
+  return h("kbd", { "aria-hidden": "true" }, key);
 }
 
 /** Hidden unless the map was placed by hand in the scene. */

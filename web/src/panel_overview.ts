@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { mapLabel } from "./badge";
+import { focusPointsOut, mapLabel } from "./badge";
 import { ink, white } from "./color";
 import { h, replace } from "./dom";
 import { Cell, type Grid } from "./grid";
@@ -89,9 +89,9 @@ export class OverviewPanel {
       return;
     }
     const found = state.names.flatMap((_, map) => (state.isFound(map) ? [map] : []));
-    replace(this.hits, h("ul", {}, ...found.slice(0, mostRows).map((map) => h("li", {},
+    replace(this.hits, h("ul", {}, ...found.slice(0, mostRows).map((map) => focusPointsOut(h("li", {},
       h("button", { type: "button", class: "link hit", "data-map": map, click: () => this.choose(map) }, mapLabel(state, map)),
-      h("span", { class: "soft" }, this.placeOf(map))))),
+      h("span", { class: "soft" }, this.placeOf(map))), state, map))),
     found.length === 0 ? h("p", { class: "soft" }, "No map is called so.") : moreNote(found.length, "map"));
   }
 
@@ -120,10 +120,11 @@ export class OverviewPanel {
       h("p", { class: "soft" }, `${count(own.length, "join")} of it that matter${own.length === 1 ? "s" : ""}:`),
       h("ul", { class: "own-joins" }, ...own.slice(0, mostRows).map((index) => {
         const join = joins[index];
-        return h("li", {}, h("button", {
+        const other = join.fixed === map ? join.moving : join.fixed;
+        return focusPointsOut(h("li", {}, h("button", {
           type: "button", class: "link", "data-join": index, title: joinTitle(state, join), click: () => this.actions.showJoin(index),
-        }, mapLabel(state, join.fixed === map ? join.moving : join.fixed)),
-        h("span", { class: `outcome ${join.outcome}` }, join.outcome), ` ${probability(join.probability)}`);
+        }, mapLabel(state, other)),
+        h("span", { class: `outcome ${join.outcome}` }, join.outcome), ` ${probability(join.probability)}`), state, other);
       })),
       moreNote(own.length, "join"),
       openWays(state, ways.filter((way) => way.fixed === map || way.moving === map), this.actions.placeSo));

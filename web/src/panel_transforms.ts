@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { mapLabel } from "./badge";
+import { focusPointsOut, mapLabel } from "./badge";
 import { copyButton } from "./clipboard";
 import type { Shape } from "./deformation";
 import { h, replace } from "./dom";
@@ -83,9 +83,9 @@ export class TransformsPanel {
       h("tr", { class: "pose", "data-map": map },
         h("td", { class: "name" }, mapLabel(this.state, map)),
         number(fixed(pose.x, 3)), number(fixed(pose.y, 3)), number(fixed(pose.theta, 5))),
-      h("tr", { class: "more" }, h("td", { colspan: 4 }, h("div", { class: "buttons" },
+      focusPointsOut(h("tr", { class: "more" }, h("td", { colspan: 4 }, h("div", { class: "buttons" },
         ...this.buttons(flat(this.state.names[map]), () => [map]),
-        h("span", { class: "soft" }, `${fixed(degrees(pose.theta), 2)}°`, byHand ? ", placed by hand" : this.certainty(map))))),
+        h("span", { class: "soft" }, `${fixed(degrees(pose.theta), 2)}°`, byHand ? ", placed by hand" : this.certainty(map))))), this.state, map),
     ];
   }
 
@@ -118,7 +118,7 @@ export class TransformsPanel {
     return [
       copyButton("YAML", () => asYaml(frame, poses()), `Copy ${whose} as YAML`),
       copyButton("JSON", () => asJson(frame, poses()), `Copy ${whose} as JSON`),
-      copyButton("TF", staticTransforms, `Copy ${whose} for static_transform_publisher`),
+      copyButton("TF", staticTransforms, `Copy ${whose} as TF, for static_transform_publisher`),
     ];
   }
 }

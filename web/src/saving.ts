@@ -56,7 +56,7 @@ export class Saving {
     const { report } = this.state;
     const command = commandWith(report, fileName);
     const save = h("button", { type: "button", id: "hand-save", class: "primary", click: () => this.save() }, `Save ${fileName}`);
-    const copy = command === null ? null : copyButton("Copy command", () => command, "Copy the command");
+    const copy = command === null ? null : copyButton("Copy command", () => command, "Copy command that merges with the poses");
     this.buttons = copy ? [save, copy] : [save];
     replace(this.element,
       h("h3", {}, "Placed by hand"),

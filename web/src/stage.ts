@@ -118,6 +118,7 @@ export class Stage {
 
   showGrid(shown: boolean): void {
     this.gridShown = shown;
+    this.state.changed("metres");
     this.redraw();
   }
 

@@ -21,6 +21,7 @@ export interface KeyActions {
   toggleAgreement(): void;
   togglePlan(): void;
   toggleRuler(): void;
+  toggleGrid(): void;
   help(): void;
   refine(): void;
 }
@@ -216,7 +217,7 @@ export class StageInput {
     else if (event.key === "+" || event.key === "=") stage.zoom(zoomStep);
     else if (event.key === "-") stage.zoom(1 / zoomStep);
     else if (event.key === "0") stage.fit();
-    else if (event.key.toLowerCase() === "g") stage.toggleGrid();
+    else if (event.key.toLowerCase() === "g") this.actions.toggleGrid();
     else return false;
     return true;
   }

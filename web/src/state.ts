@@ -20,9 +20,9 @@ export interface MapLook extends Look {
 
 /**
  * What has changed: which scene, how layers look, in which colours, which map is pointed out, where the cursor is, what is
- * measured, what is placed by hand, which cells are there, which maps are searched for, how far maps are bent.
+ * measured, whether there is a metre grid, what is placed by hand, which cells are there, which maps are searched for, how far maps are bent.
  */
-export type Topic = "scene" | "looks" | "colors" | "spotlight" | "cursor" | "ruler" | "hand" | "grids" | "query" | "bend";
+export type Topic = "scene" | "looks" | "colors" | "spotlight" | "cursor" | "ruler" | "metres" | "hand" | "grids" | "query" | "bend";
 
 /** The map in hand, whose cells are there. */
 export interface InHand {
