@@ -2,14 +2,30 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Page } from "playwright-core";
-import { open } from "./browser";
-import { elsewhere, examples, mergeInto } from "./reports";
+import type { InputMap } from "../src/report";
+import { type SE2, apply, compose } from "../src/se2";
+import { cursor, drag, middle, open } from "./browser";
+import { elsewhere, examples, mergeInto, reportData } from "./reports";
 
 const folder = () => mergeInto("four", [...examples, elsewhere]);
 
 /** Waits for what a screen reader is told. */
 async function hears(page: Page, text: string): Promise<void> {
   await page.waitForFunction((expected) => document.getElementById("announcements")!.textContent === expected, text);
+}
+
+/** Where the handle of the map in hand is on the page. */
+async function handleOnPage(page: Page, { origin, width, height, resolution }: InputMap): Promise<{ x: number; y: number }> {
+  const at = await middle(page);
+  await page.mouse.move(at.x - 50, at.y);
+  const left = await cursor(page);
+  await page.mouse.move(at.x + 50, at.y);
+  const right = await cursor(page);
+  const scale = 100 / (right.x - left.x);
+  const [x, y, theta] = await Promise.all(["x", "y", "theta"].map(async (id) => Number(await page.inputValue(`#hand-${id}`))));
+  const T_scene_grid: SE2 = compose({ x, y, theta: (theta * Math.PI) / 180 }, origin);
+  const above = apply(T_scene_grid, { x: (width * resolution) / 2, y: height * resolution + 28 / scale });
+  return { x: at.x - 50 + (above.x - left.x) * scale, y: at.y - (above.y - left.y) * scale };
 }
 
 test("the keyboard points a map out as the mouse does", async () => {
@@ -79,3 +95,83 @@ test("names of boxes and buttons are what is seen of them, without their keys", 
   }
   await tab.close();
 });
+
+test("nothing that has the focus lies under the map, however small the window is", async () => {
+  for (const [width, height] of [[360, 640], [640, 400], [320, 256]]) {
+    const tab = await open(folder(), { viewport: { width, height } });
+    const { page } = tab;
+    await page.click("#tab-joins");
+    await page.locator("#panel-joins button").last().focus();
+    let stops = 0;
+    while (await page.evaluate(() => document.getElementById("panel-joins")!.contains(document.activeElement))) {
+      const { isOnScreen, covered, what } = await page.evaluate(() => {
+        const { left, right, top, bottom } = document.activeElement!.getBoundingClientRect();
+        const under = [left + 6, (left + right) / 2, right - 6].map((x) => document.elementFromPoint(x, (top + bottom) / 2));
+        return {
+          isOnScreen: top >= 0 && bottom <= window.innerHeight + 1, covered: under.some((element) => element?.closest(".stage")),
+          what: document.activeElement!.outerHTML,
+        };
+      });
+      assert.ok(isOnScreen && !covered, `${what} at ${width} x ${height}`);
+      await page.keyboard.press("Shift+Tab");
+      stops++;
+    }
+    assert.ok(stops > 10);
+    const buttons = await page.locator(".stage-buttons button").evaluateAll((all) => all.map((button) => button.getBoundingClientRect().toJSON()));
+    const map = (await page.locator(".stage canvas").boundingBox())!;
+    for (const { left, right, bottom } of buttons) {
+      assert.ok(left >= 0 && right <= width, "all buttons are on the screen");
+      assert.ok(bottom <= map.y + 1, "and beside the map");
+    }
+    await page.evaluate(() => window.scrollTo(0, 0));
+    await tab.screenshot(`small_${width}`);
+    await tab.close();
+  }
+});
+
+test("the handle of a map in hand can be taken hold of, on a phone too", async () => {
+  for (const viewport of [{ width: 360, height: 640 }, { width: 1280, height: 800 }]) {
+    const tab = await open(folder(), { viewport });
+    const { page } = tab;
+    await page.click("#tab-hand");
+    for (const map of [0, 1, 2, 3]) {
+      await page.selectOption("#hand-map", String(map));
+      await page.evaluate(() => window.scrollTo(0, 0));
+      await tab.settled();
+      const at = await handleOnPage(page, reportData(folder()).maps[map]);
+      const there = await page.evaluate(({ x, y }) => document.elementFromPoint(x, y)?.tagName, at);
+      assert.equal(there, "CANVAS", `map ${map} at ${viewport.width}`);
+      const before = await page.inputValue("#hand-theta");
+      await drag(page, at, 30, 10);
+      assert.notEqual(await page.inputValue("#hand-theta"), before);
+      await page.click("button:text-is('Put back')");
+    }
+    await tab.screenshot(`handle_${viewport.width}`);
+    await tab.close();
+  }
+});
+
+for (const scheme of ["light", "dark"] as const) {
+  test(`in forced colours, ${scheme}, what colours mean is seen`, async () => {
+    const tab = await open(folder(), { forcedColors: "active", colorScheme: scheme });
+    const { page } = tab;
+    const background = (selector: string) => page.locator(selector).evaluateAll((all) => all.map((one) => getComputedStyle(one).backgroundColor));
+    assert.equal(new Set(await background(".legend .swatch")).size, 3, "both kinds and contradictions");
+    assert.equal(new Set(await background(".layer .badge")).size, 3, "each map");
+    const [maps, merged] = await background(".segments button");
+    assert.notEqual(maps, merged, "which one is pressed");
+    await tab.screenshot(`forced_${scheme}_layers`);
+    await page.click("#tab-hand");
+    await page.selectOption("#hand-map", "1");
+    await page.waitForSelector("#hand-yardstick:has-text('by chance')");
+    const [bar, fill] = [...await background(".gauge-bar"), ...await background(".gauge-fill")];
+    assert.notEqual(bar, fill, "the gauge");
+    await tab.screenshot(`forced_${scheme}_hand`);
+    await page.click("#tab-joins");
+    await page.click("button[data-join='0']");
+    const [row] = await background("tr.chosen td >> nth=0");
+    assert.ok(!(await background("tr:not(.chosen) td >> nth=0")).includes(row), "which join is chosen");
+    await tab.screenshot(`forced_${scheme}_joins`);
+    await tab.close();
+  });
+}

@@ -14,6 +14,7 @@ import { Tiles } from "./tiles";
 import { type Viewport, boxAround, fit, looking, panned, toScene, zoomed } from "./viewport";
 
 const paintBudget = 9; // milliseconds a frame
+const handleRoom = 48; // pixels about a handle: as wide as the buttons beside the map
 const printRatio = 2; // pixels of a printed picture for each of the screen
 
 /** Where a view looks: the point in its middle, and how many metres its shorter side shows. */
@@ -38,6 +39,8 @@ export class Stage {
   private ratio = 1;
   private frame = 0;
   private touched = false;
+  /** The map that was in hand when the view was fitted last. */
+  private shownInHand: number | null = null;
   private sized = false;
   /** What is to be looked at as soon as the canvas has a size. */
   private awaited: Aim | null = null;
@@ -58,6 +61,7 @@ export class Stage {
     state.on("scene", () => this.arrange());
     state.on("grids", () => this.arrange());
     for (const topic of ["looks", "colors", "hand", "bend"] as const) state.on(topic, () => this.recompose());
+    state.on("hand", () => this.showHandle());
     for (const topic of ["spotlight", "ruler"] as const) state.on(topic, () => this.redraw());
     new ResizeObserver(() => this.resize()).observe(this.canvas);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
@@ -71,8 +75,24 @@ export class Stage {
     const points = corners.length > 0 ? corners : this.mergedGrid()?.corners() ?? [];
     const plan = this.state.plan.visible ? this.state.placedPlan() : null;
     if (plan) points.push(...plan.grid.corners(plan.T_scene_map));
-    this.look(fit(boxAround(points), this.view.width, this.view.height));
+    this.look(this.withHandle(points, fit(boxAround(points), this.view.width, this.view.height)));
     this.touched = false;
+  }
+
+  /** A view that shows all shows the handle of a map that is taken in hand, and does without it again. */
+  private showHandle(): void {
+    if (this.shownInHand === this.state.handled) return;
+    this.shownInHand = this.state.handled;
+    if (!this.touched) this.fit();
+  }
+
+  /** A view of these points where the handle of the map in hand can be taken hold of, beside the buttons too. */
+  private withHandle(points: Point[], view: Viewport): Viewport {
+    const inHand = this.state.inHand();
+    if (!inHand) return view;
+    const { x, y } = handleOf(view, inHand.grid, inHand.pose).at;
+    const reach = [{ x: x - handleRoom, y: y - handleRoom }, { x: x + handleRoom, y: y + handleRoom }];
+    return fit(boxAround([...points, ...reach.map((pixel) => toScene(view, pixel))]), view.width, view.height);
   }
 
   /** Null where the view shows all of the scene, however large it is. */
@@ -290,6 +310,7 @@ export class Stage {
   /** Says in the picture itself, which is saved and printed, what does not lie as it was merged. */
   private drawByHand(colors: DecorColors): void {
     const { context, state, view } = this;
+    context.save();
     context.font = "bold 12px system-ui, sans-serif";
     context.textAlign = "center";
     context.textBaseline = "bottom";
@@ -304,6 +325,7 @@ export class Stage {
       const x = Math.min(Math.max(top.x, 60), view.width - 60);
       label(context, colors, `${map + 1} by hand`, x, Math.min(Math.max(top.y - 4, 36), view.height - 30));
     }
+    context.restore();
   }
 
   private drawHandle(grid: Grid, pose: SE2, color: string): void {
