@@ -26,6 +26,7 @@ std::vector<std::string> short_names(const std::vector<std::string>& names) {
         std::mismatch(first.begin(), first.begin() + static_cast<std::ptrdiff_t>(most), name.begin());
     common = folders_of(std::string(first.begin(), differs.first));
   }
+  if (common == 1) common = 0;  // the slash alone, which tells that the names are whole
   std::vector<std::string> shortened;
   shortened.reserve(names.size());
   for (const std::string& name : names) shortened.push_back(name.substr(common));

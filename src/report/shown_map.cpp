@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include <cmath>
 #include <new>
 #include <utility>
 #include <vector>
@@ -37,17 +38,24 @@ OccupancyGrid at_most(OccupancyGrid grid, std::size_t max_cells) {
 }
 
 ShownMap show_map(const OccupancyGrid& grid, std::size_t max_cells) {
-  if (count_cells(grid).known() == 0) return {0, 0, grid.resolution, grid.origin, ""};
+  if (count_cells(grid).known() == 0) return {0, 0, grid.resolution, grid.origin, "", 1};
   const OccupancyGrid known = at_most(crop_to_known(grid), max_cells);
-  return {known.width, known.height, known.resolution, known.origin, to_base64(deflated(known.cells))};
+  return {known.width,
+          known.height,
+          known.resolution,
+          known.origin,
+          to_base64(deflated(known.cells)),
+          static_cast<int>(std::lround(known.resolution / grid.resolution))};
 }
 
 Json grid_json(const ShownMap& map) {
-  return {{"width", map.width},
-          {"height", map.height},
-          {"resolution", number_json(map.resolution)},
-          {"origin", transform_json(map.origin)},
-          {"cells", map.cells}};
+  Json json{{"width", map.width},
+            {"height", map.height},
+            {"resolution", number_json(map.resolution)},
+            {"origin", transform_json(map.origin)},
+            {"cells", map.cells}};
+  if (map.coarser > 1) json["coarser"] = map.coarser;
+  return json;
 }
 
 }  // namespace gridmerge::internal

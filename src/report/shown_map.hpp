@@ -26,6 +26,8 @@ struct ShownMap {
   /// Base64 of a zlib stream (RFC 1950) of width * height bytes, row 0 at the bottom: 0 unknown, 1 free,
   /// 2 occupied. "" when nothing is known.
   std::string cells;
+  /// As many times as wide as those of the grid is each cell: the page says so.
+  int coarser = 1;
 };
 
 /// Of a grid of any size, 0 x 0 too; large ones are shown coarser (at_most(), kMaxShownCells). O(cells).

@@ -14,6 +14,7 @@ TEST(ShortNames, LackTheFoldersThatAllLieIn) {
   EXPECT_EQ(short_names({"a/b/one.yaml", "a/b/two.yaml"}), (Names{"one.yaml", "two.yaml"}));
   EXPECT_EQ(short_names({"/runs/robot_1/map.yaml", "/runs/robot_2/map.yaml"}),
             (Names{"robot_1/map.yaml", "robot_2/map.yaml"}));
+  EXPECT_EQ(short_names({"/runs/one.yaml", "/maps/two.yaml"}), (Names{"/runs/one.yaml", "/maps/two.yaml"}));
   EXPECT_EQ(short_names({"a/one.yaml", "two.yaml"}), (Names{"a/one.yaml", "two.yaml"}));
   EXPECT_EQ(short_names({"/one.yaml", "one.yaml"}), (Names{"/one.yaml", "one.yaml"}));
   EXPECT_EQ(short_names({"a/b/c", "a/b"}), (Names{"b/c", "b"}));

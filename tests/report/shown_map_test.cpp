@@ -52,6 +52,13 @@ TEST(ShownMap, AnyCellsComeBack) {
   EXPECT_EQ(cells_of(show_map(map)), map.cells);
 }
 
+TEST(ShownMap, TellsHowMuchCoarserItIs) {
+  const OccupancyGrid map = map_from({".#..", "....", "....", "...."}, 0.05);
+  EXPECT_FALSE(grid_json(show_map(map, 16)).contains("coarser"));
+  EXPECT_EQ(grid_json(show_map(map, 15)).at("coarser"), 2);
+  EXPECT_EQ(grid_json(show_map(map, 3)).at("coarser"), 4);
+}
+
 TEST(AtMost, LeavesWhatIsSmallEnough) {
   const OccupancyGrid map = map_from({"#.", " ."}, 0.05);
   EXPECT_EQ(at_most(map, 4).cells, map.cells);

@@ -175,3 +175,24 @@ for (const scheme of ["light", "dark"] as const) {
     await tab.close();
   });
 }
+
+for (const scheme of ["light", "dark"] as const) {
+  test(`what can be filled in has an edge that is seen, ${scheme}`, async () => {
+    const tab = await open(folder(), { colorScheme: scheme });
+    await tab.page.click("#tab-transforms");
+    const luminances = await tab.page.locator("#scene, #tf-parent, #panel-transforms button").evaluateAll((all) => all.map((element) => {
+      const luminance = (color: string) => {
+        const [red, green, blue] = color.match(/\d+/g)!.map((channel) => ((Number(channel) / 255 + 0.055) / 1.055) ** 2.4);
+        return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+      };
+      const { borderTopColor, backgroundColor } = getComputedStyle(element);
+      return [borderTopColor, backgroundColor, getComputedStyle(document.body).backgroundColor].map(luminance);
+    }));
+    assert.ok(luminances.length > 1);
+    for (const [edge, ...beside] of luminances) {
+      for (const other of beside) assert.ok((Math.max(edge, other) + 0.05) / (Math.min(edge, other) + 0.05) >= 3, `${edge} beside ${other}`);
+    }
+    await tab.screenshot(`edges_${scheme}`);
+    await tab.close();
+  });
+}

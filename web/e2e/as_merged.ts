@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
@@ -59,3 +60,22 @@ for (const landscape of [false, true]) {
     await tab.close();
   });
 }
+
+test("it is told which maps are drawn coarser than they are", async () => {
+  const folder = mergeInto("four", [...examples, elsewhere]);
+  const html = readFileSync(join(folder, "report.html"), "utf8");
+  const coarser = join(folder, "coarser.html");
+  writeFileSync(coarser, html.replace('"color":"#0072b2"', '"coarser":2,$&'));
+  const tab = await open(pathToFileURL(coarser).href);
+  const { page } = tab;
+  assert.equal(await page.title(), "Merged maps: robot_1.yaml, robot_2.yaml and 2 more – gridmerge");
+  assert.match((await page.textContent(".layer[data-map='0']"))!, /Drawn in cells 2 times as wide as its own\. $/);
+  assert.equal(await page.locator(":text('Drawn in cells')").count(), 1);
+  await page.click("#tab-hand");
+  await page.selectOption("#hand-map", "0");
+  const before = Number(await page.inputValue("#hand-x"));
+  await page.focus("canvas");
+  await page.keyboard.press("ArrowRight");
+  assert.equal((Number(await page.inputValue("#hand-x")) - before).toFixed(3), "0.025", "a cell of its own");
+  await tab.close();
+});

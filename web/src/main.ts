@@ -12,7 +12,7 @@ import { LayersPanel } from "./panel_layers";
 import { OverviewPanel } from "./panel_overview";
 import { PageMemory } from "./page_memory";
 import { TransformsPanel } from "./panel_transforms";
-import { type PackedGrid, type Report, expandRefused, heading, isLarge, summary } from "./report";
+import { type PackedGrid, type Report, expandRefused, heading, isLarge, pageTitle, summary } from "./report";
 import { describeRuler, isUnfinished } from "./ruler";
 import { type SceneId, firstScene } from "./scene";
 import { type SE2, compose } from "./se2";
@@ -334,6 +334,7 @@ function build(report: Report): void {
         h("div", { class: "readings" }, byHandNote(state), rulerReading(state), cursorReading(state, stage))),
       h("aside", {}, tabs.element)),
     help);
+  document.title = pageTitle(report);
   const memory = new PageMemory(state, {
     shared,
     take: (map) => hand.take(map),

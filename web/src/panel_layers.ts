@@ -4,10 +4,10 @@ import { type Rgb, disagreement, ink, sepia, white } from "./color";
 import { straighten } from "./deformation";
 import { h, name, replace, swatch } from "./dom";
 import { Cell } from "./grid";
-import { fixed, probability } from "./numbers";
+import { fixed, probability, sayScale } from "./numbers";
 import { type SE2, apply, inverse } from "./se2";
 import { openWays } from "./open_ways";
-import { type Component, type LeftOut, isLarge } from "./report";
+import { type Component, type LeftOut, type PackedGrid, isLarge } from "./report";
 import { moreNote, mostRows, searchBox } from "./search";
 import type { Look, State } from "./state";
 import { count, flat } from "./text";
@@ -77,7 +77,8 @@ export class LayersPanel {
     const { component } = state.scene;
     replace(this.ownRows,
       component === null ? null : this.ownRow("merged", "Merged map", state.merged,
-        h("span", { class: "legend soft" }, "Covers the maps that it is made of, where it has them."), "m"),
+        h("span", { class: "legend soft" }, "Covers the maps that it is made of, where it has them. ",
+          coarseness(state.report.components[component])), "m"),
       maps.length < 2 ? null : this.ownRow("agreement", "Agreement", state.agreement, h("span", { class: "legend" },
         legendItem(ink, "walls in two maps or more"), legendItem(white, "floor in two maps or more"),
         legendItem(disagreement, "they contradict each other"),
@@ -94,7 +95,7 @@ export class LayersPanel {
     const place = this.state.planPlace();
     if (!plan || !place) return null;
     const file = name(flat(plan.name).replace(/^.*\//, ""), plan.name);
-    const words = `, enlarged by ${place.scale.toFixed(4)}. `;
+    const words = `, ${sayScale(place.scale)}. ${coarseness(plan.grid!)}`;
     const doubt = `Its most probable place (probability ${probability(place.probability)}): nothing that is shown here hangs on it.`;
     return this.ownRow("plan", "Plan", this.state.plan, h("span", { class: "legend" },
       legendItem(sepia, "its walls"), h("div", { class: "soft" }, file, place.on_plan ? words : words + doubt)), "p");
@@ -111,6 +112,7 @@ export class LayersPanel {
     const look = state.looks[map];
     const mapName = flat(state.names[map]);
     const reading = h("span", { class: "reading soft" }, "–");
+    const coarser = coarseness(state.report.maps[map]);
     this.readings.set(map, reading);
     const color = h("input", {
       type: "color", value: look.color, "aria-label": `Colour of ${mapName}`, "data-map": map,
@@ -122,7 +124,7 @@ export class LayersPanel {
     return focusPointsOut(h("div", { class: "layer", "data-map": map },
       h("label", { class: "layer-name" }, this.checkbox(`layer-${map}`, look), mapLabel(state, map), byHandTag(),
         map < 9 ? keyHint(String(map + 1)) : null),
-      color, this.slider(mapName, look), reading), state, map);
+      color, this.slider(mapName, look), reading, coarser === "" ? null : h("span", { class: "legend soft" }, coarser)), state, map);
   }
 
   private checkbox(id: string, look: Look): HTMLInputElement {
@@ -252,6 +254,11 @@ function bendRow(state: State): HTMLElement {
 function agreementCounts({ agreeing, conflicting }: Component, isMoved: boolean): string {
   const counts = `${count(agreeing, "cell")} that several maps know agree, ${conflicting} do not.`;
   return isMoved ? `As merged, not as placed by hand: ${counts}` : counts;
+}
+
+/** Of a grid that the page was not given in full; else empty. */
+function coarseness({ coarser }: PackedGrid): string {
+  return coarser === undefined ? "" : `Drawn in cells ${coarser} times as wide as its own. `;
 }
 
 /** The key that does the same: seen beside a name, and no part of it. */

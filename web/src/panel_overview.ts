@@ -4,7 +4,7 @@ import { ink, white } from "./color";
 import { h, replace } from "./dom";
 import { Cell, type Grid } from "./grid";
 import { joinTitle } from "./join_graph";
-import { degrees, fixed, probability, smallest } from "./numbers";
+import { probability, sayDeviation, smallest } from "./numbers";
 import { openWays } from "./open_ways";
 import { type Component, outcomes } from "./report";
 import type { SE2 } from "./se2";
@@ -112,7 +112,7 @@ export class OverviewPanel {
     const facts = member
       ? [`In ${this.placeOf(map)}`,
         member.probability === null ? null : `probability ${probability(member.probability)}`,
-        member.sd === null ? null : `± ${fixed(member.sd.position, 3)} m, ± ${fixed(degrees(member.sd.theta), 2)}°`]
+        member.sd === null ? null : sayDeviation(member.sd)]
       : [`Left out: ${why?.explanation ?? ""}`];
     replace(this.chosen,
       h("h3", {}, mapLabel(state, map)),

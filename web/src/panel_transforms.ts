@@ -4,7 +4,7 @@ import { copyButton } from "./clipboard";
 import type { Shape } from "./deformation";
 import { h, replace } from "./dom";
 import { type NamedPose, asJson, asStaticTransforms, asYaml, childFrames, frameIds, frameName } from "./formats";
-import { degrees, fixed, probability } from "./numbers";
+import { degrees, fixed, probability, sayDeviation } from "./numbers";
 import { type Member, isLarge } from "./report";
 import { moreNote, mostRows, searchBox } from "./search";
 import type { State } from "./state";
@@ -101,7 +101,7 @@ export class TransformsPanel {
     if (shape) parts.push(shapeWords[shape.kind](shape));
     if (member?.probability != null) parts.push(`probability ${probability(member.probability)}`);
     if (map === this.state.scene.frame) parts.push("holds the frame");
-    else if (member?.sd) parts.push(`± ${fixed(member.sd.position, 3)} m, ± ${fixed(degrees(member.sd.theta), 2)}°`);
+    else if (member?.sd) parts.push(sayDeviation(member.sd));
     return parts.map((part) => `, ${part}`).join("");
   }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Deformation, Shape } from "./deformation";
 import type { SE2 } from "./se2";
-import { probability } from "./numbers";
-import { count, flat } from "./text";
+import { probability, sayScale } from "./numbers";
+import { count, flat, shortNames } from "./text";
 
 // What a merge has to tell, as the program writes it into the page.
 
@@ -13,6 +13,8 @@ export interface PackedGrid {
   resolution: number;
   origin: SE2;
   cells: string;
+  /** By which its cells are wider than the map's own, if they are. */
+  coarser?: number;
 }
 
 export interface InputMap extends PackedGrid {
@@ -185,6 +187,13 @@ export function heading(report: Report): string {
   return isPlanBelieved(report) ? "Map on a plan" : "One map";
 }
 
+/** What tells the page from others in a browser's tabs. */
+export function pageTitle(report: Report): string {
+  const names = shortNames(report.maps.map(({ name }) => flat(name)));
+  const listed = names.length <= 3 ? names.join(", ") : `${names.slice(0, 2).join(", ")} and ${names.length - 2} more`;
+  return `${heading(report)}${listed === "" ? "" : `: ${listed}`} – gridmerge`;
+}
+
 /** How the merge went: a sentence, and one of the plan if there is one. */
 export function summary(report: Report): string {
   if (report.maps.length === 1 && report.plan !== undefined) return planSummary(report.plan, 1);
@@ -198,5 +207,5 @@ function planSummary(plan: Plan, maps: number): string {
   const name = flat(plan.name);
   if (plan.maps.length === 0) return `No map hangs on the plan ${name}.`;
   const hung = `${plan.maps.length} of ${maps} hang on the plan ${name}`;
-  return `${hung}, enlarged by ${plan.scale.toFixed(4)} (probability ${probability(plan.probability)}).`;
+  return `${hung}, ${sayScale(plan.scale)} (probability ${probability(plan.probability)}).`;
 }

@@ -174,7 +174,8 @@ export class StageInput {
   private handKey(event: KeyboardEvent): boolean {
     const { handled } = this.state;
     if (handled === null) return false;
-    const step = (event.shiftKey ? 10 : 1) * this.state.report.maps[handled].resolution;
+    const { resolution, coarser } = this.state.report.maps[handled];
+    const step = ((event.shiftKey ? 10 : 1) * resolution) / (coarser ?? 1);
     const turn = radians(event.shiftKey ? 5 : 0.5);
     switch (event.key.length === 1 ? event.key.toLowerCase() : event.key) {
       case "ArrowLeft":

@@ -201,7 +201,9 @@ export class State {
   /** Whether a map's name, or its number, is what is searched for. */
   isFound(map: number): boolean {
     const query = this.query.trim().toLowerCase();
-    return query === "" || query === String(map + 1) || this.names[map].toLowerCase().includes(query);
+    // Folders that all maps lie in would find all of them, unless they are asked for with what is in them.
+    const name = query.includes("/") ? this.report.maps[map].name : this.names[map];
+    return query === "" || query === String(map + 1) || name.toLowerCase().includes(query);
   }
 
   measure(ruler: Ruler | null): void {

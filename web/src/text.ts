@@ -7,7 +7,7 @@ export function count(number: number, what: string): string {
 
 /** A user's text for where elements cannot isolate it: without what would reorder or break the text around it. */
 export function flat(text: string): string {
-  return text.replace(/[\u0000-\u001f\u007f-\u009f\u200e\u200f\u2028-\u202e\u2066-\u2069]/g, "\ufffd");
+  return text.replace(/[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]/g, "\ufffd");
 }
 
 /** Names without the folders that all of them lie in: enough to tell the maps apart. */
@@ -15,6 +15,8 @@ export function shortNames(names: string[]): string[] {
   const folders = names.map((name) => name.split("/").slice(0, -1));
   const [first = []] = folders;
   const differs = first.findIndex((part, i) => !folders.every((folder) => folder[i] === part));
-  const common = differs < 0 ? first.length : differs;
+  const shared = differs < 0 ? first.length : differs;
+  // Of the root alone nothing is dropped: its slash tells that the names are whole.
+  const common = shared === 1 && first[0] === "" ? 0 : shared;
   return names.map((name) => name.split("/").slice(common).join("/"));
 }
