@@ -18,7 +18,7 @@ from ._transform import PoseLike, Transform
 RobotState: TypeAlias = Literal["waiting", "placed", "left_out"]
 """What is known of a robot: nothing to compare it with yet, its place, or that it lies nowhere surely enough."""
 
-TeamEventKind: TypeAlias = Literal["joined", "left", "jumped", "restarted"]
+TeamEventKind: TypeAlias = Literal["joined", "left", "jumped", "restarted", "renumbered"]
 """What happened to a robot."""
 
 _WAKE = 0.1  # how often a waiting call lets Python handle signals [s]
@@ -46,6 +46,8 @@ class RobotStatus:
     """Maps and parts of maps, those that changed nothing too."""
     heard_first: float
     """Since when it is heard, by the oldest account: seconds since 1970."""
+    has_known_pose: bool = False
+    """One was set, and its map has not started anew since (Team.hear)."""
 
     def __repr__(self) -> str:
         place = f", transform={short_pose(self.transform)}" if self.component is not None else ""
@@ -56,6 +58,10 @@ class RobotStatus:
 class TeamComponent:
     """Robots that were placed together."""
 
+    number: int
+    """What frames and topics are named after, from 1. It stays while components come, go and grow. The one in the
+    frame of fixed poses has 1, and no other one has while there are such poses. A component that is made of several has
+    their least. Numbers that no component has any more are given anew, so there may be gaps."""
     anchor: str | None
     """The robot whose map frame is the component's. None where poses are fixed: the frame is then theirs."""
     robots: tuple[str, ...]
@@ -87,7 +93,7 @@ class TeamAnswer:
     number: int
     """Counts up; 0 is the answer before anything was heard."""
     components: tuple[TeamComponent, ...]
-    """Most robots first, then by name."""
+    """By number."""
     robots: tuple[RobotStatus, ...]
     """By name."""
     events: tuple[TeamEvent, ...]
@@ -164,7 +170,8 @@ class Team:
         """The robot's newest map. ValueError for a robot too many.
 
         A map that differs too much from the one before is that of a robot which started anew in another frame: what was
-        known of its pose is forgotten.
+        known of its pose is forgotten. A known pose is kept if most walls are where they were, as where a closed
+        loop bent the map.
         """
         name, core = _name("robot", robot), to_map("map", map)._core
         self._core.hear(name, core)
@@ -203,7 +210,8 @@ class Team:
     def set_known_pose(self, robot: str, pose: InitialPose | PoseLike | None, *, fixed: bool = False) -> None:
         """What is known of where a robot's map lies, heard or not yet; None for nothing any more.
 
-        ValueError for `fixed` without a pose: a team's frame is that of the robot which was heard first.
+        It holds until the robot's map starts anew (hear()). ValueError for `fixed` without a pose: a team's frame is
+        that of the robot which was heard first.
         """
         if pose is None and fixed:
             raise ValueError("fixed: needs a pose")
@@ -258,7 +266,7 @@ def _to_answer(answer: _core.TeamAnswer) -> TeamAnswer:
     return TeamAnswer(
         number=answer.number,
         components=tuple(
-            TeamComponent(one.anchor or None, tuple(one.robots), OccupancyGrid._of(one.map))
+            TeamComponent(one.number, one.anchor or None, tuple(one.robots), OccupancyGrid._of(one.map))
             for one in answer.components
         ),
         robots=tuple(
@@ -272,6 +280,7 @@ def _to_answer(answer: _core.TeamAnswer) -> TeamAnswer:
                 robot.probability,
                 robot.maps_heard,
                 robot.heard_first,
+                robot.has_known_pose,
             )
             for robot in answer.robots
         ),

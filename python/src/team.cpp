@@ -125,6 +125,8 @@ const char* name_of(TeamEvent::Kind kind) {
       return "jumped";
     case TeamEvent::Kind::restarted:
       return "restarted";
+    case TeamEvent::Kind::renumbered:
+      return "renumbered";
   }
   return "";
 }
@@ -170,12 +172,14 @@ void bind_team(nb::module_& module) {
       .def_prop_ro("transform", [](const RobotStatus& robot) { return to_pose(robot.T_world_map); })
       .def_ro("probability", &RobotStatus::probability)
       .def_ro("maps_heard", &RobotStatus::maps_heard)
+      .def_ro("has_known_pose", &RobotStatus::has_known_pose)
       .def_prop_ro("heard_first", [](const RobotStatus& robot) { return seconds_of(robot.heard_first); });
   nb::class_<TeamEvent>(module, "TeamEvent")
       .def_prop_ro("kind", [](const TeamEvent& event) { return name_of(event.kind); })
       .def_prop_ro("robot", [](const TeamEvent& event) { return to_str(event.robot); })
       .def_prop_ro("text", [](const TeamEvent& event) { return to_str(event.text); });
   nb::class_<ComponentOf>(module, "TeamComponent")
+      .def_prop_ro("number", [](const ComponentOf& one) { return one.component().number; })
       .def_prop_ro("anchor", [](const ComponentOf& one) { return to_str(one.component().anchor); })
       .def_prop_ro("robots", [](const ComponentOf& one) { return to_strs(one.component().robots); })
       .def_prop_ro("map", [](const ComponentOf& one) {

@@ -65,6 +65,7 @@ def test_robots_are_called_what_files_may_be(robots: list[str]) -> None:
     answer = team.answer()
     assert [robot.name for robot in answer.robots] == sorted(names)
     assert [one.robots for one in answer.components] == [tuple(sorted(names))]
+    assert [one.number for one in answer.components] == [1]
     assert answer.components[0].anchor in names
     assert set(team.merge_result().names) == set(names)
     assert {event.robot for event in team.take_events()} == set(names)
@@ -147,6 +148,7 @@ def test_robots_go(explored: gridmerge.Simulation, team: gridmerge.Team) -> None
     assert team.wait_until_settled(600.0)
     answer = team.answer()
     assert [robot.name for robot in answer.robots] == ["tb0", "tb2"]
+    assert [robot.has_known_pose for robot in answer.robots] == [True, False]
     for one in answer.components:
         assert one.anchor is None
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -38,8 +39,7 @@ Publisher::Publisher(const Participant& participant, const RosNodeOptions& optio
   make_transform_writer();
   diagnoses_ = make_writer(participant_, kDiagnosticType, dds_topic("/diagnostics"), {true, false, 1});
   node_ = make_writer(participant_, kGraphType, "ros_discovery_info", {true, true, 1});
-  maps_.resize(1);
-  make_map_writer(0);
+  make_map_writer(1);
 }
 
 void Publisher::make_transform_writer() {
@@ -50,25 +50,24 @@ void Publisher::make_transform_writer() {
                             {true, is_static, is_static ? 1 : 100});
 }
 
-void Publisher::make_map_writer(std::size_t component) {
-  const std::string topic = component_frame(output_, component);  // /merged_map, /merged_map_2, ...
-  maps_[component] = {};                                          // first the old one goes, with its map
-  maps_[component].writer =
-      make_writer(participant_, kMapType, dds_topic(topic), {true, true, 1}, kMergedMark);
+void Publisher::make_map_writer(std::size_t number) {
+  const std::string topic = component_frame(output_, number);  // /merged_map, /merged_map_2, ...
+  maps_[number] = {};                                          // first the old one goes, with its map
+  maps_[number].writer = make_writer(participant_, kMapType, dds_topic(topic), {true, true, 1}, kMergedMark);
 }
 
 bool Publisher::publish_maps(const TeamAnswer& answer, const Stamp& stamp) {
-  const std::size_t count = answer.components.size();
-  const std::size_t before = maps_.size();
-  maps_.resize(std::max<std::size_t>(count, 1));
-  for (std::size_t i = before; i < maps_.size(); ++i) make_map_writer(i);
-  if (count == 0 && maps_.front().sent) make_map_writer(0);
+  std::set<std::size_t> numbers;
+  for (const TeamComponent& component : answer.components) numbers.insert(component.number);
+  std::erase_if(maps_, [&](const auto& one) { return one.first != 1 && !numbers.contains(one.first); });
+  if (!numbers.contains(1) && maps_.at(1).sent) make_map_writer(1);
   bool all = true;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::shared_ptr<const OccupancyGrid>& map = answer.components[i].map;
-    MapTopic& topic = maps_[i];
+  for (const TeamComponent& component : answer.components) {
+    const std::shared_ptr<const OccupancyGrid>& map = component.map;
+    if (!maps_.contains(component.number)) make_map_writer(component.number);
+    MapTopic& topic = maps_.at(component.number);
     if (!map || (topic.sent && (topic.sent == map || is_same(*topic.sent, *map)))) continue;
-    if (write_map(topic.writer, *map, component_frame(world_, i), stamp)) {
+    if (write_map(topic.writer, *map, component_frame(world_, component.number), stamp)) {
       topic.sent = map;
     } else {
       all = false;
@@ -136,7 +135,7 @@ void Publisher::publish_node(const std::vector<dds_guid_t>& readers, const std::
   for (const dds_guid_t& guid : writers) writer_gids.push_back(gid_of(guid));
   if (transforms_) writer_gids.push_back(gid_of_entity(transforms_));
   writer_gids.push_back(gid_of_entity(diagnoses_));
-  for (const MapTopic& map : maps_) writer_gids.push_back(gid_of_entity(map.writer));
+  for (const auto& [number, map] : maps_) writer_gids.push_back(gid_of_entity(map.writer));
 
   std::vector<std::string> endpoints;
   for (const auto* gids : {&reader_gids, &writer_gids})
@@ -164,7 +163,7 @@ void Publisher::flush(std::chrono::milliseconds most) const {
                                std::chrono::nanoseconds(0));
     dds_wait_for_acks(writer.get(), left.count());  // that time runs out is no error here
   };
-  for (const MapTopic& map : maps_) wait(map.writer);
+  for (const auto& [number, map] : maps_) wait(map.writer);
   if (transforms_) wait(transforms_);
   wait(diagnoses_);
 }

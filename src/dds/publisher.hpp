@@ -4,6 +4,8 @@
 #include <dds/dds.h>
 
 #include <chrono>
+#include <cstddef>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,9 +24,9 @@ class Publisher {
   /// The node's name and where it publishes come from `options`. Throws std::runtime_error.
   Publisher(const Participant& participant, const RosNodeOptions& options);
 
-  /// A map for each component of the answer. One that is as it was last is not sent again; where components
-  /// became fewer, late subscribers find no old map. Returns whether all was sent: a subscriber that does not
-  /// keep up may hold a map back, and it is worth trying again then.
+  /// A map for each component of the answer. One that is as it was last is not sent again; of a component
+  /// that is no more, late subscribers find no old map. Returns whether all was sent: a subscriber that does
+  /// not keep up may hold a map back, and it is worth trying again then.
   bool publish_maps(const TeamAnswer& answer, const Stamp& stamp);
 
   /// All transforms that there are. On /tf_static only what has changed is sent.
@@ -46,7 +48,7 @@ class Publisher {
   };
 
   void make_transform_writer();
-  void make_map_writer(std::size_t component);
+  void make_map_writer(std::size_t number);
 
   dds_entity_t participant_;
   dds_guid_t guid_;
@@ -54,7 +56,7 @@ class Publisher {
   std::string world_;
   std::string output_;
   TransformTopic transform_topic_;
-  std::vector<MapTopic> maps_;  // by component, at least one
+  std::map<std::size_t, MapTopic> maps_;  // by number of the component; the first is always there
   DdsEntity transforms_;
   DdsEntity diagnoses_;
   DdsEntity node_;

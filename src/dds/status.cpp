@@ -30,11 +30,16 @@ std::map<std::string, RobotStatus> statuses_of(const TeamAnswer& answer,
   return statuses;
 }
 
+/// Of the component that the robot lies in.
+std::size_t number_of(const TeamAnswer& answer, const RobotStatus& status) {
+  return answer.components.at(*status.component).number;
+}
+
 std::string decimal(double value) {
   return fmt::format("{:.6g}", value);
 }
 
-Diagnosis diagnose_robot(const RobotStatus& status, const HeardRobot& heard,
+Diagnosis diagnose_robot(const TeamAnswer& answer, const RobotStatus& status, const HeardRobot& heard,
                          const TeamTransforms& transforms) {
   Diagnosis diagnosis;
   diagnosis.hardware = status.name;
@@ -48,7 +53,7 @@ Diagnosis diagnose_robot(const RobotStatus& status, const HeardRobot& heard,
   auto& values = diagnosis.values;
   values = {{"state", name_of(status.state)}, {kTopicKey, heard.topic}, {kFrameKey, heard.frame}};
   if (status.state == RobotState::placed && status.component) {
-    values.emplace_back("component", std::to_string(*status.component + 1));
+    values.emplace_back("component", std::to_string(number_of(answer, status)));
     values.emplace_back("x", decimal(status.T_world_map.x));
     values.emplace_back("y", decimal(status.T_world_map.y));
     values.emplace_back("theta", decimal(status.T_world_map.theta));
@@ -69,8 +74,8 @@ Diagnosis diagnose_robot(const RobotStatus& status, const HeardRobot& heard,
 
 }  // namespace
 
-std::string component_frame(const std::string& world, std::size_t component) {
-  return component == 0 ? world : fmt::format("{}_{}", world, component + 1);
+std::string component_frame(const std::string& world, std::size_t number) {
+  return number == 1 ? world : fmt::format("{}_{}", world, number);
 }
 
 TeamTransforms team_transforms(const TeamAnswer& answer, const std::vector<HeardRobot>& robots,
@@ -84,7 +89,8 @@ TeamTransforms team_transforms(const TeamAnswer& answer, const std::vector<Heard
     sharing[robot.frame].insert(robot.name);
   }
   std::set<std::string> own;
-  for (std::size_t i = 0; i < answer.components.size(); ++i) own.insert(component_frame(world, i));
+  for (const TeamComponent& component : answer.components)
+    own.insert(component_frame(world, component.number));
   for (const RobotStatus& status : answer.robots) {
     const auto frame = frames.find(status.name);
     if (status.state != RobotState::placed || !status.component || frame == frames.end()) continue;
@@ -96,7 +102,7 @@ TeamTransforms team_transforms(const TeamAnswer& answer, const std::vector<Heard
       result.withheld[status.name] = fmt::format("the frame {} is the merged map's own", frame->second);
     } else {
       result.transforms.push_back(
-          {component_frame(world, *status.component), frame->second, status.T_world_map});
+          {component_frame(world, number_of(answer, status)), frame->second, status.T_world_map});
     }
   }
   std::sort(result.transforms.begin(), result.transforms.end(),
@@ -130,7 +136,7 @@ std::vector<Diagnosis> diagnose(const TeamAnswer& answer, const std::vector<Hear
     node.level = Diagnosis::warning;
   std::vector<Diagnosis> diagnoses{node};
   for (const auto& [name, status] : statuses) {
-    diagnoses.push_back(diagnose_robot(status, heard[name], transforms));
+    diagnoses.push_back(diagnose_robot(answer, status, heard[name], transforms));
     diagnoses.back().name = fmt::format("{}: {}", health.name, name);
   }
   return diagnoses;
@@ -145,8 +151,8 @@ std::string describe_team(const TeamAnswer& answer, const std::vector<HeardRobot
       fmt::format_to(std::back_inserter(text),
                      " at x {:.3f} m, y {:.3f} m, theta {:.4f} rad (probability {:.3f})", T.x, T.y, T.theta,
                      status.probability);
-      if (*status.component > 0)
-        fmt::format_to(std::back_inserter(text), " in merged map {}", *status.component + 1);
+      if (const std::size_t number = number_of(answer, status); number > 1)
+        fmt::format_to(std::back_inserter(text), " in merged map {}", number);
     } else if (!status.why.empty()) {
       text += ": " + status.why;
     }

@@ -29,9 +29,9 @@ struct TeamTransforms {
   std::map<std::string, std::string> withheld;  // by robot
 };
 
-/// The frame of a component: `world`, and `world_2` and so on for further ones, whose pose in the first is
-/// unknown.
-std::string component_frame(const std::string& world, std::size_t component);
+/// The frame of the component of this number: `world`, and `world_2` and so on for further ones, whose pose
+/// in the first is unknown.
+std::string component_frame(const std::string& world, std::size_t number);
 
 /// From each component's frame to its robots' map frames. A frame that two robots share, or that is a
 /// component's own, is withheld: TF knows one pose for each frame, and it would be a wrong one.

@@ -17,6 +17,10 @@ struct MapChange {
 /// From `before` to `after`, both in the robot's map frame. O(cells).
 MapChange change_between(const OccupancyGrid& before, const OccupancyGrid& after);
 
+/// Whether most walls of `before` still stand in `after`, or nearly so: then both maps have one frame, though
+/// change_between() may not see that. A map without walls does not speak against it. O(cells).
+bool keeps_walls(const OccupancyGrid& before, const OccupancyGrid& after);
+
 /// Cells of a map that have another value than in the map before.
 struct ChangedCells {
   std::size_t all = 0;

@@ -92,10 +92,12 @@ void TeamSolver::find_out(Effort effort, TeamAnswer& answer) {
   tell_events(answer);
   told_ = placements_.groups();
   told_components_ = answer.components;
+  numbers_.keep(told_components_, ages());
   told_merge_ = answer.merge;
   told_robots_.clear();
   for (const RobotStatus& robot : answer.robots) told_robots_[robot.name] = robot;
   restarted_.clear();
+  lost_poses_.clear();
   is_weighed_ = true;
 }
 
@@ -200,10 +202,16 @@ void TeamSolver::weigh(const std::string& name, Robot& robot, std::shared_ptr<co
   const double unsearched =
       robot.searched == robot.weighed.map ? change.share : change_between(*robot.searched, *map).share;
   const bool searches = change.other_frame || unsearched >= searched_from;
+  const bool loses_pose = change.other_frame && robot.known_pose && !keeps_walls(*robot.weighed.map, *map);
   Weighed weighed = to_be_weighed(map);
   begin_to_weigh(name);
   if (change.other_frame) {
     restarted_.insert(name);
+    if (loses_pose) {  // it was that of a frame which is no more
+      lost_poses_.insert(name);
+      robot.known_pose.reset();
+      merger_.set_known_pose(*robot.id, std::nullopt);
+    }
     merger_.update(*robot.id, *map);
     placements_.forget(name);
     told_robots_.erase(name);
@@ -237,6 +245,7 @@ void TeamSolver::remove(const std::string& name) {
   }
   placements_.forget(name);
   restarted_.erase(name);
+  lost_poses_.erase(name);
   told_robots_.erase(name);
   robots_.erase(robot);
   is_weighed_ = false;

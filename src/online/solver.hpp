@@ -12,6 +12,7 @@
 #include "gridmerge/merge/merger.hpp"
 #include "gridmerge/online/team.hpp"
 #include "merge/coverage.hpp"
+#include "online/group_numbers.hpp"
 #include "online/placements.hpp"
 
 namespace gridmerge::internal {
@@ -98,6 +99,7 @@ class TeamSolver {
   TeamMerge merge_of(MergeResult result) const;
   RobotStatus status_of(const std::string& name, const Robot& robot, const TeamAnswer& answer) const;
   void tell_events(TeamAnswer& answer) const;
+  std::map<std::string, TeamTime> ages() const;
   const std::string& first_heard(const std::map<std::string, Placement>& robots) const;
 
   TeamOptions options_;
@@ -106,12 +108,14 @@ class TeamSolver {
   std::map<std::string, Robot> robots_;
   std::map<MapId, std::string> names_;
   Placements placements_;
-  bool is_weighed_ = true;           // all that poses may follow from, by the last answer
-  std::set<std::string> fresh_;      // with newer maps since the last proposal
-  std::set<std::string> restarted_;  // since the last answer
+  bool is_weighed_ = true;            // all that poses may follow from, by the last answer
+  std::set<std::string> fresh_;       // with newer maps since the last proposal
+  std::set<std::string> restarted_;   // since the last answer
+  std::set<std::string> lost_poses_;  // of these, whose known pose holds no longer
   std::map<std::string, Reason> left_out_;
   std::vector<RobotGroup> told_;  // by the last answer that had no problem, as what follows
   std::vector<TeamComponent> told_components_;
+  GroupNumbers numbers_;
   std::map<std::string, RobotStatus> told_robots_;  // without those whose map is another one since
   std::shared_ptr<const TeamMerge> told_merge_ = std::make_shared<const TeamMerge>();
   std::uint64_t answers_ = 0;

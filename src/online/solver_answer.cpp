@@ -21,8 +21,13 @@ void TeamSolver::tell_components(MergeResult result, TeamAnswer& answer) const {
     Component merged;
   };
   std::vector<Told> all;
+  const std::vector<std::size_t> numbers = numbers_.number(
+      placements_.groups(), ages(), std::any_of(robots_.begin(), robots_.end(), [](const auto& one) {
+        return one.second.known_pose && one.second.known_pose->fixed;
+      }));
   for (const RobotGroup& group : placements_.groups()) {
     Told told;
+    told.component.number = numbers[all.size()];
     if (!group.in_world_frame) told.component.anchor = first_heard(group.robots);
     std::vector<PlacedMap> placed;
     for (const auto& [name, placement] : group.robots) {
@@ -56,10 +61,8 @@ void TeamSolver::tell_components(MergeResult result, TeamAnswer& answer) const {
     told.merged.fused.grid = {};
     all.push_back(std::move(told));
   }
-  std::sort(all.begin(), all.end(), [](const Told& a, const Told& b) {
-    return std::pair(b.component.robots.size(), a.component.robots) <
-           std::pair(a.component.robots.size(), b.component.robots);
-  });
+  std::sort(all.begin(), all.end(),
+            [](const Told& a, const Told& b) { return a.component.number < b.component.number; });
   result.components.clear();
   for (Told& told : all) {
     answer.components.push_back(std::move(told.component));
@@ -94,6 +97,7 @@ RobotStatus TeamSolver::status_of(const std::string& name, const Robot& robot,
   status.name = name;
   status.maps_heard = robot.maps_heard;
   status.heard_first = robot.since;
+  status.has_known_pose = robot.known_pose.has_value();
   if (const RobotGroup* const group = group_of(placements_.groups(), name)) {
     status.state = RobotState::placed;
     status.why = say_placed(name, *group);
@@ -117,9 +121,18 @@ void TeamSolver::tell_events(TeamAnswer& answer) const {
   std::map<std::string, MapExtent> extents;
   for (const auto& [name, robot] : robots_) extents[name] = robot.weighed.extent;
   for (const std::string& name : restarted_)
-    answer.events.push_back({TeamEvent::Kind::restarted, name, say_restarted(name)});
+    answer.events.push_back(
+        {TeamEvent::Kind::restarted, name, say_restarted(name, lost_poses_.contains(name))});
   for (TeamEvent& event : changes_between(told_, placements_.groups(), extents, restarted_))
     answer.events.push_back(std::move(event));
+  for (TeamEvent& event : renumbered_between(numbers_.told(), answer.components))
+    answer.events.push_back(std::move(event));
+}
+
+std::map<std::string, TeamTime> TeamSolver::ages() const {
+  std::map<std::string, TeamTime> ages;
+  for (const auto& [name, robot] : robots_) ages[name] = robot.since;
+  return ages;
 }
 
 const std::string& TeamSolver::first_heard(const std::map<std::string, Placement>& robots) const {

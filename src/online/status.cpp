@@ -15,15 +15,19 @@ SE2 between(const RobotGroup& group, const std::string& first, const std::string
   return inverse(group.robots.at(first).T_group_map) * group.robots.at(second).T_group_map;
 }
 
-std::string others_of(const std::string& robot, const RobotGroup& group) {
+std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kNamed = 4;
   std::string text;
-  std::size_t count = 0;
+  for (std::size_t i = 0; i < std::min(kNamed, names.size()); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  return names.size() > kNamed ? text + " and " + std::to_string(names.size() - kNamed) + " more" : text;
+}
+
+std::string others_of(const std::string& robot, const RobotGroup& group) {
+  std::vector<std::string> others;
   for (const auto& [name, placement] : group.robots) {
-    if (name == robot) continue;
-    if (count++ < kNamed) text += (text.empty() ? "" : ", ") + name;
+    if (name != robot) others.push_back(name);
   }
-  return count > kNamed ? text + " and " + std::to_string(count - kNamed) + " more" : text;
+  return listed(others);
 }
 
 std::string metres(double distance) {
@@ -64,8 +68,9 @@ std::string say_waiting(bool has_map, bool has_others) {
   return has_others ? "what is new is not confirmed yet" : "there is no other map yet";
 }
 
-std::string say_restarted(const std::string& robot) {
-  return robot + " started anew: its map does not go on from the one before, and is searched anew";
+std::string say_restarted(const std::string& robot, bool loses_pose) {
+  return robot + " started anew: its map does not go on from the one before, and is searched anew" +
+         (loses_pose ? "; the pose given for it holds no longer" : "");
 }
 
 std::vector<TeamEvent> changes_between(const std::vector<RobotGroup>& before,
@@ -96,6 +101,23 @@ std::vector<TeamEvent> changes_between(const std::vector<RobotGroup>& before,
       if (!extents.contains(robot))
         events.push_back({TeamEvent::Kind::left, robot, robot + " is gone, and its map with it"});
     }
+  }
+  return events;
+}
+
+std::vector<TeamEvent> renumbered_between(const std::map<std::string, std::size_t>& before,
+                                          const std::vector<TeamComponent>& now) {
+  std::vector<TeamEvent> events;
+  for (const TeamComponent& component : now) {
+    std::map<std::size_t, std::vector<std::string>> movers;  // by the number before
+    for (const std::string& robot : component.robots) {
+      const auto told = before.find(robot);
+      if (told != before.end() && told->second != component.number) movers[told->second].push_back(robot);
+    }
+    for (const auto& [number, robots] : movers)
+      events.push_back({TeamEvent::Kind::renumbered, robots.front(),
+                        listed(robots) + ": now in merged map " + std::to_string(component.number) +
+                            ", before in merged map " + std::to_string(number)});
   }
   return events;
 }

@@ -30,13 +30,14 @@ RobotStatus placed(const std::string& name, std::size_t component, const SE2& T_
   return status;
 }
 
-TeamAnswer answer_of(std::vector<RobotStatus> robots, std::size_t components) {
+TeamAnswer answer_of(std::vector<RobotStatus> robots, const std::vector<std::size_t>& numbers) {
   TeamAnswer answer;
   answer.number = 5;
   answer.seconds = 0.25;
   answer.settled = true;
   answer.robots = std::move(robots);
-  answer.components.resize(components);
+  answer.components.resize(numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) answer.components[i].number = numbers[i];
   return answer;
 }
 
@@ -48,19 +49,20 @@ std::string value_of(const Diagnosis& diagnosis, const std::string& key) {
 
 TEST(TeamTransforms, GoFromTheComponentsFramesToTheMaps) {
   const auto answer =
-      answer_of({placed("a", 0, {}), placed("b", 0, {1, 2, 0.5}), placed("c", 1, {3, 4, 0})}, 2);
+      answer_of({placed("a", 0, {}), placed("b", 0, {1, 2, 0.5}), placed("c", 1, {3, 4, 0})}, {1, 3});
   const TeamTransforms result =
       team_transforms(answer, {heard("a", "a/map"), heard("b", "b/map"), heard("c", "c/map")}, "world");
   EXPECT_EQ(result.transforms,
             (std::vector<NamedTransform>{
-                {"world", "a/map", {}}, {"world", "b/map", {1, 2, 0.5}}, {"world_2", "c/map", {3, 4, 0}}}));
+                {"world", "a/map", {}}, {"world", "b/map", {1, 2, 0.5}}, {"world_3", "c/map", {3, 4, 0}}}))
+      << "the frame follows the number";
   EXPECT_TRUE(result.withheld.empty());
 }
 
 TEST(TeamTransforms, AreWithheldFromFramesThatSeveralHave) {
   RobotStatus waiting;
   waiting.name = "c";
-  const auto answer = answer_of({placed("a", 0, {}), placed("b", 0, {1, 2, 0.5}), waiting}, 1);
+  const auto answer = answer_of({placed("a", 0, {}), placed("b", 0, {1, 2, 0.5}), waiting}, {1});
   const TeamTransforms result =
       team_transforms(answer, {heard("a", "map"), heard("b", "b/map"), heard("c", "map")}, "world");
   EXPECT_EQ(result.transforms, (std::vector<NamedTransform>{{"world", "b/map", {1, 2, 0.5}}}));
@@ -69,7 +71,7 @@ TEST(TeamTransforms, AreWithheldFromFramesThatSeveralHave) {
 }
 
 TEST(TeamTransforms, AreWithheldFromTheWorldItself) {
-  const auto answer = answer_of({placed("a", 0, {}), placed("b", 1, {})}, 2);
+  const auto answer = answer_of({placed("a", 0, {}), placed("b", 1, {})}, {1, 2});
   const TeamTransforms result =
       team_transforms(answer, {heard("a", "world_2"), heard("b", "world")}, "world");
   EXPECT_TRUE(result.transforms.empty());
@@ -80,7 +82,7 @@ TEST(TeamTransforms, AreNoneOfRobotsThatAreNotPlaced) {
   RobotStatus left_out;
   left_out.name = "a";
   left_out.state = RobotState::left_out;
-  EXPECT_TRUE(team_transforms(answer_of({left_out}, 0), {heard("a", "a/map")}, "world").transforms.empty());
+  EXPECT_TRUE(team_transforms(answer_of({left_out}, {}), {heard("a", "a/map")}, "world").transforms.empty());
 }
 
 TEST(Diagnoses, TellOfTheNodeAndOfEachRobot) {
@@ -92,7 +94,7 @@ TEST(Diagnoses, TellOfTheNodeAndOfEachRobot) {
   refused.refused = 3;
   refused.last_refusal = "a size of 0 x 0 cells";
   const std::vector<HeardRobot> robots{heard("a", "a/map"), heard("b", "b/map"), refused};
-  const auto answer = answer_of({placed("a", 0, {1, 2, 0.5}), left_out}, 1);
+  const auto answer = answer_of({placed("a", 0, {1, 2, 0.5}), left_out}, {1});
   const auto transforms = team_transforms(answer, robots, "world");
   const std::vector<Diagnosis> diagnoses = diagnose(answer, robots, transforms, {"gridmerge", 0, 0});
   ASSERT_EQ(diagnoses.size(), 4u);
@@ -125,13 +127,13 @@ TEST(Diagnoses, WarnOfWhatWentWrong) {
   withheld.withheld["a"] = "two have its frame";
   const auto robots = std::vector<HeardRobot>{heard("a", "a")};
   const Diagnosis robot =
-      diagnose(answer_of({placed("a", 0, {})}, 1), robots, withheld, {"gridmerge", 0, 0})[1];
+      diagnose(answer_of({placed("a", 0, {})}, {1}), robots, withheld, {"gridmerge", 0, 0})[1];
   EXPECT_EQ(robot.level, Diagnosis::warning);
   EXPECT_NE(robot.message.find("no transform: two have its frame"), std::string::npos);
 }
 
 TEST(Team, IsDescribedALineForEachRobot) {
-  const auto answer = answer_of({placed("a", 0, {}), placed("b", 1, {1, -2, 0.5})}, 2);
+  const auto answer = answer_of({placed("a", 0, {}), placed("b", 1, {1, -2, 0.5})}, {1, 2});
   EXPECT_EQ(describe_team(answer, {heard("a", "a"), heard("b", "b"), heard("c", "")}),
             "a: placed at x 0.000 m, y 0.000 m, theta 0.0000 rad (probability 0.990)\n"
             "b: placed at x 1.000 m, y -2.000 m, theta 0.5000 rad (probability 0.990) in merged map 2\n"

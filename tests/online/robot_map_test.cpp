@@ -38,12 +38,29 @@ TEST(RobotMap, TheSameMapHasNotChanged) {
   EXPECT_FALSE(are_equal(map, sheet));
 }
 
+TEST(RobotMap, AMapThatIsBentKeepsItsWalls) {
+  const OccupancyGrid map = test::Explorers().map(0, 5);
+  OccupancyGrid bent = map;  // its right half lies elsewhere
+  for (int row = 0; row < map.height; ++row) {
+    for (int column = map.width / 2; column < map.width; ++column)
+      bent.at(column, row) = row < 12 ? Cell::unknown : map.at(column, row - 12);
+  }
+  EXPECT_TRUE(change_between(map, bent).other_frame);
+  EXPECT_TRUE(keeps_walls(map, bent));
+  EXPECT_TRUE(keeps_walls(make_grid(9, 9, 0.05), map)) << "there were none";
+  EXPECT_FALSE(keeps_walls(map, make_grid(9, 9, 0.05)));
+  const OccupancyGrid strip = make_grid(1 << 20, 1, 0.05, {}, Cell::occupied);
+  EXPECT_FALSE(keeps_walls(map, strip)) << "too long for distances";
+}
+
 TEST(RobotMap, AnotherFrameIsSeen) {
   const test::Explorers explorers;
   const OccupancyGrid map = explorers.map(0, 5);
   for (const SE2& T : {SE2{1.0, 0.0, 0.0}, SE2{0.0, 0.0, 0.3}, SE2{4.0, 2.0, 2.0}, SE2{100.0, 0.0, 0.0}})
     EXPECT_TRUE(change_between(map, transform_grid(map, T, map.resolution)).other_frame)
         << T.x << " " << T.theta;
+  for (const SE2& T : {SE2{1.0, 0.0, 0.0}, SE2{0.0, 0.0, 0.3}, SE2{4.0, 2.0, 2.0}, SE2{100.0, 0.0, 0.0}})
+    EXPECT_FALSE(keeps_walls(map, transform_grid(map, T, map.resolution))) << T.x << " " << T.theta;
   EXPECT_TRUE(change_between(map, explorers.map(3, 5)).other_frame);
   EXPECT_TRUE(change_between(map, explorers.map(0, 1)).other_frame);  // it has lost most of what it knew
 }

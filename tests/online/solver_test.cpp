@@ -332,10 +332,10 @@ TEST(TeamSolver, SaysWhatItWaitsFor) {
 }
 
 /// Two fixed robots lie together however far apart they are.
-News too_far_apart() {
+News too_far_apart(const std::string& second = "bert") {
   News news;
   news["anna"].known_pose = KnownPose{{0.0, 0.0, 0.0}, 0.0, 0.0, true};
-  news["bert"].known_pose = KnownPose{{9e6, 9e6, 0.0}, 0.0, 0.0, true};
+  news[second].known_pose = KnownPose{{9e6, 9e6, 0.0}, 0.0, 0.0, true};
   return news;
 }
 
@@ -378,10 +378,10 @@ TEST(TeamSolver, AnAnswerThatIsMadeAgainHasNoPosesOfMapsThatAreGone) {
   TeamSolver solver({});
   solver.take(news_at(explorers, 5));
   ASSERT_EQ(solver.solve(Effort::full).components.size(), 1u);
-  News news = too_far_apart();
+  News news = too_far_apart("dora");
   news["carl"] = gone_news();
   add_news(news["carl"], map_news(explorers.map(2, 5), 9));
-  news["dora"] = map_news(explorers.map(3, 5), 10);
+  add_news(news["dora"], map_news(explorers.map(3, 5), 10));
   solver.take(news);
   TeamAnswer answer = solver.solve(Effort::further);
   EXPECT_NE(answer.problem, "");

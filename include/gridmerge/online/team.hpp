@@ -44,10 +44,16 @@ struct RobotStatus {
   double probability = 0.0;      ///< that it lies there
   std::uint64_t maps_heard = 0;  ///< maps and parts of maps, those that changed nothing too
   TeamTime heard_first = {};     ///< since when it is heard, by the oldest account
+  bool has_known_pose = false;   ///< one was set, and its map has not started anew since (Team::hear)
 };
 
 /// Robots that were placed together.
 struct TeamComponent {
+  /// What frames and topics are named after, from 1. It stays while components come, go and grow. The one in
+  /// the frame of fixed poses has 1, and no other one has while there are such poses. A component that is
+  /// made of several has their least. Otherwise it goes with the robot that was heard first. Numbers that no
+  /// component has any more are given anew, so there may be gaps.
+  std::size_t number = 1;
   /// The robot whose map frame is the component's: the one heard first, for as long as it lives. Empty where
   /// poses are fixed: the frame is then theirs.
   std::string anchor;
@@ -69,10 +75,11 @@ struct TeamMerge {
 struct TeamEvent {
   /// What kind of change it is.
   enum class Kind {
-    joined,    ///< the robot was placed
-    left,      ///< the robot was placed, and is no longer
-    jumped,    ///< the robot lies elsewhere than it was said to
-    restarted  ///< the robot's map is another one than before, in another frame
+    joined,     ///< the robot was placed
+    left,       ///< the robot was placed, and is no longer
+    jumped,     ///< the robot lies elsewhere than it was said to
+    restarted,  ///< the robot's map is another one than before, in another frame
+    renumbered  ///< the robot, and perhaps others, lie in a component of another number (TeamComponent)
   };
 
   Kind kind = Kind::joined;  ///< what happened
@@ -83,7 +90,7 @@ struct TeamEvent {
 /// What a team knows at one moment.
 struct TeamAnswer {
   std::uint64_t number = 0;               ///< counts up; 0 is the answer before anything was heard
-  std::vector<TeamComponent> components;  ///< most robots first, then by name
+  std::vector<TeamComponent> components;  ///< by number
   std::vector<RobotStatus> robots;        ///< by name
   std::vector<TeamEvent> events;          ///< since the answer before
   double seconds = 0.0;                   ///< that it took to find out
@@ -141,8 +148,9 @@ class GRIDMERGE_EXPORT Team {
   Team& operator=(const Team&) = delete;  ///< likewise
 
   /// The robot's newest map. A map that differs too much from the one before is that of a robot which
-  /// started anew in another frame: what was known of its pose is forgotten. Throws std::invalid_argument for
-  /// an invalid map or a robot too many. O(cells).
+  /// started anew in another frame: what was known of its pose is forgotten. A known pose is kept if most
+  /// walls are where they were, as where a closed loop bent the map. Throws std::invalid_argument for an
+  /// invalid map or a robot too many. O(cells).
   void hear(const std::string& robot, OccupancyGrid map);
 
   /// New cells of a rectangle of the robot's newest map, with cell (`column`, `row`) at its lower left
@@ -160,8 +168,8 @@ class GRIDMERGE_EXPORT Team {
   /// merged map goes without it from the next answer on. O(robots).
   void forget(const std::string& robot);
 
-  /// What is known of where a robot's map lies, heard or not yet. Throws std::invalid_argument as
-  /// merge(), and for a robot too many.
+  /// What is known of where a robot's map lies, heard or not yet. It holds until its map starts anew
+  /// (hear()). Throws std::invalid_argument as merge(), and for a robot too many.
   void set_known_pose(const std::string& robot, std::optional<KnownPose> known_pose);
 
   /// The newest, never null.

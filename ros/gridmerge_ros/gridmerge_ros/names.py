@@ -27,9 +27,9 @@ def check_name(robot: str) -> None:
         raise ValueError(f"no robot is called {robot!r}: a name has letters, digits, '_' and '/'")
 
 
-def numbered(name: str, component: int) -> str:
-    """A topic or a frame of a component, which counts from 0: `merged_map`, `merged_map_2` and so on."""
-    return name if component == 0 else f"{name}_{component + 1}"
+def numbered(name: str, number: int) -> str:
+    """A topic or a frame of the component of this number: `merged_map`, `merged_map_2` and so on."""
+    return name if number == 1 else f"{name}_{number}"
 
 
 def by_topic(robots: Mapping[str, str]) -> dict[str, str]:

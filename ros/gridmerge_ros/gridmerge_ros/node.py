@@ -190,6 +190,7 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
                 self._events += 1
                 self._last_events.append(event.text)
                 self._tell(event.text)
+            self._robots.follow(answer)
             self._told_answer = answer.number
         if answer.number == self._sent_answer or monotonic() < self._next_maps:
             return

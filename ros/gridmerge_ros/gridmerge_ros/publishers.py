@@ -33,7 +33,8 @@ class Publishers:
     def __init__(self, node: Node, settings: Settings) -> None:
         self._node = node
         self._settings = settings
-        self._maps: list[tuple[Publisher, OccupancyGrid | None]] = []
+        self._maps: dict[int, tuple[Publisher, OccupancyGrid | None]] = {}
+        """By number of the component, with what was sent last; the first is always there."""
         self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
         # A remapping of the first map's topic holds for the further ones too.
         self._map_topic = node.resolve_topic_name(settings.merged_map_topic)
@@ -43,11 +44,11 @@ class Publishers:
             self._transforms = self._new_static_publisher()
         elif settings.transforms == "dynamic":
             self._transforms = node.create_publisher(TFMessage, "/tf", 100)
-        self._maps.append((self._new_map_publisher(0), None))
+        self._maps[1] = (self._new_map_publisher(1), None)
 
     def close(self) -> None:
         """Nothing is published any more, and latched messages are gone."""
-        for publisher in (*(one for one, _ in self._maps), self._transforms, self._diagnostics):
+        for publisher in (*(one for one, _ in self._maps.values()), self._transforms, self._diagnostics):
             if publisher is not None:
                 self._node.destroy_publisher(publisher)
         self._maps.clear()
@@ -55,26 +56,27 @@ class Publishers:
     def send_maps(self, answer: TeamAnswer) -> None:
         """The maps of all components that are not as they were."""
         # A component that is no more takes its latched map along, also that of the first topic.
-        while len(self._maps) > max(1, len(answer.components)):
-            self._node.destroy_publisher(self._maps.pop()[0])
-        if not answer.components and self._maps[0][1] is not None:
-            self._node.destroy_publisher(self._maps[0][0])
-            self._maps[0] = (self._new_map_publisher(0), None)
-        for index, component in enumerate(answer.components):
-            if index == len(self._maps):
-                self._maps.append((self._new_map_publisher(index), None))
-            publisher, sent = self._maps[index]
+        for number in self._maps.keys() - {one.number for one in answer.components}:
+            publisher, sent = self._maps[number]
+            if number == 1 and sent is None:
+                continue
+            self._node.destroy_publisher(publisher)
+            del self._maps[number]
+        for number in {1, *(one.number for one in answer.components)} - self._maps.keys():
+            self._maps[number] = (self._new_map_publisher(number), None)
+        for component in answer.components:
+            publisher, sent = self._maps[component.number]
             if sent is not None and sent == component.grid:
                 continue
             publisher.publish(
                 component.grid.to_msg(
                     OccupancyGridMessage,
-                    frame_id=numbered(self._settings.world_frame, index),
+                    frame_id=numbered(self._settings.world_frame, component.number),
                     stamp=self._now(),
                     probabilities=False,
                 )
             )
-            self._maps[index] = (publisher, component.grid)
+            self._maps[component.number] = (publisher, component.grid)
 
     def send_transforms(self, transforms: Sequence[NamedTransform]) -> None:
         """Static ones are sent when they have changed, dynamic ones each time."""
@@ -118,8 +120,8 @@ class Publishers:
             message.status.append(status)
         self._diagnostics.publish(message)
 
-    def _new_map_publisher(self, component: int) -> Publisher:
-        topic = numbered(self._map_topic, component)
+    def _new_map_publisher(self, number: int) -> Publisher:
+        topic = numbered(self._map_topic, number)
         return self._node.create_publisher(OccupancyGridMessage, topic, latched())
 
     def _new_static_publisher(self) -> Publisher:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from gridmerge import InitialPose, Team
+from gridmerge import InitialPose, Team, TeamAnswer
 
 from gridmerge_ros.ages import RobotAge, publisher_digits
 from gridmerge_ros.messages import RefusedMessage, Stamp, read_map, read_update
@@ -175,6 +175,13 @@ class Robots:
             if robot.heard_first is not None and age.heard_first < robot.heard_first:
                 self._set_age(robot, age.heard_first)
 
+    def follow(self, answer: TeamAnswer) -> None:
+        """A known pose that the team has given up holds no longer."""
+        for status in answer.robots:
+            robot = self._robots.get(status.name)
+            if robot is not None and status.name in self._poses and not status.has_known_pose:
+                self._lose_pose(robot)
+
     def refuse(self, name: str, why: str) -> None:
         """A message of the robot that could not be decoded."""
         self.undecodable += 1
@@ -208,10 +215,14 @@ class Robots:
         self._tell(f"{robot.name}: started anew: {content}")
         self._team.forget(robot.name)
         robot.heard_first = None
-        if self._poses.pop(robot.name, None) is not None:
+        if robot.name in self._poses:
             self._team.set_known_pose(robot.name, None)
-            robot.pose = "holds no longer: the robot started anew"
-            self._warn(f"{robot.name}: its initial pose {robot.pose}")
+            self._lose_pose(robot)
+
+    def _lose_pose(self, robot: HeardRobot) -> None:
+        del self._poses[robot.name]
+        robot.pose = "holds no longer: the robot started anew"
+        self._warn(f"{robot.name}: its initial pose {robot.pose}")
 
     def _refuse(self, robot: HeardRobot, why: str) -> None:
         if robot.refused == 0:

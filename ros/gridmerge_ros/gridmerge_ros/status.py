@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from gridmerge import RobotStatus, TeamAnswer, Transform
+from gridmerge import TeamAnswer, Transform
 
 from gridmerge_ros.ages import FRAME, HEARD_FIRST, PUBLISHER, TOPIC, format_time
 from gridmerge_ros.names import numbered
@@ -70,7 +70,7 @@ def team_transforms(
         for name, robot in robots.items()
         if robot.frame
     }
-    own = {numbered(world, component) for component in range(len(answer.components))}
+    own = {numbered(world, component.number) for component in answer.components}
     transforms: list[NamedTransform] = []
     withheld: dict[str, str] = {}
     for status in answer.robots:
@@ -83,7 +83,8 @@ def team_transforms(
         elif frame in own:
             withheld[status.name] = f"the frame {frame} is the merged map's own"
         else:
-            transforms.append(NamedTransform(numbered(world, status.component), frame, status.transform))
+            number = answer.components[status.component].number
+            transforms.append(NamedTransform(numbered(world, number), frame, status.transform))
     return TeamTransforms(tuple(sorted(transforms, key=lambda one: one.child)), withheld)
 
 
@@ -91,8 +92,7 @@ def diagnose(
     answer: TeamAnswer, robots: Mapping[str, HeardRobot], transforms: TeamTransforms, health: NodeHealth
 ) -> list[Diagnosis]:
     """One of the node, then one of each robot by name."""
-    statuses = {status.name: status for status in answer.robots}
-    placed = sum(status.state == "placed" for status in statuses.values())
+    placed = sum(status.state == "placed" for status in answer.robots)
     values = [
         ("robots", str(len(robots))),
         ("placed", str(placed)),
@@ -114,15 +114,14 @@ def diagnose(
     return [
         node,
         *(
-            _diagnose_robot(robot, statuses.get(name), transforms.withheld.get(name), health.name)
+            _diagnose_robot(answer, robot, transforms.withheld.get(name), health.name)
             for name, robot in sorted(robots.items())
         ),
     ]
 
 
-def _diagnose_robot(
-    robot: HeardRobot, status: RobotStatus | None, withheld: str | None, node: str
-) -> Diagnosis:
+def _diagnose_robot(answer: TeamAnswer, robot: HeardRobot, withheld: str | None, node: str) -> Diagnosis:
+    status = next((one for one in answer.robots if one.name == robot.name), None)
     state = "waiting" if status is None else status.state
     if status is not None:
         why = status.why
@@ -133,7 +132,7 @@ def _diagnose_robot(
         values.append(("reason", status.reason))
     if status is not None and status.component is not None:
         values += [
-            ("component", str(status.component + 1)),
+            ("component", str(answer.components[status.component].number)),
             ("x", _decimal(status.transform.x)),
             ("y", _decimal(status.transform.y)),
             ("theta", _decimal(status.transform.theta)),

@@ -60,10 +60,14 @@ def publishers(**parameters: object) -> tuple[Notes, Publishers]:
     return node, Publishers(node, read_settings(parameters))
 
 
-def answer(*values: int) -> TeamAnswer:
-    """With a component for each value, whose map is of such cells."""
-    grids = [OccupancyGrid(np.full((2, 3), value, np.int8), 0.05, (1.0, 2.0, 0.5)) for value in values]
-    components = tuple(TeamComponent("a", ("a", "b"), grid) for grid in grids)
+def answer(*values: int | None) -> TeamAnswer:
+    """With a component for each value, whose map is of such cells, and a gap in their numbers for each None."""
+    grids = {
+        number: OccupancyGrid(np.full((2, 3), value, np.int8), 0.05, (1.0, 2.0, 0.5))
+        for number, value in enumerate(values, 1)
+        if value is not None
+    }
+    components = tuple(TeamComponent(number, "a", ("a", "b"), grid) for number, grid in grids.items())
     return TeamAnswer(1, components, (), (), 0.0, True)
 
 
@@ -99,6 +103,16 @@ def test_each_component_has_a_topic_while_it_is_there() -> None:
     assert node.on("/fleet/merged_map").sent == []
     one.send_maps(answer(0))
     assert len(node.on("/fleet/merged_map").sent) == 1
+
+
+def test_a_component_keeps_its_topic_when_another_one_goes() -> None:
+    node, one = publishers()
+    one.send_maps(answer(0, 100))
+    second = node.on("/fleet/merged_map_2")
+    one.send_maps(answer(None, 100))
+    assert node.on("/fleet/merged_map_2") is second
+    assert len(second.sent) == 1
+    assert node.on("/fleet/merged_map").sent == []
 
 
 def test_static_transforms() -> None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from gridmerge import RobotStatus, TeamAnswer, Transform
 from gridmerge_ros import robots as robots_module
 from gridmerge_ros.ages import RobotAge
 from gridmerge_ros.robots import KnownPose, Robots
@@ -130,6 +131,26 @@ def test_a_robot_that_starts_anew(how: str) -> None:
     heard.account.calls.clear()
     heard.robots.hear_map("tb2", map_message(CELLS, 3, 2, frame), [SECOND] if how == "publisher" else [FIRST])
     assert heard.account.calls == [("hear", "tb2", (2, 3))]
+
+
+def test_a_pose_that_the_team_gives_up() -> None:
+    heard = Heard()
+    heard.robots.add("tb2", "/tb2/map", KnownPose(1.0, 2.0, 0.5, True, 1.0, 0.1))
+
+    def follow(name: str, has_known_pose: bool) -> None:
+        pose = Transform(1.0, 2.0, 0.5)
+        status = RobotStatus(name, "waiting", None, "", None, pose, 0.0, 1, 0.0, has_known_pose)
+        heard.robots.follow(TeamAnswer(1, (), (status,), (), 0.0, True))
+
+    follow("tb2", True)
+    follow("tb1", False)
+    follow("nobody", False)
+    assert (heard.robots.all["tb2"].pose, heard.lines) == ("fixed", [])
+    for _ in range(2):
+        follow("tb2", False)
+    assert heard.robots.all["tb2"].pose == "holds no longer: the robot started anew"
+    assert len(heard.lines) == 1
+    assert heard.robots.all["tb1"].pose == ""
 
 
 def test_a_publisher_more_or_one_that_is_not_known_yet_is_no_new_start(heard: Heard) -> None:

@@ -21,8 +21,8 @@ def left_out(name: str) -> RobotStatus:
     return RobotStatus(name, "left_out", "ambiguous", why, None, Transform(0.0, 0.0, 0.0), 0.4, 1, 0.0)
 
 
-def answer(*robots: RobotStatus, components: int = 1, problem: str | None = None) -> TeamAnswer:
-    parts = tuple(TeamComponent(None, ("a", "b"), GRID) for _ in range(components))
+def answer(*robots: RobotStatus, numbers: tuple[int, ...] = (1,), problem: str | None = None) -> TeamAnswer:
+    parts = tuple(TeamComponent(number, None, ("a", "b"), GRID) for number in numbers)
     return TeamAnswer(3, parts, robots, (), 0.25, True, problem)
 
 
@@ -34,11 +34,11 @@ def heard(*frames: str, **changes: Any) -> dict[str, HeardRobot]:
 
 
 def test_transforms() -> None:
-    given = answer(placed("tb0", 0, 1.0), placed("tb1", 1, 2.0), left_out("tb2"), components=2)
+    given = answer(placed("tb0", 0, 1.0), placed("tb1", 1, 2.0), left_out("tb2"), numbers=(1, 3))
     found = team_transforms(given, heard("a/map", "b/map", "c/map"), "world", "")
     assert [(one.parent, one.child, one.T_parent_child.x) for one in found.transforms] == [
         ("world", "a/map", 1.0),
-        ("world_2", "b/map", 2.0),
+        ("world_3", "b/map", 2.0),  # the component's number, not its place
     ]
     assert found.withheld == {}
 
@@ -97,7 +97,7 @@ def test_what_is_withheld_is_told() -> None:
 
 
 def test_problems_of_the_node() -> None:
-    empty = diagnose(answer(components=0), {}, TeamTransforms((), {}), HEALTH)
+    empty = diagnose(answer(numbers=()), {}, TeamTransforms((), {}), HEALTH)
     assert [one.message for one in empty] == ["no robot is known yet"]
     none = TeamTransforms((), {})
     assert diagnose(answer(problem="no memory"), {}, none, HEALTH)[0].level == WARNING
