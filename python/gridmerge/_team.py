@@ -91,7 +91,8 @@ class TeamAnswer:
     """What a team knows at one moment."""
 
     number: int
-    """Counts up; 0 is the answer before anything was heard."""
+    """Counts up; 0 is the answer before anything was heard. One that differs from the answer before in
+    RobotStatus.maps_heard alone has its number."""
     components: tuple[TeamComponent, ...]
     """By number."""
     robots: tuple[RobotStatus, ...]

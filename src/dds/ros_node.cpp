@@ -36,6 +36,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kTick{100};                 // transforms on /tf, and looks at the clock
 constexpr milliseconds kDiagnosesEvery{1000};      // as ROS's own tools expect
+constexpr milliseconds kDiagnosesApart{250};       // however fast answers come
 constexpr milliseconds kQuiet{3000};               // `once`: so long nothing new has come up
 constexpr milliseconds kFlush{5000};               // `once`: so long subscribers may take
 constexpr double kWaitOnce = 10.0;                 // `once`: for a first map, and for robots to come [s]
@@ -170,6 +171,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   Clock::time_point began_ = Clock::now();
   Clock::time_point news_at_ = began_;
   Clock::time_point next_diagnoses_ = began_;
+  Clock::time_point diagnosed_ = began_ - kDiagnosesEvery;
   std::uint64_t news_ = 0;
   std::uint64_t told_answer_ = 0;
   std::map<std::string, std::size_t> publishers_;  // of each robot, at the last look
@@ -306,10 +308,13 @@ void RosNode::State::publish() {
     withheld_ = transforms.withheld;
   }
   publish_node();
-  if (is_new || Clock::now() >= next_diagnoses_) {
+  if (is_new) next_diagnoses_ = std::min(next_diagnoses_, diagnosed_ + kDiagnosesApart);
+  const bool is_last = enough_ && team_.is_at_rest();  // `once`: who listens is told how it ended
+  if (Clock::now() >= next_diagnoses_ || is_last) {
     publisher_.publish_diagnoses(diagnose(
         *answer, robots, transforms, {options_.name, participant_.undecodable(), listener_.over_limit()}));
-    next_diagnoses_ = Clock::now() + kDiagnosesEvery;
+    diagnosed_ = Clock::now();
+    next_diagnoses_ = diagnosed_ + kDiagnosesEvery;
   }
 }
 

@@ -62,21 +62,26 @@ TeamSolver::Weighed TeamSolver::to_be_weighed(std::shared_ptr<const OccupancyGri
 TeamAnswer TeamSolver::solve(Effort effort) {
   const auto start = std::chrono::steady_clock::now();
   TeamAnswer answer;
+  bool differs = true;
   try {
-    with_threads(options_.merge.match.threads, [&] { find_out(effort, answer); });
+    with_threads(options_.merge.match.threads, [&] { differs = find_out(effort, answer); });
   } catch (const Cancelled&) {
     throw;
   } catch (const std::exception& error) {  // a merged map would be too large, or there is no memory for it
     answer = answer_before();
     answer.problem = error.what();
+    has_problem_ = true;
   }
-  answer.number = ++answers_;
   answer.settled = answer.problem.empty() && is_settled();
+  if (differs || answer.settled != told_settled_) ++answers_;
+  told_settled_ = answer.settled;
+  answer.number = answers_;
   answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return answer;
 }
 
-void TeamSolver::find_out(Effort effort, TeamAnswer& answer) {
+/// Whether the answer differs from the one before in more than how often robots were heard.
+bool TeamSolver::find_out(Effort effort, TeamAnswer& answer) {
   while (!pending_.empty()) {
     // In the order of their names; each is done with before it is forgotten.
     const auto next = pending_.begin();
@@ -90,6 +95,14 @@ void TeamSolver::find_out(Effort effort, TeamAnswer& answer) {
   }
   for (const auto& [name, robot] : robots_) answer.robots.push_back(status_of(name, robot, answer));
   tell_events(answer);
+  const auto is_as_told = [](const RobotStatus& robot, const auto& told) {
+    RobotStatus before = told.second;
+    before.maps_heard = robot.maps_heard;
+    return robot == before;
+  };
+  const bool differs = has_problem_ || !answer.events.empty() || answer.merge != told_merge_ ||
+                       !std::equal(answer.robots.begin(), answer.robots.end(), told_robots_.begin(),
+                                   told_robots_.end(), is_as_told);
   told_ = placements_.groups();
   told_components_ = answer.components;
   numbers_.keep(told_components_, ages());
@@ -99,6 +112,8 @@ void TeamSolver::find_out(Effort effort, TeamAnswer& answer) {
   restarted_.clear();
   lost_poses_.clear();
   is_weighed_ = true;
+  has_problem_ = false;
+  return differs;
 }
 
 void TeamSolver::weigh_again(Effort effort, TeamAnswer& answer) {

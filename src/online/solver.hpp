@@ -49,8 +49,9 @@ class TeamSolver {
     full,     ///< every map is searched that has changed since it was, and what follows is taken at once
   };
 
-  /// The answer with all news. May be cancelled: nothing of the news is lost then, nor what was searched.
-  /// Where it fails otherwise, the answer is the one before, and says why; it is not settled then.
+  /// The answer with all news. It has the number of the one before where only RobotStatus::maps_heard
+  /// differs. May be cancelled: nothing of the news is lost then, nor what was searched. Where it fails
+  /// otherwise, the answer is the one before, and says why; it is not settled then.
   TeamAnswer solve(Effort effort);
 
   /// Whether Effort::further has nothing to do.
@@ -79,7 +80,7 @@ class TeamSolver {
     std::optional<KnownPose> known_pose;
   };
 
-  void find_out(Effort effort, TeamAnswer& answer);
+  bool find_out(Effort effort, TeamAnswer& answer);
   void weigh_again(Effort effort, TeamAnswer& answer);
   void draw_again(TeamAnswer& answer) const;
   TeamAnswer answer_before() const;
@@ -118,7 +119,9 @@ class TeamSolver {
   GroupNumbers numbers_;
   std::map<std::string, RobotStatus> told_robots_;  // without those whose map is another one since
   std::shared_ptr<const TeamMerge> told_merge_ = std::make_shared<const TeamMerge>();
-  std::uint64_t answers_ = 0;
+  bool told_settled_ = true;   // by the last answer
+  bool has_problem_ = false;   // likewise
+  std::uint64_t answers_ = 0;  // that differ
 };
 
 }  // namespace gridmerge::internal

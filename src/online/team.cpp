@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "grid/equal_grids.hpp"
 #include "gridmerge/grid/execution.hpp"
 #include "online/solver.hpp"
 
@@ -110,7 +111,12 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
     auto shared = std::make_shared<OccupancyGrid>(std::move(map));
     const std::lock_guard lock(mutex_);
     require_room_for(robot);
-    const bool is_first = newest_.insert_or_assign(robot, shared).second;
+    const auto [newest, is_first] = newest_.try_emplace(robot, shared);
+    if (!is_first && !has_failed_ && are_equal(*newest->second, *shared)) {
+      count_repeated(robot);
+      return;
+    }
+    newest->second = shared;
     put_map(robot, std::move(shared), is_first);
   }
 
@@ -122,6 +128,10 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
     const OccupancyGrid& whole = *newest->second;
     if (column < 0 || row < 0 || part.width > whole.width - column || part.height > whole.height - row)
       return false;
+    if (!has_failed_ && has_drawn(part, column, row, whole)) {
+      count_repeated(robot);
+      return true;
+    }
     // The solver may be at work on what it was given; what still lies in the inbox is ours.
     const auto waiting = news_.find(robot);
     const bool is_ours = waiting != news_.end() && waiting->second.map == newest->second;
@@ -179,10 +189,19 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
 
   bool is_at_rest() const {
     const std::lock_guard lock(mutex_);
-    return news_.empty() && !is_at_work_ && !has_unfinished_ && is_all_done_;
+    return !has_news_ && !is_at_work_ && !has_unfinished_ && is_all_done_;
   }
 
  private:
+  static bool has_drawn(const OccupancyGrid& part, int column, int row, const OccupancyGrid& map) {
+    if (!part.probability.empty() || !map.probability.empty()) return false;  // seldom, and then it is drawn
+    for (int y = 0; y < part.height; ++y) {
+      const Cell* const cells = &part.cells[part.index(0, y)];
+      if (!std::equal(cells, cells + part.width, &map.cells[map.index(column, row + y)])) return false;
+    }
+    return true;
+  }
+
   static void draw(const OccupancyGrid& part, int column, int row, OccupancyGrid& map) {
     if (part.probability.empty()) map.probability.clear();
     for (int y = 0; y < part.height; ++y) {
@@ -213,8 +232,16 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
     put(robot, std::move(news));
   }
 
+  /// Nothing follows from what was there already: it neither ends what is at work nor puts off a search of
+  /// all. Where the work on it failed it is worth another try instead: there may be memory now.
+  void count_repeated(const std::string& robot) {
+    ++news_[robot].maps_heard;
+    changed_.notify_all();
+  }
+
   void put(const std::string& robot, RobotNews news) {
     add_news(news_[robot], std::move(news));
+    has_news_ = true;
     heard_ = std::chrono::steady_clock::now();
     // Work on older maps ends; but not twice in a row, so that answers come however often maps do.
     if (is_at_work_ && may_be_cancelled_) is_cancelled_ = true;
@@ -229,34 +256,40 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
   void work() {
     std::unique_lock lock(mutex_);
     while (!ends_) {
-      bool is_quiet = false;
       // What failed would fail again: once more in full, when all is quiet, is enough.
-      const bool goes_further = news_.empty() && !has_unfinished_ && !has_failed_ && !solver_.is_complete();
-      if (news_.empty() && !has_unfinished_ && !goes_further) {
+      const bool goes_further = !has_news_ && !has_unfinished_ && !has_failed_ && !solver_.is_complete();
+      if (!has_news_ && !has_unfinished_ && !goes_further) {
         const auto wakes = [&] { return ends_ || !news_.empty(); };
         if (is_all_done_) {
           changed_.wait(lock, wakes);
         } else {
-          is_quiet = !changed_.wait_until(lock, heard_ + options_.quiet, wakes);
+          changed_.wait_until(lock, heard_ + options_.quiet, wakes);
         }
         if (ends_) return;
       }
+      const bool is_idle = !has_news_ && !has_unfinished_ && !goes_further;
+      const bool is_quiet =
+          is_idle && !is_all_done_ && std::chrono::steady_clock::now() >= heard_ + options_.quiet;
       News news = std::exchange(news_, {});
+      has_news_ = false;
       is_at_work_ = true;
       is_cancelled_ = false;
       lock.unlock();
       using Effort = TeamSolver::Effort;
       const Effort effort = is_quiet ? Effort::full : goes_further ? Effort::further : Effort::soon;
       std::shared_ptr<const TeamAnswer> answer = solve(std::move(news), effort);
-      if (answer && on_answer_) on_answer_(answer);
+      // Where nothing differs but how often robots were heard, it is the answer before.
+      const bool is_new =
+          answer && (answer->number != answer_->number || answer->problem != answer_->problem);
+      if (is_new && on_answer_) on_answer_(answer);
       lock.lock();
       is_at_work_ = false;
       may_be_cancelled_ = answer != nullptr;
       has_unfinished_ = !answer;
       if (answer) {
         has_failed_ = !answer->problem.empty();
-        is_all_done_ = answer->settled || is_quiet;
-        keep_events(answer->events);
+        is_all_done_ = answer->settled || is_quiet || (is_all_done_ && is_idle);
+        if (is_new) keep_events(answer->events);
         answer_ = without_forgotten(std::move(answer), news_);
       }
       changed_.notify_all();
@@ -294,6 +327,7 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
   std::shared_ptr<const TeamAnswer> answer_ = std::make_shared<const TeamAnswer>();
   bool ends_ = false, is_at_work_ = false, may_be_cancelled_ = true, has_unfinished_ = false,
        has_failed_ = false;
+  bool has_news_ = false;    // of which more is known than how often robots were heard
   bool is_all_done_ = true;  // until something is heard
   std::atomic<bool> is_cancelled_ = false;
 

@@ -306,7 +306,7 @@ TEST(Team, SaysThatWhatWasHeardOfAForgottenRobotIsBeingLookedAt) {
   team.hear("anna", make_grid(3, 3, 0.05));
   ASSERT_TRUE(team.wait_until_settled(kLong));
   EXPECT_EQ(team.answer()->robots.at(0).why, "there is no other map yet");
-  team.hear("anna", make_grid(3, 3, 0.05));
+  team.hear("anna", make_grid(3, 3, 0.05, {}, Cell::free));
   is_told.get_future().wait();
   team.forget("anna");
   team.hear("anna", make_grid(4, 4, 0.05));

@@ -45,6 +45,9 @@ struct RobotStatus {
   std::uint64_t maps_heard = 0;  ///< maps and parts of maps, those that changed nothing too
   TeamTime heard_first = {};     ///< since when it is heard, by the oldest account
   bool has_known_pose = false;   ///< one was set, and its map has not started anew since (Team::hear)
+
+  /// Whether all of it is the same.
+  friend bool operator==(const RobotStatus&, const RobotStatus&) = default;
 };
 
 /// Robots that were placed together.
@@ -89,7 +92,9 @@ struct TeamEvent {
 
 /// What a team knows at one moment.
 struct TeamAnswer {
-  std::uint64_t number = 0;               ///< counts up; 0 is the answer before anything was heard
+  /// Counts up; 0 is the answer before anything was heard. One that differs from the answer before in
+  /// RobotStatus::maps_heard alone has its number.
+  std::uint64_t number = 0;
   std::vector<TeamComponent> components;  ///< by number
   std::vector<RobotStatus> robots;        ///< by name
   std::vector<TeamEvent> events;          ///< since the answer before
@@ -136,8 +141,8 @@ GRIDMERGE_EXPORT void validate(const TeamOptions& options);
 /// component's frame is that of the robot that was heard first, for as long as it lives.
 class GRIDMERGE_EXPORT Team {
  public:
-  /// Is given each answer, by the team's thread, one after the other; must not throw, nor call the team's
-  /// destructor.
+  /// Is given each answer of a new number, by the team's thread, one after the other; must not throw, nor
+  /// call the team's destructor.
   using OnAnswer = std::function<void(const std::shared_ptr<const TeamAnswer>&)>;
 
   /// Throws std::invalid_argument for options that make no sense.
