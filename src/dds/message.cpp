@@ -61,6 +61,7 @@ double read_yaw(const std::array<double, 4>& orientation) {
 std::string read_frame(std::string_view frame) {
   if (frame.starts_with('/')) frame.remove_prefix(1);
   if (frame.empty()) throw RefusedMessage("no frame_id");
+  if (frame.starts_with('/')) throw RefusedMessage("a frame_id that begins with more than one '/'");
   if (frame.size() > kLongestFrame)
     throw RefusedMessage(fmt::format("a frame_id of {} characters", frame.size()));
   if (!std::all_of(frame.begin(), frame.end(), [](char c) { return c > ' ' && c < '\x7f'; }))

@@ -87,7 +87,8 @@ HeardPart read_update(const UpdateSample& message);
 std::vector<std::int8_t> message_values(const OccupancyGrid& grid);
 
 /// A frame's name without a leading slash, which TF knows no longer. Throws RefusedMessage for a name that is
-/// empty, longer than kLongestFrame, or has other characters than printable ASCII without blanks.
+/// empty, begins with a further slash, is longer than kLongestFrame, or has other characters than printable
+/// ASCII without blanks.
 std::string read_frame(std::string_view frame);
 
 }  // namespace gridmerge::internal

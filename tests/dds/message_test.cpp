@@ -145,9 +145,9 @@ TEST_F(MessageTest, IsRefusedForFrames) {
   message.frame = longest;
   EXPECT_EQ(refusal(), "taken");
   for (const std::string_view frame :
-       {std::string_view(""), std::string_view("/"), std::string_view("a b"), std::string_view("a\nb"),
-        std::string_view("\x1b[31m"), std::string_view("k\xc3\xbc"), std::string_view("a\0b", 3),
-        std::string_view(longer)}) {
+       {std::string_view(""), std::string_view("/"), std::string_view("//a"), std::string_view("a b"),
+        std::string_view("a\nb"), std::string_view("\x1b[31m"), std::string_view("k\xc3\xbc"),
+        std::string_view("a\0b", 3), std::string_view(longer)}) {
     message.frame = frame;
     EXPECT_NE(refusal().find("frame_id"), std::string::npos) << frame;
   }

@@ -15,6 +15,7 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 from rclpy.timer import Timer
 
 from gridmerge_ros.initial_poses import AXES, is_initial_pose, parameter_names, read_known_pose
+from gridmerge_ros.lines import Lines
 from gridmerge_ros.names import Selection, check_topic
 from gridmerge_ros.parameters import PARAMETERS, Settings, read_settings
 from gridmerge_ros.publishers import Publishers
@@ -24,6 +25,7 @@ from gridmerge_ros.subscriptions import HEARS_UPDATES, MapSubscriptions
 
 _ANSWERS_EVERY = 0.1  # so often the team is asked for news [s]
 _DIAGNOSES_EVERY = 1.0  # [s]
+_DIAGNOSES_APART = 0.25  # at least, whatever merging_rate is [s]
 _EVENTS_KEPT = 5
 
 
@@ -43,6 +45,8 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
             description = ParameterDescriptor(description=parameter.text, dynamic_typing=True)
             self.declare_parameter(parameter.name, default, description)
         self.add_on_set_parameters_callback(self._on_set_parameters)
+        self._tell = Lines(lambda line: self.get_logger().info(line))
+        self._warn = Lines(lambda line: self.get_logger().warning(line))
         self._settings: Settings | None = None
         self._selection: Selection | None = None
         self._team: Team | None = None
@@ -165,6 +169,7 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
         self._told_answer = 0
         self._sent_answer = 0
         self._next_maps = 0.0
+        self._diagnosed = 0.0
         self._transforms = TeamTransforms((), {})
         self._events = 0
         self._last_events: deque[str] = deque(maxlen=_EVENTS_KEPT)
@@ -189,6 +194,8 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
             for event in self._team.take_events():
                 self._events += 1
                 self._last_events.append(event.text)
+                if event.kind == "restarted":
+                    self._robots.count_restart(event.robot)
                 self._tell(event.text)
             self._robots.follow(answer)
             self._told_answer = answer.number
@@ -204,13 +211,16 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
         self._transforms = transforms
         self._publishers_of_team.send_transforms(transforms.transforms)
         self._publishers_of_team.send_maps(answer)
-        self._send_diagnoses()
+        if monotonic() >= self._diagnosed + _DIAGNOSES_APART:  # or the timer soon sends them
+            self._send_diagnoses()
 
     def _send_transforms(self) -> None:
         assert self._publishers_of_team is not None
         self._publishers_of_team.send_transforms(self._transforms.transforms)
 
     def _send_diagnoses(self) -> None:
+        self._tell.look()
+        self._warn.look()
         assert self._team is not None and self._robots is not None and self._publishers_of_team is not None
         health = NodeHealth(
             # As other nodes of this name may have it, in namespaces of theirs.
@@ -223,6 +233,7 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
         )
         diagnoses = diagnose(self._team.answer(), self._robots.all, self._transforms, health)
         self._publishers_of_team.send_diagnoses(diagnoses)
+        self._diagnosed = monotonic()
 
     def _on_set_parameters(self, parameters: Sequence[Any]) -> SetParametersResult:
         own = {one.name for one in PARAMETERS}
@@ -233,12 +244,6 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
                 reason = f"{parameter.name} is read when the node is configured: deactivate it and clean it up first"
                 return SetParametersResult(successful=False, reason=reason)
         return SetParametersResult(successful=True)
-
-    def _tell(self, line: str) -> None:
-        self.get_logger().info(line)
-
-    def _warn(self, line: str) -> None:
-        self.get_logger().warning(line)
 
 
 _NO_UPDATES = "updates of maps are not heard: the package map_msgs is not installed"

@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from gridmerge_ros.messages import read_frame
 from gridmerge_ros.names import by_topic, check_name, check_topic
 
 Value = bool | int | float | str | tuple[str, ...]
@@ -139,13 +140,13 @@ def read_settings(values: Mapping[str, object]) -> Settings:
     )
     if read["robot_map_updates_topic"] == map_topic:
         raise ValueError(f"robot_map_updates_topic: is {map_topic!r}, which is that of the maps")
-    if not read["world_frame"]:
-        raise ValueError("world_frame: is empty")
+    read["world_frame"] = _frame("world_frame", str(read["world_frame"]))
     # Relative, absolute or private, as ROS resolves it.
     _levels("merged_map_topic", str(read["merged_map_topic"]).removeprefix("~/").removeprefix("/"))
     frame = str(read["robot_map_frame"])
     if frame and "<robot>" not in frame:
         raise ValueError(f"robot_map_frame: must have <robot> in it, so that frames differ, is {frame!r}")
+    read["robot_map_frame"] = _frame("robot_map_frame", frame) if frame else ""
     read["robots"] = _robots(_texts(read["robots"]), map_topic)
     read["fixed_robots"] = tuple(_robot_name("fixed_robots", robot) for robot in _texts(read["fixed_robots"]))
     return Settings(**read)  # type: ignore[arg-type]
@@ -192,6 +193,13 @@ def _levels(parameter: str, topic: str) -> str:
     except ValueError as error:
         raise ValueError(f"{parameter}: {error}") from None
     return topic
+
+
+def _frame(parameter: str, frame: str) -> str:
+    try:
+        return read_frame(frame)
+    except ValueError as error:
+        raise ValueError(f"{parameter}: {frame!r} {error}") from None
 
 
 def _robot_name(parameter: str, robot: str) -> str:

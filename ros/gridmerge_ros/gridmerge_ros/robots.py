@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,10 +12,16 @@ from typing import Any
 from gridmerge import InitialPose, Team, TeamAnswer
 
 from gridmerge_ros.ages import RobotAge, publisher_digits
-from gridmerge_ros.messages import RefusedMessage, Stamp, read_map, read_update
+from gridmerge_ros.messages import RefusedMessage, read_map, read_update
 
 MOST_CELLS_TOGETHER = 2**30
 """Of the newest maps of all robots."""
+
+LATEST = 5.0
+"""An update that comes so long after a map was not sent before it, whatever the publisher's clock says [s]."""
+
+TOO_OFTEN = 3, 60.0
+"""A robot that starts anew so many times in so long [s] is perhaps two robots."""
 
 Publisher = tuple[int, ...]
 """The number that DDS gives it."""
@@ -40,23 +47,41 @@ class HeardRobot:
     topic: str
     frame: str = ""
     """Of its newest map; empty before that."""
-    stamp: Stamp = (0, 0)
     maps: int = 0
     parts: int = 0
+    outdated: int = 0
+    """Updates that its map had already."""
     publishers: int = 0
     refused: int = 0
     last_refusal: str = ""
     pose: str = ""
     """What became of the pose that the parameters give for it; empty where they give none."""
+    restarts: int = 0
+    """How often it started anew."""
     heard_first: float | None = None
     """Since when maps in this frame are heard, by the oldest account of all nodes: seconds since 1970."""
     cells: int = field(default=0, repr=False)
+    written: int = field(default=0, repr=False)
+    """When its publisher wrote the newest map [ns]; 0 where nobody says."""
+    taken: float = field(default=0.0, repr=False)
+    """When it was heard here, by monotonic()."""
     followed: Publisher | None = field(default=None, repr=False)
+    last_restarts: deque[float] = field(default_factory=lambda: deque(maxlen=TOO_OFTEN[0]), repr=False)
+    """By monotonic()."""
 
     @property
     def publisher(self) -> str:
         """The number of who publishes the map, as diagnoses have it; empty where nobody knows."""
         return "" if self.followed is None else publisher_digits(self.followed)
+
+    @property
+    def doubt(self) -> str:
+        """Why it may be no one robot; empty where it seems to be."""
+        most, seconds = TOO_OFTEN
+        times = self.last_restarts
+        if len(times) < most or time.monotonic() - times[0] > seconds:
+            return ""
+        return f"it started anew {most} times in {seconds:.0f} s: do two robots publish on {self.topic}?"
 
 
 class Robots:
@@ -117,9 +142,11 @@ class Robots:
             self._warn(f"{robot.topic}: has {len(publishers)} publishers; all are taken for one robot")
         robot.publishers = len(publishers)
 
-    def hear_map(self, name: str, message: Any, publishers: Collection[Publisher]) -> None:
-        """A map, and who publishes such now. Does not raise for what the message says."""
+    def hear_map(self, name: str, message: Any, publishers: Collection[Publisher], written: int = 0) -> None:
+        """A map, who publishes such now, and when it was written. Does not raise for what the message says."""
         robot = self._robots[name]
+        if 0 < written == robot.written and not self._is_another(robot, publishers):
+            return  # a latched one comes again with a new subscription, and lacks the updates since
         try:
             heard = read_map(message)
             others = sum(other.cells for other in self._robots.values() if other is not robot)
@@ -145,12 +172,16 @@ class Robots:
         if robot.followed not in publishers:
             robot.followed = next(iter(sorted(publishers)), robot.followed)
         robot.frame = heard.frame
-        robot.stamp = heard.stamp
+        robot.written = written
+        robot.taken = time.monotonic()
         robot.cells = cells
         robot.maps += 1
 
-    def hear_update(self, name: str, message: Any) -> None:
-        """Does not raise for what the message says."""
+    def hear_update(self, name: str, message: Any, written: int = 0) -> None:
+        """An update, and when it was written. Does not raise for what the message says.
+
+        The times in messages are the user's: they may be 0, or go back.
+        """
         robot = self._robots[name]
         try:
             part = read_update(message)
@@ -158,8 +189,9 @@ class Robots:
                 raise RefusedMessage("an update without a map before it")
             if part.frame != robot.frame:
                 raise RefusedMessage(f"an update in the frame {part.frame}, of a map in {robot.frame}")
-            if part.stamp < robot.stamp:
-                return  # the map has it already
+            if 0 < written < robot.written and time.monotonic() - robot.taken <= LATEST:
+                robot.outdated += 1  # the map has it already
+                return
             if not self._team.hear_part(name, part.column, part.row, part.grid):
                 raise RefusedMessage("an update that reaches beyond its map")
         except RefusedMessage as error:
@@ -174,6 +206,16 @@ class Robots:
                 continue
             if robot.heard_first is not None and age.heard_first < robot.heard_first:
                 self._set_age(robot, age.heard_first)
+
+    def count_restart(self, name: str) -> None:
+        """The robot started anew, as the team has found out or others have said."""
+        robot = self._robots.get(name)
+        if robot is None:
+            return
+        robot.restarts += 1
+        robot.last_restarts.append(time.monotonic())
+        if robot.doubt:
+            self._warn(f"{name}: {robot.doubt}")
 
     def follow(self, answer: TeamAnswer) -> None:
         """A known pose that the team has given up holds no longer."""
@@ -213,6 +255,7 @@ class Robots:
     def _restart(self, robot: HeardRobot, content: str) -> None:
         """What was known of the old map's frame says nothing of the new one, whatever its name."""
         self._tell(f"{robot.name}: started anew: {content}")
+        self.count_restart(robot.name)
         self._team.forget(robot.name)
         robot.heard_first = None
         if robot.name in self._poses:

@@ -141,11 +141,13 @@ def _diagnose_robot(answer: TeamAnswer, robot: HeardRobot, withheld: str | None,
     values += [
         ("maps", str(robot.maps)),
         ("updates", str(robot.parts)),
+        ("updates older than the map", str(robot.outdated)),
     ]
     if robot.publisher and robot.heard_first is not None:
         values += [(PUBLISHER, robot.publisher), (HEARD_FIRST, format_time(robot.heard_first))]
     values += [
         ("publishers", str(robot.publishers)),
+        ("started anew", str(robot.restarts)),
         ("refused", str(robot.refused)),
     ]
     if robot.refused:
@@ -155,7 +157,9 @@ def _diagnose_robot(answer: TeamAnswer, robot: HeardRobot, withheld: str | None,
     message = f"{state.replace('_', ' ')}: {why}"
     if withheld is not None:
         message += f"; no transform: {withheld}"
-    level = OK if state == "placed" and withheld is None else WARNING
+    if robot.doubt:
+        message += f"; {robot.doubt}"
+    level = OK if state == "placed" and withheld is None and not robot.doubt else WARNING
     return Diagnosis(level, f"{node}: {robot.name}", message, robot.name, tuple(values))
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -28,6 +28,9 @@ HEARS_UPDATES = OccupancyGridUpdate is not None
 
 MAP_TYPE = "nav_msgs/msg/OccupancyGrid"
 UPDATE_TYPE = "map_msgs/msg/OccupancyGridUpdate"
+
+MessageInfo = Mapping[str, Any]
+"""What rclpy says of a message."""
 
 _MAPS_KEPT = 1
 _UPDATES_KEPT = 64
@@ -113,7 +116,7 @@ class MapSubscriptions:
         kind: Any,
         publishers: Sequence[TopicEndpointInfo],
         depth: int,
-        callback: Callable[[bytes], None],
+        callback: Callable[[bytes, MessageInfo], None],
     ) -> None:
         if not publishers:
             return
@@ -146,15 +149,15 @@ class MapSubscriptions:
         for age in ages:
             self._robots.hear_age(age)
 
-    def _hear_map(self, name: str, topic: str, data: bytes) -> None:
+    def _hear_map(self, name: str, topic: str, data: bytes, info: MessageInfo) -> None:
         message = self._decode(name, data, OccupancyGrid)
         if message is not None:
-            self._robots.hear_map(name, message, self._numbers_of(topic))
+            self._robots.hear_map(name, message, self._numbers_of(topic), info["source_timestamp"])
 
-    def _hear_update(self, name: str, data: bytes) -> None:
+    def _hear_update(self, name: str, data: bytes, info: MessageInfo) -> None:
         message = self._decode(name, data, OccupancyGridUpdate)
         if message is not None:
-            self._robots.hear_update(name, message)
+            self._robots.hear_update(name, message, info["source_timestamp"])
 
     def _decode(self, name: str, data: bytes, kind: Any) -> Any:
         try:

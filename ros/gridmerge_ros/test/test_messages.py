@@ -14,7 +14,6 @@ from messages_like_ros import map_message, update_message
 
 def test_a_map() -> None:
     heard = read_map(map_message([-1, 0, 100, 0, 0, 100], 3, 2, "/tb1/map", 7))
-    assert heard.stamp == (7, 0)
     assert heard.frame == "tb1/map"
     assert heard.grid.shape == (2, 3)
     assert heard.grid.resolution == 0.05
@@ -26,7 +25,7 @@ def test_an_update() -> None:
     message = update_message([0, 100, -1, 0], 2, 2)
     message.x, message.y = 3, 4
     part = read_update(message)
-    assert (part.column, part.row, part.frame, part.stamp) == (3, 4, "tb1/map", (100, 0))
+    assert (part.column, part.row, part.frame) == (3, 4, "tb1/map")
     assert part.grid.to_numpy().tolist() == [[0, 100], [-1, 0]]
 
 
@@ -50,10 +49,15 @@ WRONG = [
     ("info.resolution", 0.0, "info.resolution"),
     ("info.resolution", -0.05, "info.resolution"),
     ("info.resolution", 1e30, "info.resolution"),
-    ("info.origin.position.x", math.nan, "info.origin.position.x"),
-    ("info.origin.position.y", math.inf, "info.origin.position.y"),
+    ("info.origin.position.x", math.nan, "info.origin.position"),
+    ("info.origin.position.y", math.inf, "info.origin.position"),
     ("info.origin.position.x", 1e300, "info.origin"),
-    ("info.origin.orientation.w", 0.0, "info.origin.orientation"),
+    ("info.origin.position.y", -1.1e7, "info.origin.position"),
+    ("info.origin.position.z", math.nan, "info.origin.position"),
+    ("info.resolution", 1e-7, "info.resolution"),
+    ("info.resolution", 1001.0, "info.resolution"),
+    ("header.stamp.nanosec", 10**9, "header.stamp"),
+    ("info.origin.orientation.w", 0.7, "info.origin.orientation"),
     ("info.origin.orientation.z", math.nan, "info.origin.orientation"),
     ("info.origin.orientation.x", 0.7, "info.origin.orientation"),
     ("header.frame_id", "", "header.frame_id"),
@@ -61,7 +65,8 @@ WRONG = [
     ("header.frame_id", "a b", "header.frame_id"),
     ("header.frame_id", "a\0b", "header.frame_id"),
     ("header.frame_id", "é", "header.frame_id"),
-    ("header.frame_id", "f" * 1000, "1000 characters"),
+    ("header.frame_id", "f" * 256, "256 characters"),
+    ("header.frame_id", "//map", "more than one '/'"),
 ]
 
 
@@ -119,6 +124,12 @@ def test_whatever_a_message_says_it_is_read_or_refused() -> None:
         assert (heard.grid.to_numpy().ravel() == expected).all()
         assert all(math.isfinite(value) for value in (*heard.grid.origin, heard.grid.resolution))
     assert 100 < read < 2500
+
+
+def test_a_turn_that_is_not_set_is_none() -> None:
+    message = map_message([0], 1, 1)
+    message.info.origin.orientation.w = 0.0
+    assert read_map(message).grid.origin.theta == 0.0
 
 
 def test_frames() -> None:

@@ -37,6 +37,9 @@ def test_values() -> None:
     for topic in ("merged", "/all/merged", "~/merged"):
         assert read_settings({"merged_map_topic": topic}).merged_map_topic == topic
     assert read_settings({"fixed_robots": [""]}).fixed_robots == ()
+    # TF knows no first slash.
+    assert read_settings({"world_frame": "/world"}).world_frame == "world"
+    assert read_settings({"robot_map_frame": "/<robot>/map"}).robot_map_frame == "<robot>/map"
 
 
 @pytest.mark.parametrize(
@@ -57,6 +60,11 @@ def test_values() -> None:
         ("transforms", "both"),
         ("transforms", 1),
         ("world_frame", ""),
+        ("world_frame", "my world"),
+        ("world_frame", "//world"),
+        ("world_frame", "w" * 256),
+        ("robot_map_frame", "<robot> map"),
+        ("robot_map_frame", "//<robot>/map"),
         ("merged_map_topic", ""),
         ("merged_map_topic", "a b"),
         ("merged_map_topic", "/"),

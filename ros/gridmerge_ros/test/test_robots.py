@@ -69,15 +69,46 @@ def heard() -> Heard:
 def test_maps_and_updates(heard: Heard) -> None:
     heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), [FIRST])
     heard.robots.hear_map("tb1", map_message(CELLS, 2, 3), [FIRST])
-    heard.robots.hear_update("tb1", update_message([0, 0], 2, 1, second=101))
-    # One that is older than the map is in it already.
-    heard.robots.hear_update("tb1", update_message([0, 0], 2, 1, second=99))
+    heard.robots.hear_update("tb1", update_message([0, 0], 2, 1))
     assert heard.account.calls == [
         ("hear", "tb1", (2, 3)),
         ("hear", "tb1", (3, 2)),
         ("hear_part", "tb1", 0, 0, (1, 2)),
     ]
     assert (heard.tb1.maps, heard.tb1.parts, heard.tb1.refused, heard.tb1.frame) == (2, 1, 0, "tb1/map")
+
+
+def test_updates_count_in_the_order_in_which_they_were_written(
+    heard: Heard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    heard.robots.hear_map("tb1", map_message(CELLS, 3, 2, second=5000), [FIRST], 1000)
+
+    def update(second: int, written: int) -> tuple[int, int]:
+        heard.robots.hear_update("tb1", update_message([0, 0], 2, 1, second=second), written)
+        return heard.tb1.parts, heard.tb1.outdated
+
+    # What the messages say of time may be 0, or go back with a simulation's clock.
+    assert update(0, 1001) == (1, 0)
+    assert update(3, 1002) == (2, 0)
+    # Where nobody says when it was written it is used.
+    assert update(0, 0) == (3, 0)
+    # The map has it already.
+    assert update(5001, 999) == (3, 1)
+    # Long after the map it cannot: the publisher's clock was set back.
+    later = time.monotonic() + robots_module.LATEST + 1.0
+    monkeypatch.setattr(time, "monotonic", lambda: later)
+    assert update(4, 998) == (4, 1)
+    assert heard.tb1.refused == 0
+
+
+def test_a_latched_map_that_comes_again_takes_no_updates_back(heard: Heard) -> None:
+    for _ in range(2):
+        heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), [FIRST], 1000)
+        heard.robots.hear_update("tb1", update_message([0, 0], 2, 1), 1001)
+    assert [call[0] for call in heard.account.calls] == ["hear", "hear_part", "hear_part"]
+    # Another publisher's is another map.
+    heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), [SECOND], 1000)
+    assert heard.tb1.maps == 2
 
 
 def test_refusals_are_counted_and_told_once(heard: Heard) -> None:
@@ -103,10 +134,10 @@ def test_a_team_that_refuses(heard: Heard) -> None:
 
 def test_updates_of_another_map(heard: Heard) -> None:
     heard.robots.hear_map("tb1", map_message(CELLS, 3, 2), [FIRST])
-    heard.robots.hear_update("tb1", update_message([0, 0], 2, 1, frame="elsewhere", second=101))
+    heard.robots.hear_update("tb1", update_message([0, 0], 2, 1, frame="elsewhere"))
     assert "in the frame elsewhere" in heard.tb1.last_refusal
     heard.account.holds_parts = False
-    heard.robots.hear_update("tb1", update_message([0, 0], 2, 1, second=101))
+    heard.robots.hear_update("tb1", update_message([0, 0], 2, 1))
     assert "beyond its map" in heard.tb1.last_refusal
     assert (heard.tb1.parts, heard.tb1.refused) == (0, 2)
 
@@ -131,6 +162,20 @@ def test_a_robot_that_starts_anew(how: str) -> None:
     heard.account.calls.clear()
     heard.robots.hear_map("tb2", map_message(CELLS, 3, 2, frame), [SECOND] if how == "publisher" else [FIRST])
     assert heard.account.calls == [("hear", "tb2", (2, 3))]
+
+
+def test_two_robots_on_one_topic(heard: Heard, monkeypatch: pytest.MonkeyPatch) -> None:
+    for frame in ("a", "b", "a"):
+        heard.robots.hear_map("tb1", map_message(CELLS, 3, 2, frame), [FIRST])
+    assert heard.tb1.doubt == ""  # that may be
+    heard.robots.count_restart("tb1")  # as the team sees by its map
+    assert "do two robots publish on /tb1/map?" in heard.tb1.doubt
+    assert heard.lines[-1] == f"tb1: {heard.tb1.doubt}"
+    assert heard.tb1.restarts == 3
+    heard.robots.count_restart("nobody")
+    later = time.monotonic() + 61.0
+    monkeypatch.setattr(time, "monotonic", lambda: later)
+    assert heard.tb1.doubt == ""
 
 
 def test_a_pose_that_the_team_gives_up() -> None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -53,6 +54,16 @@ def test_frames_that_are_not_ones_own() -> None:
     assert "tb0 and of tb4" in found.withheld["tb0"]
     named = team_transforms(given, robots, "world", "<robot>/map")
     assert [one.child for one in named.transforms] == ["tb0/map", "tb1/map", "tb2/map", "tb3/map"]
+
+
+def test_a_robot_that_is_perhaps_two() -> None:
+    robots = heard("a/map")
+    placed_one = answer(placed("tb0", 0, 1.0))
+    assert diagnose(placed_one, robots, TeamTransforms((), {}), HEALTH)[1].level == OK
+    robots["tb0"].last_restarts.extend([monotonic()] * 3)
+    one = diagnose(placed_one, robots, TeamTransforms((), {}), HEALTH)[1]
+    assert one.level == WARNING
+    assert "do two robots publish on /tb0/map?" in one.message
 
 
 def test_a_robot_without_a_frame() -> None:
