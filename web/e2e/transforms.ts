@@ -44,7 +44,7 @@ test("it is told whose frame transforms are in", async () => {
   const { page } = tab;
   await page.click("#tab-joins");
   await page.locator("button[data-join]").last().click();
-  const [, fixed] = /Show (\S+) and/.exec((await page.locator("button[data-join]").last().getAttribute("aria-label"))!)!;
+  const [, fixed] = /show (\S+) and/.exec((await page.locator("button[data-join]").last().getAttribute("aria-label"))!)!;
   await page.click("#tab-transforms");
   await tab.settled();
   assert.match((await page.textContent("#panel-transforms .frame"))!, new RegExp(`^In the frame of \\d${fixed}\\. `));
