@@ -21,11 +21,11 @@ export class Saving {
   /** What is wrong with the pose that is typed. */
   private readonly poseProblem: () => string | null;
   private readonly sd = new NumberField({
-    id: "hand-sd", what: "The deviation of positions", label: "Standard deviation of the positions, in metres", least: 0.001, most: 100000,
+    id: "hand-sd", what: "the deviation of positions", label: "Standard deviation of the positions, in metres", least: 0.001, most: 100000,
     step: 0.1, isKept: true, typed: () => this.judge(),
   });
   private readonly sdTheta = new NumberField({
-    id: "hand-sd-theta", what: "The deviation of directions", label: "Standard deviation of the directions, in degrees", least: 0.01, most: 360,
+    id: "hand-sd-theta", what: "the deviation of directions", label: "Standard deviation of the directions, in degrees", least: 0.01, most: 360,
     step: 0.5, isKept: true, typed: () => this.judge(),
   });
   private readonly reason = h("p", { class: "invalid", id: "hand-reason", role: "status" });
