@@ -7,19 +7,19 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from time import monotonic
 
-WINDOW = 60.0
-"""Of lines of one kind the first is written, and how many followed in so long [s]."""
+WINDOW, MOST = 60.0, 3
+"""So many lines of one kind are written in so long [s], and how many more there were."""
 
 
 @dataclass(slots=True)
 class _Kind:
     since: float
-    more: int = 0
+    lines: int = 0
     last: str = ""
 
 
 class Lines:
-    """Writes lines for people, each kind once a minute.
+    """Writes lines for people, a few of each kind in a minute.
 
     Lines that begin alike, up to the second colon, are of one kind: "tb1: started anew: ...".
     """
@@ -31,13 +31,11 @@ class Lines:
     def __call__(self, line: str) -> None:
         self.look()
         kind = ":".join(line.split(":", 2)[:2])
-        before = self._kinds.get(kind)
-        if before is None:
-            self._kinds[kind] = _Kind(monotonic())
+        seen = self._kinds.setdefault(kind, _Kind(monotonic()))
+        seen.lines += 1
+        seen.last = line
+        if seen.lines <= MOST:
             self._write(line)
-        else:
-            before.more += 1
-            before.last = line
 
     def look(self) -> None:
         """Tells of what was held back, once its minute is over."""
@@ -45,9 +43,9 @@ class Lines:
         for name, kind in list(self._kinds.items()):
             if now < kind.since + WINDOW:
                 continue
-            if kind.more == 0:
-                del self._kinds[name]
+            del self._kinds[name]
+            if kind.lines <= MOST:
                 continue
-            more = f"{kind.more} more like it in {WINDOW:.0f} s" if kind.more > 1 else "once more"
-            self._kinds[name] = _Kind(now)
-            self._write(f"{kind.last} ({more})")
+            # It may go on: then a line a minute is enough.
+            self._kinds[name] = _Kind(now, MOST)
+            self._write(f"{kind.last} ({kind.lines - MOST} more like it in {WINDOW:.0f} s)")
