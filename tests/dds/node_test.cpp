@@ -134,6 +134,52 @@ TEST_F(NodeTest, StaysWithItsAnswerThoughARobotRepeatsOldMaps) {
       << node->lines();
 }
 
+TEST_F(NodeTest, KeepsTheNumbersOfMergedMaps) {
+  start();
+  merge_two();
+  // A larger team in another building.
+  const OccupancyGrid building = draw_building(2);
+  const Window windows[] = {{0, 0, 12, 13}, {5, 0, 18, 13}, {0, 3, 18, 13}};
+  std::vector<MapTopic> others;
+  for (int i = 0; i < 3; ++i) {
+    const std::string robot(1, static_cast<char>('c' + i));
+    others.push_back(peer->maps("/" + robot + "/map"));
+    others.back().publish(raw_map(robot + "/map", map_part(building, windows[i], {2.0 * i, 1.0, 0.4 * i})));
+  }
+  ASSERT_TRUE(diagnosed("c", "component", "2")) << node->lines();
+  ASSERT_TRUE(diagnosed("e", "component", "2")) << node->lines();
+  EXPECT_EQ(diagnosis("a").values["component"], "1");
+  EXPECT_TRUE(comes_true([&] { return peer->transforms().size() == 5; }));
+  EXPECT_EQ(peer->transforms().at("a/map").parent, "world");
+  EXPECT_EQ(peer->transforms().at("c/map").parent, "world_2");
+  // With the first two apart, the second merged map stays where it is.
+  b->publish(raw_map("b/map", make_grid(50, 50, 0.05)));
+  ASSERT_TRUE(diagnosed("a", "state", "left_out")) << node->lines();
+  Peer late(domain);
+  ASSERT_TRUE(comes_true([&] { return late.take_map("/merged_map_2").has_value(); }));
+  EXPECT_EQ(late.take_map("/merged_map_2")->frame, "world_2");
+  EXPECT_FALSE(late.take_map("/merged_map").has_value());
+  EXPECT_EQ(peer->transforms().at("c/map").parent, "world_2");
+}
+
+TEST_F(NodeTest, DiagnosesNotAsFastAsAnswersCome) {
+  start();
+  merge_two();
+  const auto received = [&] { return peer->diagnoses().at("gridmerge").received; };
+  RawMap map = map_of(1, "b/map");
+  const std::uint64_t before = received();
+  const auto began = std::chrono::steady_clock::now();
+  std::chrono::duration<double> passed{};
+  for (int i = 0; passed.count() < 2.0; ++i) {
+    map.data[static_cast<std::size_t>(i) % map.data.size()] = i % 2 == 0 ? 100 : 0;
+    b->publish(map);
+    received();  // the newest alone is kept
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    passed = std::chrono::steady_clock::now() - began;
+  }
+  EXPECT_LE(static_cast<double>(received() - before), 4.0 * passed.count() + 2.0);
+}
+
 TEST_F(NodeTest, HearsARobotWhoseClockGoesBack) {
   start();
   merge_two();
