@@ -61,9 +61,8 @@ def test_messages_that_are_no_maps(peer: Peer, explored: gridmerge.Simulation) -
         refused(message, "info.resolution")
     message = map_message(grid, "bad/map")
     message.info.origin.position.x = float("nan")
-    refused(message, "info.origin.position.x")
+    refused(message, "info.origin.position")
     for quaternion in (
-        (0.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, float("nan"), 1.0),
         (1.0, 0.0, 0.0, 0.0),
         (0.0, 0.0, 9.0, 1.0),
