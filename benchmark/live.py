@@ -271,8 +271,8 @@ def run_hour(live: Live, arguments: argparse.Namespace) -> None:
         rclpy.spin_once(live.node, timeout_sec=0.0)
 
     def look(second: int) -> tuple[int, int, int, int]:
-        heard = live.value("gridmerge", "solves")
-        live.wait_until(lambda: live.value("gridmerge", "solves") != heard, "another answer")
+        before = live.diagnoses.get("gridmerge")
+        live.wait_until(lambda: live.diagnoses.get("gridmerge") is not before, "another diagnosis")
         names = [f"tb{robot}" for robot in played.robots]
         laps = [int(live.value(name, "frame").rpartition("_")[2]) for name in names]
         answer = live.answer()
