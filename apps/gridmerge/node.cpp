@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <future>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -39,6 +41,19 @@ class StopAtSignal {
   std::thread waiter_;
 };
 
+constexpr std::chrono::seconds kLongestEnd{5};
+
+/// Deletes a node, and waits no longer than that: DDS may wait for good for a network that is gone.
+struct TakeDown {
+  void operator()(RosNode* node) const {
+    std::packaged_task<void()> take_down([node] { delete node; });
+    const std::future<void> done = take_down.get_future();
+    std::thread(std::move(take_down)).detach();
+    if (done.wait_for(kLongestEnd) != std::future_status::ready)
+      print_error("warning: the network does not let go of the node: it ends without telling others");
+  }
+};
+
 int run_node(const NodeCommandOptions& options) {
   Console console(options.common);
   RosNodeOptions node_options = to_node_options(options);
@@ -63,7 +78,7 @@ int run_node(const NodeCommandOptions& options) {
     warn_of_visitors(*server, console);
   }
   const Interrupt signal;  // one that comes while the node starts is not lost
-  auto node = std::make_unique<RosNode>(std::move(node_options));
+  std::unique_ptr<RosNode, TakeDown> node(new RosNode(std::move(node_options)));
   if (server) {
     server->start();
     tell("page: " + server->url());

@@ -207,9 +207,11 @@ std::string cyclone_configuration(const RosEnvironment& environment, std::uint64
     discovery += "</Peers>";
   }
   // The two sizes of buffers let maps of 16 MB through; the least of the first is what the system grants.
+  // A thread for each socket could only be ended by a packet to the node's own address, which may be gone.
   std::string configuration = fmt::format(
       "<CycloneDDS><Domain Id=\"any\"><General>{}</General><Discovery>{}</Discovery><Internal>"
       "<SocketReceiveBufferSize min=\"default\" max=\"4MB\"/>"
+      "<MultipleReceiveThreads>false</MultipleReceiveThreads>"
       "<MaxQueuedRexmitBytes>1MB</MaxQueuedRexmitBytes><MaxSampleSize>{}B</MaxSampleSize>"
       "</Internal></Domain></CycloneDDS>",
       general, discovery, largest_message);

@@ -2,20 +2,17 @@
 #include "dds/environment.hpp"
 
 #include <gtest/gtest.h>
-#include <net/if.h>
 #include <sched.h>
-#include <sys/ioctl.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstring>
 #include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "own_network.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace gridmerge::internal {
@@ -167,16 +164,6 @@ TEST(RosEnvironment, WaitsForNoPipe) {
     EXPECT_EQ(read({{"CYCLONEDDS_URI", uri}}).cyclone_uri, uri);
 }
 
-/// Sets the loopback interface of a network of its own up, with the address that it always has. Whether that
-/// could be done.
-bool set_loopback_up() {
-  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  ifreq request{};
-  std::strncpy(request.ifr_name, "lo", IFNAMSIZ - 1);
-  request.ifr_flags = IFF_UP;
-  return ::ioctl(socket, SIOCSIFFLAGS, &request) == 0;
-}
-
 /// As in a container without a network, which has the loopback interface alone.
 TEST(RosEnvironment, LoopbackIsNoNetwork) {
   enum Outcome { none, found, cannot_be_tried };
@@ -184,7 +171,8 @@ TEST(RosEnvironment, LoopbackIsNoNetwork) {
   ASSERT_GE(child, 0);
   if (child == 0) {
     const bool is_apart = ::unshare(CLONE_NEWNET) == 0 || ::unshare(CLONE_NEWUSER | CLONE_NEWNET) == 0;
-    if (!is_apart || !set_loopback_up()) ::_exit(cannot_be_tried);
+    if (!is_apart) ::_exit(cannot_be_tried);
+    test::set_loopback(true);
     ::_exit(has_network() ? found : none);
   }
   int status = 0;
