@@ -19,6 +19,8 @@ namespace {
 
 constexpr std::string_view kUpdates = "_updates";
 constexpr std::int32_t kPartsKept = 64;
+// An update that comes so long after a map was not sent before it, whatever the publisher's clock says.
+constexpr std::chrono::seconds kLatest{5};
 // Of the writers that are not heard; beyond it they are forgotten.
 constexpr std::size_t kMaxOverLimit = 4096;
 
@@ -117,11 +119,14 @@ std::vector<std::string> MapListener::near_misses() const {
 }
 
 void MapListener::discover() {
-  for (const WriterEvent& event : take_events()) {
+  const std::vector<WriterEvent> events = take_events();
+  for (const WriterEvent& event : events) {
     // A writer that is alive may be told of again, when its QoS changed.
     go(event.writer.handle);
     if (event.alive) come(event.writer);
   }
+  if (!events.empty())
+    for (auto& [topic, robot] : robots_) take_over(robot);
   // Robots that went without ever sending a map make room.
   std::erase_if(robots_, [](const auto& entry) {
     const Robot& robot = entry.second;
@@ -172,6 +177,8 @@ bool MapListener::offer(const RemoteWriter& writer) {
   }
   writers_[writer.handle] = Known{writer, topic, is_parts};
   ++(is_parts ? robot->second.part_publishers : robot->second.heard.publishers);
+  if (!is_parts && !robot->second.followed && robot->second.heard.publisher == writer.guid)
+    robot->second.followed = writer.handle;  // it was away
   const TopicQos qos = reader_qos(writer, is_parts ? kPartsKept : 1);
   Readers& readers = is_parts ? robot->second.parts : robot->second.maps;
   if (!readers.contains(qos)) {
@@ -233,7 +240,8 @@ void MapListener::hear_maps(Robot& robot) {
       if (!loan.info().valid_data) continue;
       const Known* known = find(loan.info().publication_handle);
       if (known == nullptr || reader_qos(known->writer, 1) != qos) continue;
-      take_map(robot, known->writer, view_of(loan.as<nav_msgs_msg_dds__OccupancyGrid_>()));
+      take_map(robot, known->writer, view_of(loan.as<nav_msgs_msg_dds__OccupancyGrid_>()),
+               loan.info().source_timestamp);
     }
   }
 }
@@ -246,60 +254,118 @@ void MapListener::hear_parts(Robot& robot) {
       if (!loan.info().valid_data) continue;
       const Known* known = find(loan.info().publication_handle);
       if (known == nullptr || reader_qos(known->writer, kPartsKept) != qos) continue;
-      take_part(robot, known->writer, view_of(loan.as<map_msgs_msg_dds__OccupancyGridUpdate_>()));
+      take_part(robot, known->writer, view_of(loan.as<map_msgs_msg_dds__OccupancyGridUpdate_>()),
+                loan.info().source_timestamp);
     }
   }
 }
 
-void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapSample& message) {
+void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapSample& message,
+                           dds_time_t written) {
   HeardRobot& heard = robot.heard;
   if (robot.followed && *robot.followed != writer.handle) {
     if (heard.unheard++ == 0)
       callbacks_.warn(fmt::format("{}: has several publishers, and the first one is heard", heard.topic));
+    keep_aside(robot, writer, message, written);
     return;
   }
+  // After an outage a publisher sends again what it keeps. The updates since then are not to be undone.
+  if (heard.maps > 0 && heard.publisher == writer.guid && robot.map_written == written) return;
   try {
-    HeardMap map = read_map(message);
-    std::size_t together = map.grid.cells.size();
-    for (const auto& [topic, other] : robots_)
-      if (topic != heard.topic) together += other.heard.cells;
-    if (together > kMaxCellsTogether) throw RefusedMessage("all maps together have above 2^30 cells");
-    const TeamTime now = std::chrono::system_clock::now();
-    const bool restarted = heard.maps > 0 && (heard.publisher != writer.guid || heard.frame != map.frame);
-    const std::string frame = map.frame;
-    const Stamp stamp = map.stamp;
-    const std::size_t cells = map.grid.cells.size();
-    callbacks_.map(heard.name, std::move(map), restarted);  // may refuse it
-    robot.followed = writer.handle;
-    if (heard.maps == 0 || restarted) heard.heard_first = now;
-    heard.publisher = writer.guid;
-    heard.frame = frame;
-    heard.stamp = robot.map_stamp = stamp;
-    heard.cells = cells;
-    if (heard.maps++ == 0) ++news_;
+    use_map(robot, writer, read_map(message), written);
   } catch (const RefusedMessage& error) {
     refuse(robot, error.what());
   }
 }
 
-void MapListener::take_part(Robot& robot, const RemoteWriter& writer, const UpdateSample& message) {
+void MapListener::use_map(Robot& robot, const RemoteWriter& writer, HeardMap map, dds_time_t written) {
+  HeardRobot& heard = robot.heard;
+  const std::size_t cells = map.grid.cells.size();
+  if (!has_room_for(robot, cells)) {
+    for (auto& [topic, other] : robots_) other.others.clear();
+    if (!has_room_for(robot, cells)) throw RefusedMessage("all maps together have above 2^30 cells");
+  }
+  const TeamTime now = std::chrono::system_clock::now();
+  const bool restarted = heard.maps > 0 && (heard.publisher != writer.guid || heard.frame != map.frame);
+  const std::string frame = map.frame;
+  const Stamp stamp = map.stamp;
+  callbacks_.map(heard.name, std::move(map), restarted);  // may refuse it
+  robot.followed = writer.handle;
+  robot.map_written = written;
+  robot.map_taken = std::chrono::steady_clock::now();
+  if (heard.maps == 0 || restarted) heard.heard_first = now;
+  heard.publisher = writer.guid;
+  heard.frame = frame;
+  heard.stamp = stamp;
+  heard.cells = cells;
+  if (heard.maps++ == 0) ++news_;
+}
+
+bool MapListener::has_room_for(const Robot& robot, std::size_t cells) const {
+  std::size_t together = cells;
+  for (const auto& [topic, other] : robots_)
+    together += other.others.cells() + (&other == &robot ? 0 : other.heard.cells);
+  return together <= kMaxCellsTogether;
+}
+
+/// What is wrong or too much is not kept; it is counted as all that this publisher sends.
+void MapListener::keep_aside(Robot& robot, const RemoteWriter& writer, const MapSample& message,
+                             dds_time_t written) {
+  try {
+    HeardMap map = read_map(message);
+    if (has_room_for(robot, robot.heard.cells + map.grid.cells.size()))
+      robot.others.keep({writer, std::move(map), written, {}});
+  } catch (const RefusedMessage&) {
+  }
+}
+
+/// Where the publisher that was heard is gone, one of the others is heard from now on.
+void MapListener::take_over(Robot& robot) {
+  robot.others.keep_only([&](const RemoteWriter& writer) { return writers_.contains(writer.handle); });
+  while (!robot.followed) {
+    std::optional<Reserve::Kept> kept = robot.others.take_newest();
+    if (!kept) return;
+    try {
+      use_map(robot, kept->writer, std::move(kept->map), kept->written);
+      for (const HeardPart& part : kept->parts) use_part(robot, part);
+    } catch (const RefusedMessage& error) {
+      refuse(robot, error.what());
+    }
+  }
+}
+
+void MapListener::take_part(Robot& robot, const RemoteWriter& writer, const UpdateSample& message,
+                            dds_time_t written) {
   const Known* map = robot.followed ? find(*robot.followed) : nullptr;
   try {
     if (map == nullptr) throw RefusedMessage("an update without a map before it");
-    if (map->writer.participant != writer.participant)
-      throw RefusedMessage("an update by another program than the one that publishes the map");
     HeardPart part = read_update(message);
-    if (part.frame != robot.heard.frame)
-      throw RefusedMessage(
-          fmt::format("an update in the frame {}, of a map in {}", part.frame, robot.heard.frame));
-    if (part.stamp < robot.map_stamp) return;  // the map has it already
-    if (!callbacks_.part(robot.heard.name, part))
-      throw RefusedMessage("an update that reaches beyond its map");
-    robot.heard.stamp = part.stamp;
-    ++robot.heard.parts;
+    if (map->writer.participant != writer.participant) {
+      const bool has_room = has_room_for(robot, robot.heard.cells + part.grid.cells.size());
+      if (!has_room || !robot.others.keep(writer.participant, std::move(part), written))
+        throw RefusedMessage("an update by another program than the one that publishes the map");
+      ++robot.heard.unheard;
+      return;
+    }
+    // Both are written by one clock. The times in the messages are the user's, and may be 0, or go back.
+    const bool is_late = std::chrono::steady_clock::now() - robot.map_taken > kLatest;
+    if (written < robot.map_written && !is_late) {
+      ++robot.heard.outdated;  // the map has it already
+      return;
+    }
+    use_part(robot, part);
   } catch (const RefusedMessage& error) {
     refuse(robot, error.what());
   }
+}
+
+void MapListener::use_part(Robot& robot, const HeardPart& part) const {
+  HeardRobot& heard = robot.heard;
+  if (part.frame != heard.frame)
+    throw RefusedMessage(fmt::format("an update in the frame {}, of a map in {}", part.frame, heard.frame));
+  if (!callbacks_.part(heard.name, part)) throw RefusedMessage("an update that reaches beyond its map");
+  if (part.stamp != Stamp{}) heard.stamp = part.stamp;
+  ++heard.parts;
 }
 
 void MapListener::refuse(Robot& robot, const std::string& why) const {

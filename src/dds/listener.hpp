@@ -3,6 +3,7 @@
 
 #include <dds/dds.h>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -17,6 +18,7 @@
 #include "dds/entity.hpp"
 #include "dds/message.hpp"
 #include "dds/participant.hpp"
+#include "dds/reserve.hpp"
 #include "dds/selection.hpp"
 
 namespace gridmerge::internal {
@@ -37,6 +39,7 @@ struct HeardRobot {
   std::uint64_t parts = 0;     // likewise, of updates
   std::uint64_t refused = 0;   // maps and updates that were not
   std::string last_refusal;    // why
+  std::uint64_t outdated = 0;  // updates that their publisher wrote before its map
   std::size_t publishers = 0;  // of the map that are there now
   std::uint64_t unheard = 0;   // messages of publishers beside the one that is heard
   std::string publisher;       // RemoteWriter::guid of the one that is heard; empty before the first map
@@ -44,7 +47,8 @@ struct HeardRobot {
 };
 
 /// Hears the maps of robots and their updates. One publisher of a topic is heard: the first that sent a map.
-/// Another takes its place when it goes; what that one sends is the map of a robot that was started anew.
+/// When it goes, the one that sent a map last takes its place, with that map; it is the map of a robot that
+/// was started anew. A publisher that comes back after an outage goes on with its map.
 class MapListener {
  public:
   struct Callbacks {
@@ -88,10 +92,12 @@ class MapListener {
 
   struct Robot {
     HeardRobot heard;
-    Stamp map_stamp;  // of the newest whole map
+    dds_time_t map_written = 0;                       // of the newest whole map, by its publisher's clock
+    std::chrono::steady_clock::time_point map_taken;  // likewise
     Readers maps;
     Readers parts;
     std::optional<dds_instance_handle_t> followed;  // the writer whose maps count
+    Reserve others;
     std::size_t part_publishers = 0;
   };
 
@@ -108,8 +114,13 @@ class MapListener {
   void add_near(const RemoteWriter& writer, std::string why);
   void hear_maps(Robot& robot);
   void hear_parts(Robot& robot);
-  void take_map(Robot& robot, const RemoteWriter& writer, const MapSample& message);
-  void take_part(Robot& robot, const RemoteWriter& writer, const UpdateSample& message);
+  void take_map(Robot& robot, const RemoteWriter& writer, const MapSample& message, dds_time_t written);
+  void use_map(Robot& robot, const RemoteWriter& writer, HeardMap map, dds_time_t written);
+  void take_part(Robot& robot, const RemoteWriter& writer, const UpdateSample& message, dds_time_t written);
+  void use_part(Robot& robot, const HeardPart& part) const;
+  void take_over(Robot& robot);
+  bool has_room_for(const Robot& robot, std::size_t cells) const;
+  void keep_aside(Robot& robot, const RemoteWriter& writer, const MapSample& message, dds_time_t written);
   void refuse(Robot& robot, const std::string& why) const;
   const Known* find(dds_instance_handle_t handle);
   std::vector<WriterEvent> take_events();

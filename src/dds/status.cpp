@@ -61,6 +61,7 @@ Diagnosis diagnose_robot(const TeamAnswer& answer, const RobotStatus& status, co
   }
   values.emplace_back("maps", std::to_string(heard.maps));
   values.emplace_back("updates", std::to_string(heard.parts));
+  values.emplace_back("updates older than the map", std::to_string(heard.outdated));
   if (heard.maps > 0) {
     values.emplace_back(kPublisherKey, heard.publisher);
     values.emplace_back(kHeardFirstKey, format_time(heard.heard_first));

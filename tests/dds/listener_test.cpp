@@ -6,9 +6,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "dds/discovery.hpp"
 #include "dds/environment.hpp"
@@ -22,6 +24,7 @@ namespace {
 using test::comes_true;
 using test::MapTopic;
 using test::RawMap;
+using test::RawUpdate;
 
 /// A participant as a node has one, and a peer beside it.
 class Listening : public testing::Test {
@@ -30,6 +33,39 @@ class Listening : public testing::Test {
   const Participant participant{read_ros_environment(process_environment), 1 << 20};
   test::Peer peer{domain};
 };
+
+/// What a listener heard of the robot `a`, and hears on.
+class HeardByListener : public Listening {
+ protected:
+  /// Hears until something holds of the robot.
+  bool hears(const std::function<bool(const HeardRobot&)>& holds) {
+    return comes_true([&] {
+      listener.hear();
+      const std::vector<HeardRobot> robots = listener.robots();
+      return robots.size() == 1 && holds(robots.front());
+    });
+  }
+  bool hears_maps(std::uint64_t count) {
+    return hears([&](const HeardRobot& robot) { return robot.maps == count; });
+  }
+
+  std::vector<std::string> told;  // "map tb1/map", "new map tb1/map", "update of 3 cells"
+  std::vector<std::string> warnings;
+  const DdsEntity waitset{dds_create_waitset(participant.get()), "a wait set"};
+  MapListener listener{participant,
+                       waitset.get(),
+                       RobotSelection({"/*/map"}, {}),
+                       {[&](const std::string&, const HeardMap& map, bool is_new) {
+                          told.push_back((is_new ? "new map " : "map ") + map.frame);
+                        },
+                        [&](const std::string&, const HeardPart& part) {
+                          told.push_back("update of " + std::to_string(part.grid.cells.size()) + " cells");
+                          return true;
+                        },
+                        [&](const std::string& text) { warnings.push_back(text); }}};
+};
+
+using Told = std::vector<std::string>;
 
 /// The topics of which discovery tells until it tells of this one: one for each writer.
 std::multiset<std::string> told_until(Discovery& discovery, const std::string& last) {
@@ -83,6 +119,60 @@ TEST_F(Listening, HearsAMapOfAPublisherThatCameInBetween) {
   }));
   EXPECT_EQ(maps_of(1), 1u);
   EXPECT_EQ(listener.robots().at(1).publishers, 2u);
+}
+
+TEST_F(HeardByListener, APublisherThatTakesOverIsHeardWithWhatItSentBefore) {
+  test::Peer second(domain), third(domain);
+  std::optional<MapTopic> first = peer.maps("/a/map");
+  first->publish(RawMap{.frame = "first"});
+  ASSERT_TRUE(hears_maps(1));
+  // Once each, while the first one is heard.
+  std::optional<MapTopic> other = second.maps("/a/map");
+  other->publish(RawMap{.frame = "second"});
+  ASSERT_TRUE(hears([](const HeardRobot& robot) { return robot.unheard == 1; }));
+  std::optional<MapTopic> last = third.maps("/a/map");
+  last->publish(RawMap{.frame = "third"});
+  ASSERT_TRUE(hears([](const HeardRobot& robot) { return robot.unheard == 2; }));
+  third.publish_update("/a/map_updates", {.frame = "third"});
+  ASSERT_TRUE(hears([](const HeardRobot& robot) { return robot.unheard == 3; }));
+  EXPECT_EQ(told, (Told{"map first"}));
+  first.reset();
+  ASSERT_TRUE(hears_maps(2));
+  EXPECT_EQ(told, (Told{"map first", "new map third", "update of 1 cells"}));
+  last.reset();
+  ASSERT_TRUE(hears_maps(3));
+  EXPECT_EQ(told.back(), "new map second");
+  // Who is gone takes over nothing.
+  last = third.maps("/a/map");
+  last->publish(RawMap{.frame = "third"});
+  ASSERT_TRUE(hears([](const HeardRobot& robot) { return robot.unheard == 4; }));
+  last.reset();
+  other.reset();
+  ASSERT_TRUE(hears([](const HeardRobot& robot) { return robot.publishers == 0; }));
+  EXPECT_EQ(told.back(), "new map second");
+  EXPECT_EQ(warnings.size(), 1u);  // of several publishers
+}
+
+TEST_F(HeardByListener, UpdatesCountInTheOrderInWhichTheyWereWritten) {
+  const MapTopic a = peer.maps("/a/map");
+  a.publish(RawMap{.frame = "a", .seconds = 100});
+  ASSERT_TRUE(hears_maps(1));
+  // Whatever time they bear: none, as of some costmaps, or one of before the simulated time began anew.
+  for (const std::int32_t seconds : {0, 3, 101}) peer.publish_update("/a/map_updates", {"a", seconds});
+  ASSERT_TRUE(hears([](const HeardRobot& robot) { return robot.parts == 3; }));
+  // One that was written before the map is in it.
+  RawUpdate old{"a", 102};
+  old.written = dds_time() - DDS_SECS(60);
+  peer.publish_update("/a/map_updates", old);
+  ASSERT_TRUE(hears([](const HeardRobot& robot) { return robot.outdated == 1; }));
+  EXPECT_EQ(listener.robots().front().parts, 3u);
+  EXPECT_EQ(listener.robots().front().stamp.seconds, 101);
+  // A clock that was set back mutes no publisher for good.
+  EXPECT_TRUE(hears([&](const HeardRobot& robot) {
+    peer.publish_update("/a/map_updates", old);
+    return robot.parts > 3;
+  }));
+  EXPECT_EQ(warnings, Told{});
 }
 
 }  // namespace

@@ -4,10 +4,16 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdint>
+#include <cstdlib>
 #include <string>
+#include <thread>
 
 #include "../cli/program.hpp"
+#include "dds/environment.hpp"
+#include "dds/participant.hpp"
 #include "own_network.hpp"
+#include "peer.hpp"
 #include "running_node.hpp"
 
 namespace gridmerge::test {
@@ -42,6 +48,57 @@ TEST(Network, ThatIsGoneKeepsNoNodeFromEnding) {
     EXPECT_LT(end_without_network(options, outcome), std::chrono::seconds(30));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_NE(outcome.err.find("does not let go"), std::string::npos) << outcome.err;
+  });
+  if (!was_run) GTEST_SKIP() << "no network of its own can be made here";
+}
+
+/// Sets a variable of this process while it lives.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) { ::setenv(name, value, 1); }
+  ~Variable() { ::unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+};
+
+TEST(Network, ThatWasDownLeavesAMapWithItsUpdates) {
+  const std::uint32_t domain = own_domain();
+  const Variable lease("CYCLONEDDS_URI",
+                       "<CycloneDDS><Domain><Discovery><LeaseDuration>1s</LeaseDuration></Discovery>"
+                       "</Domain></CycloneDDS>");
+  const bool was_run = in_own_network([&] {
+    set_loopback(true);
+    RunningProgram program({"node"});
+    const internal::Participant network(internal::read_ros_environment(internal::process_environment),
+                                        1 << 20);
+    Peer peer(domain);
+    const MapTopic map = peer.maps("/a/map");
+    map.publish(RawMap{.frame = "a"});
+    const auto value = [&](const std::string& key) {
+      const auto& all = peer.diagnoses();
+      const auto found = all.find("gridmerge: a");
+      return found == all.end() ? std::string() : found->second.values.at(key);
+    };
+    ASSERT_TRUE(comes_true([&] { return value("maps") == "1" && value("publishers") == "1"; }));
+    peer.publish_update("/a/map_updates", {"a", 2});
+    ASSERT_TRUE(comes_true([&] { return value("updates") == "1"; }));
+
+    set_loopback(false);
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    set_loopback(true);
+    EXPECT_EQ(program.read_line().find("hears a map"), 0u);
+    EXPECT_EQ(program.read_line().find("a: first map"), 0u);
+    EXPECT_EQ(program.read_line(), "a: its publisher is gone; its map is kept");
+    ASSERT_TRUE(comes_true([&] { return value("publishers") == "1" && std::stoi(value("updates")) >= 2; }));
+    const int updates = std::stoi(value("updates"));  // the one that is kept came again
+    peer.publish_update("/a/map_updates", {"a", 3});
+    EXPECT_TRUE(comes_true([&] { return std::stoi(value("updates")) > updates; }));
+    // The map came again too, and did not undo them.
+    EXPECT_EQ(value("maps"), "1");
+    EXPECT_EQ(value("refused"), "0") << value("last refusal");
   });
   if (!was_run) GTEST_SKIP() << "no network of its own can be made here";
 }

@@ -66,7 +66,7 @@ void Peer::publish_update(const std::string& topic, const RawUpdate& update) {
   sample.width = update.width;
   sample.height = update.height;
   refer(sample.data, update.data);
-  require_dds(dds_write(writer.get(), &sample), "writing an update");
+  require_dds(dds_write_ts(writer.get(), &sample, update.written.value_or(dds_time())), "writing an update");
 }
 
 void Peer::publish_diagnosis(const std::map<std::string, std::string>& values) {

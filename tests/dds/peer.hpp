@@ -40,6 +40,7 @@ struct RawUpdate {
   std::uint32_t width = 1;
   std::uint32_t height = 1;
   std::vector<std::int8_t> data{0};
+  std::optional<dds_time_t> written = {};  // by the publisher's clock; now where it is not given
 };
 
 struct RawTransform {
