@@ -288,7 +288,6 @@ void MapListener::use_map(Robot& robot, const RemoteWriter& writer, HeardMap map
   const TeamTime now = std::chrono::system_clock::now();
   const bool restarted = heard.maps > 0 && (heard.publisher != writer.guid || heard.frame != map.frame);
   const std::string frame = map.frame;
-  const Stamp stamp = map.stamp;
   callbacks_.map(heard.name, std::move(map), restarted);  // may refuse it
   robot.followed = writer.handle;
   robot.map_written = written;
@@ -296,7 +295,6 @@ void MapListener::use_map(Robot& robot, const RemoteWriter& writer, HeardMap map
   if (heard.maps == 0 || restarted) heard.heard_first = now;
   heard.publisher = writer.guid;
   heard.frame = frame;
-  heard.stamp = stamp;
   heard.cells = cells;
   if (heard.maps++ == 0) ++news_;
 }
@@ -364,7 +362,6 @@ void MapListener::use_part(Robot& robot, const HeardPart& part) const {
   if (part.frame != heard.frame)
     throw RefusedMessage(fmt::format("an update in the frame {}, of a map in {}", part.frame, heard.frame));
   if (!callbacks_.part(heard.name, part)) throw RefusedMessage("an update that reaches beyond its map");
-  if (part.stamp != Stamp{}) heard.stamp = part.stamp;
   ++heard.parts;
 }
 

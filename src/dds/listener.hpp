@@ -33,7 +33,6 @@ struct HeardRobot {
   std::string name;
   std::string topic;
   std::string frame;           // of its newest map; empty before the first
-  Stamp stamp;                 // of what was taken last, a map or an update
   std::size_t cells = 0;       // of its newest map
   std::uint64_t maps = 0;      // that were taken
   std::uint64_t parts = 0;     // likewise, of updates

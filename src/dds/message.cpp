@@ -47,6 +47,13 @@ double read_resolution(float resolution) {
   return read;
 }
 
+Stamp read_stamp(const Stamp& stamp) {
+  constexpr std::uint32_t kNanosecondsPerSecond = 1'000'000'000;
+  if (stamp.nanoseconds >= kNanosecondsPerSecond)
+    throw RefusedMessage(fmt::format("a time with {} ns", stamp.nanoseconds));
+  return stamp;
+}
+
 /// A quaternion of four zeros is none, as in bags.
 double read_yaw(const std::array<double, 4>& orientation) {
   const auto& [x, y, z, w] = orientation;
@@ -70,7 +77,7 @@ std::string read_frame(std::string_view frame) {
 }
 
 HeardMap read_map(const MapSample& message) {
-  HeardMap heard{message.stamp, read_frame(message.frame), {}};
+  HeardMap heard{read_stamp(message.stamp), read_frame(message.frame), {}};
   // Sizes first: they are cheap to look at.
   const double resolution = read_resolution(message.resolution);
   const auto& [x, y, z] = message.position;
@@ -82,7 +89,7 @@ HeardMap read_map(const MapSample& message) {
 }
 
 HeardPart read_update(const UpdateSample& message) {
-  HeardPart part{message.stamp, read_frame(message.frame), 0, 0, {}};
+  HeardPart part{read_stamp(message.stamp), read_frame(message.frame), 0, 0, {}};
   if (message.x < 0 || message.y < 0)
     throw RefusedMessage(fmt::format("an update at ({}, {})", message.x, message.y));
   part.x = message.x;

@@ -76,8 +76,8 @@ inline constexpr std::size_t kLongestFrame = 255;
 /// The resolution is the shortest decimal number that the message's can mean, 0.05 say, as map files have it.
 /// Cells are free up to 19 percent and occupied from 65 on, as nav2 reads map files. Throws RefusedMessage
 /// for sizes that are 0, above kMaxGridCells or not those of the data; for a resolution that no map file may
-/// have; for an origin that is not finite, too far off or not level; for cells outside -1 to 100; and for a
-/// frame that TF could not name. O(cells).
+/// have; for an origin that is not finite, too far off or not level; for cells outside -1 to 100; for a
+/// frame that TF could not name; and for a time with a second or more of nanoseconds. O(cells).
 HeardMap read_map(const MapSample& message);
 
 /// Throws RefusedMessage likewise. Whether it fits its map is not asked. O(cells).

@@ -56,18 +56,19 @@ void Publisher::make_map_writer(std::size_t number) {
   maps_[number].writer = make_writer(participant_, kMapType, dds_topic(topic), {true, true, 1}, kMergedMark);
 }
 
-bool Publisher::publish_maps(const TeamAnswer& answer, const Stamp& stamp) {
+bool Publisher::publish_maps(const TeamAnswer& answer, const std::vector<Stamp>& times) {
   std::set<std::size_t> numbers;
   for (const TeamComponent& component : answer.components) numbers.insert(component.number);
   std::erase_if(maps_, [&](const auto& one) { return one.first != 1 && !numbers.contains(one.first); });
   if (!numbers.contains(1) && maps_.at(1).sent) make_map_writer(1);
   bool all = true;
-  for (const TeamComponent& component : answer.components) {
+  for (std::size_t i = 0; i < answer.components.size(); ++i) {
+    const TeamComponent& component = answer.components[i];
     const std::shared_ptr<const OccupancyGrid>& map = component.map;
     if (!maps_.contains(component.number)) make_map_writer(component.number);
     MapTopic& topic = maps_.at(component.number);
     if (!map || (topic.sent && (topic.sent == map || is_same(*topic.sent, *map)))) continue;
-    if (write_map(topic.writer, *map, component_frame(world_, component.number), stamp)) {
+    if (write_map(topic.writer, *map, component_frame(world_, component.number), times.at(i))) {
       topic.sent = map;
     } else {
       all = false;

@@ -15,6 +15,7 @@
 #include "dds/entity.hpp"
 #include "dds/environment.hpp"
 #include "dds/listener.hpp"
+#include "dds/map_times.hpp"
 #include "dds/message.hpp"
 #include "dds/names.hpp"
 #include "dds/participant.hpp"
@@ -166,10 +167,12 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   Player player_;
   MapListener listener_;
   AgeListener ages_;
+  MapTimes times_;
   std::map<std::string, TeamTime> told_ages_;  // to the team, of each robot
   std::atomic<bool> stopped_{false};
   Clock::time_point began_ = Clock::now();
   Clock::time_point news_at_ = began_;
+  Clock::time_point next_tick_ = began_;
   Clock::time_point next_diagnoses_ = began_;
   Clock::time_point diagnosed_ = began_ - kDiagnosesEvery;
   std::uint64_t news_ = 0;
@@ -187,7 +190,9 @@ MapListener::Callbacks RosNode::State::callbacks() {
             take_map(robot, std::move(map), restarted);
           },
           [this](const std::string& robot, const HeardPart& part) {
-            return team_.hear_part(robot, part.x, part.y, part.grid);
+            const bool fits = team_.hear_part(robot, part.x, part.y, part.grid);
+            if (fits) times_.hear_part(robot, part.stamp);
+            return fits;
           },
           options_.warn};
 }
@@ -199,6 +204,7 @@ void RosNode::State::take_map(const std::string& robot, HeardMap map, bool resta
   if (restarted) {
     // What was known of the old frame says nothing of the new one, whatever its name.
     team_.forget(robot);
+    times_.forget(robot);
     team_.set_known_pose(robot, std::nullopt);
     options_.tell(fmt::format("{}: started anew: {}", robot, content));
     if (known != options_.known_poses.end()) {
@@ -211,6 +217,7 @@ void RosNode::State::take_map(const std::string& robot, HeardMap map, bool resta
   publishers_.emplace(robot, 0);
   try {
     team_.hear(robot, std::move(map.grid));
+    times_.hear_map(robot, map.stamp);
   } catch (const std::invalid_argument& error) {
     throw RefusedMessage(error.what());
   }
@@ -261,8 +268,8 @@ void RosNode::State::hear_ages() {
 }
 
 void RosNode::State::wait() {
-  require_dds(dds_waitset_wait(waitset_.get(), nullptr, 0, std::chrono::nanoseconds(kTick).count()),
-              "waiting");
+  const std::chrono::nanoseconds longest = std::max(next_tick_ - Clock::now(), Clock::duration(0));
+  require_dds(dds_waitset_wait(waitset_.get(), nullptr, 0, longest.count()), "waiting");
   bool was_set = false;
   dds_take_guardcondition(wake_.get(), &was_set);
 }
@@ -294,13 +301,13 @@ void RosNode::State::publish() {
                                 answer->problem.empty() ? "" : "; " + answer->problem));
     if (options_.answered) options_.answered(answer);
   }
-  if (is_new || !all_sent_) {
-    Stamp newest;
-    for (const HeardRobot& robot : robots) newest = std::max(newest, robot.stamp);
-    all_sent_ = publisher_.publish_maps(*answer, newest);
-  }
+  if (is_new || !all_sent_) all_sent_ = publisher_.publish_maps(*answer, times_.newest_of(*answer));
   const TeamTransforms transforms = team_transforms(*answer, robots, options_.world_frame);
-  publisher_.publish_transforms(transforms.transforms);
+  const Clock::time_point now = Clock::now();
+  const bool is_tick = now >= next_tick_;
+  if (is_tick) next_tick_ = std::max(next_tick_ + kTick, now);
+  if (is_tick || options_.transforms == TransformTopic::tf_static)
+    publisher_.publish_transforms(transforms.transforms);
   if (transforms.withheld != withheld_) {
     for (const auto& [robot, why] : transforms.withheld)
       if (!withheld_.contains(robot))

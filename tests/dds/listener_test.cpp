@@ -166,7 +166,6 @@ TEST_F(HeardByListener, UpdatesCountInTheOrderInWhichTheyWereWritten) {
   peer.publish_update("/a/map_updates", old);
   ASSERT_TRUE(hears([](const HeardRobot& robot) { return robot.outdated == 1; }));
   EXPECT_EQ(listener.robots().front().parts, 3u);
-  EXPECT_EQ(listener.robots().front().stamp.seconds, 101);
   // A clock that was set back mutes no publisher for good.
   EXPECT_TRUE(hears([&](const HeardRobot& robot) {
     peer.publish_update("/a/map_updates", old);

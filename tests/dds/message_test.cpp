@@ -56,6 +56,19 @@ TEST_F(MessageTest, BecomesAMap) {
   validate(heard.grid);
 }
 
+TEST_F(MessageTest, HasATime) {
+  message.stamp = {0, 999'999'999};
+  EXPECT_EQ(refusal(), "taken");
+  message.stamp = {0, 1'000'000'000};
+  EXPECT_EQ(refusal(), "a time with 1000000000 ns");
+  UpdateSample update;
+  update.stamp = message.stamp;
+  update.frame = message.frame;
+  update.width = update.height = 1;
+  update.data = std::span(values).first(1);
+  EXPECT_THROW(read_update(update), RefusedMessage);
+}
+
 TEST_F(MessageTest, KeepsProbabilities) {
   values[1] = 19;
   values[2] = 65;

@@ -66,6 +66,45 @@ TEST_F(NodeTest, PublishesTransformsOnTf) {
   EXPECT_EQ(peer->transforms("/tf").at("a/map").parent, "site");
 }
 
+TEST_F(NodeTest, PublishesTransformsOnTfTenTimesPerSecondHoweverOftenItHears) {
+  options.transforms = TransformTopic::tf;
+  start();
+  merge_two();
+  ASSERT_TRUE(comes_true([&] { return peer->transforms("/tf").size() == 2; }));
+  const std::uint64_t before = peer->transform_messages();
+  RawUpdate update;
+  update.frame = "b/map";
+  const auto began = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - began < std::chrono::seconds(2)) {
+    update.data[0] = update.data[0] == 0 ? 100 : 0;
+    peer->publish_update("/b/map_updates", update);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    peer->transforms("/tf");
+  }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+  EXPECT_LE(static_cast<double>(peer->transform_messages() - before), 10 * took.count() + 2);
+  EXPECT_GT(peer->transform_messages(), before);
+}
+
+TEST_F(NodeTest, GivesAMergedMapTheTimeOfTheMapsInIt) {
+  start();
+  merge_two();
+  const MapTopic other = peer->maps("/other/map");
+  RawMap far = map_of(3, "other/map");  // another building, and another clock
+  far.seconds = 1'000'000;
+  other.publish(far);
+  ASSERT_TRUE(diagnosed("other", "state", "left_out")) << node->lines();
+  RawMap map = map_of(1, "b/map");
+  map.seconds = 8;
+  map.data[map.height / 2 * map.width + map.width / 2] = 100;
+  b->publish(map);
+  ASSERT_TRUE(comes_true([&] {
+    const std::optional<RawMap> merged = peer->take_map("/merged_map");
+    return merged && merged->seconds != 1;
+  })) << node->lines();
+  EXPECT_EQ(peer->take_map("/merged_map")->seconds, 8);
+}
+
 TEST_F(NodeTest, KeepsTheMapOfARobotThatIsGone) {
   start();
   merge_two();

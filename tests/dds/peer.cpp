@@ -111,6 +111,7 @@ std::optional<RawMap> Peer::take_map(const std::string& topic) {
 const std::map<std::string, RawTransform>& Peer::transforms(const std::string& topic) {
   take_all<tf2_msgs_msg_dds__TFMessage_>(reader_of(topic, kTransformType, {true, topic == "/tf_static", 10}),
                                          [&](const tf2_msgs_msg_dds__TFMessage_& sample) {
+                                           ++transform_messages_;
                                            for (std::uint32_t i = 0; i < sample.transforms._length; ++i) {
                                              const auto& one = sample.transforms._buffer[i];
                                              const auto& rotation = one.transform.rotation;

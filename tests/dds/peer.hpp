@@ -88,6 +88,8 @@ class Peer {
   std::optional<RawMap> take_map(const std::string& topic);
   /// All transforms that were received, by child.
   const std::map<std::string, RawTransform>& transforms(const std::string& topic = "/tf_static");
+  /// Messages of transforms that were received.
+  std::uint64_t transform_messages() const { return transform_messages_; }
   /// The newest diagnoses of each node, by name.
   const std::map<std::string, RawDiagnosis>& diagnoses();
 
@@ -102,6 +104,7 @@ class Peer {
   std::map<std::string, RawTransform> transforms_;
   std::map<std::string, RawDiagnosis> diagnoses_;
   std::uint64_t received_ = 0;
+  std::uint64_t transform_messages_ = 0;
 };
 
 }  // namespace gridmerge::test
