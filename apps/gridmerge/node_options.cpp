@@ -75,12 +75,11 @@ std::function<std::optional<PlayedMap>()> maps_of(const Bag& bag, const std::str
     }
   };
   const auto first = std::make_shared<std::optional<BagMap>>(read_next());
-  const std::int64_t begin = *first ? (*first)->time : 0;
-  return [read_next, first, begin]() -> std::optional<PlayedMap> {
+  return [read_next, first]() -> std::optional<PlayedMap> {
     std::optional<BagMap> map = *first ? std::exchange(*first, std::nullopt) : read_next();
     if (!map) return std::nullopt;
     constexpr double kNanosecond = 1e-9;
-    return PlayedMap{static_cast<double>(map->time - begin) * kNanosecond, std::move(map->frame_id),
+    return PlayedMap{static_cast<double>(map->time) * kNanosecond, std::move(map->frame_id),
                      std::move(map->grid)};
   };
 }
@@ -273,7 +272,7 @@ std::vector<PlayedTopic> played_topics(const NodeCommandOptions& options, const 
     for (const BagTopic& topic : bag.map_topics()) {
       const std::optional<std::string> on = played_on(node, file, topic.name);
       if (on) {
-        played.push_back({*on, file + "#" + topic.name, maps_of(bag, topic.name, console)});
+        played.push_back({*on, file + "#" + topic.name, maps_of(bag, topic.name, console), file});
       } else {
         others.push_back(topic.name);
       }

@@ -3,6 +3,7 @@
 
 #include <dds/dds.h>
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -18,9 +19,10 @@ namespace gridmerge::internal {
 /// the system's time.
 class Player {
  public:
-  /// Reads the first map of each topic. Throws what PlayedTopic::next does, std::runtime_error for a topic
-  /// without a map, and as require_dds().
-  Player(const Participant& participant, std::vector<PlayedTopic> topics, double rate);
+  /// Reads the first map of each topic. `warn` is called by play(). Throws what PlayedTopic::next does,
+  /// std::runtime_error for a topic without a map, and as require_dds().
+  Player(const Participant& participant, std::vector<PlayedTopic> topics, double rate,
+         std::function<void(const std::string&)> warn);
 
   /// Publishes what is due `seconds` after the beginning. Of several maps of a topic that are due, only the
   /// newest is published. What a subscriber holds back is tried again by the next call. Throws what
@@ -36,16 +38,25 @@ class Player {
   struct Topic {
     PlayedTopic played;
     DdsEntity writer;
-    std::string frame;
-    double begin = 0.0;             // PlayedMap::seconds of the first map
+    bool has_own_frames = false;    // in the topic's namespace
     std::optional<PlayedMap> due;   // is to be published now
     std::optional<PlayedMap> next;  // comes later
   };
 
-  void advance(Topic& topic, double seconds) const;
+  struct Recording {
+    std::vector<std::size_t> topics;
+    double begin = 0.0;  // PlayedMap::seconds of what is played at once
+    double last = 0.0;   // when the last map was due, since the beginning
+  };
+
+  /// The topic whose map comes next; null if there are no more.
+  Topic* next_of(const Recording& recording);
+  void advance(Recording& recording, double seconds);
 
   std::vector<Topic> topics_;
+  std::vector<Recording> recordings_;
   double rate_ = 1.0;
+  std::function<void(const std::string&)> warn_;
 };
 
 }  // namespace gridmerge::internal

@@ -118,7 +118,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
         waitset_(dds_create_waitset(participant_.get()), "a wait set"),
         wake_(dds_create_guardcondition(participant_.get()), "a guard condition"),
         publisher_(participant_, options_),
-        player_(participant_, options_.played, options_.play_rate),
+        player_(participant_, options_.played, options_.play_rate, options_.warn),
         listener_(participant_, waitset_.get(), selection_, callbacks()),
         ages_(participant_),
         team_(options_.team, [this](const std::shared_ptr<const TeamAnswer>&) { wake(); }) {

@@ -149,6 +149,51 @@ TEST_F(Play, FramesThatDifferAreKept) {
   EXPECT_TRUE(peer.transforms().contains("map") && peer.transforms().contains("site"));
 }
 
+/// Two maps of a robot, at these seconds.
+PlayedTopic two_maps(const std::string& topic, int robot, double first, double second,
+                     const std::string& recording, const std::string& second_frame = "map") {
+  const auto next = [=, step = 0]() mutable -> std::optional<PlayedMap> {
+    if (step++ == 2) return std::nullopt;
+    const OccupancyGrid map = Explorers().map(robot, Explorers::kSteps - 2 + step);
+    return step == 1 ? PlayedMap{first, "map", map} : PlayedMap{second, second_frame, map};
+  };
+  return {topic, recording + topic, next, recording};
+}
+
+TEST_F(Play, TopicsOfARecordingKeepTheirDistanceInTime) {
+  options.once = false;
+  options.play_rate = 1.0;
+  options.played = {two_maps("/a/map", 0, 1000.0, 1000.5, "team"),
+                    two_maps("/b/map", 1, 1002.0, 1003.0, "team"),
+                    two_maps("/c/map", 2, 5.0, 6.0, "another")};
+  const auto began = std::chrono::steady_clock::now();
+  RunningNode node(options);
+  ASSERT_TRUE(comes_true([&] { return node.said("a: first map") && node.said("c: first map"); }));
+  EXPECT_FALSE(node.said("b: first map")) << node.lines();
+  ASSERT_TRUE(comes_true([&] { return node.said("b: first map"); }));
+  EXPECT_GE(std::chrono::steady_clock::now() - began, std::chrono::seconds(2));
+}
+
+/// As where the recorder's clock was set while it recorded.
+TEST_F(Play, AGapOfDecadesIsPassedOver) {
+  options.play_rate = 1.0;
+  options.played = {two_maps("/a/map", 0, 1000.0, 1.7e9, "first"), two_maps("/b/map", 1, 0.0, 1.0, "second")};
+  RunningNode node(options);
+  EXPECT_EQ(node.end(), RosNode::End::merged) << node.lines();
+  EXPECT_TRUE(node.said("first/a/map: there is no map for 1699999000 s, which are passed over"))
+      << node.lines();
+}
+
+TEST_F(Play, EachMapHasItsOwnFrame) {
+  options.once = false;
+  options.played = {two_maps("/a/map", 0, 0.0, 1.0, "first", "odom"),
+                    two_maps("/b/map", 1, 0.0, 1.0, "second")};
+  RunningNode node(options);
+  Peer peer(domain);
+  EXPECT_TRUE(comes_true([&] { return peer.transforms().contains("a/odom"); })) << node.lines();
+  EXPECT_TRUE(node.said("a: started anew"));
+}
+
 TEST_F(Play, WhatCannotBePlayedIsSaid) {
   options.played = {a.played(), a.played()};
   EXPECT_EQ(complaint(), "recording of /a/map and recording of /a/map would both be played on /a/map");
@@ -179,6 +224,20 @@ TEST_F(Play, TheProgramPlaysBags) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("tb_1: placed at "), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("tb2: placed at "), std::string::npos) << outcome.out;
+}
+
+TEST_F(Play, TheProgramPlaysTheTopicsOfABagAsTheyWereRecorded) {
+  const internal::Participant network(internal::read_ros_environment(internal::process_environment), 1 << 20);
+  const TemporaryDirectory directory;
+  const OccupancyGrid map = explorers.map(0, 1);
+  const std::string bag = directory.write(
+      "team.mcap", mcap_file({record("/tb1/map", 1'700'000'000 * kSecond, map),
+                              record("/tb2/map", 1'700'000'060 * kSecond, explorers.map(1, 1))}));
+  RunningProgram program({"node", "--bag", bag});
+  program.read_line();
+  EXPECT_EQ(program.read_line().rfind("tb1: first map", 0), 0u);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_EQ(program.end_with(SIGTERM).out.find("tb2"), std::string::npos);
 }
 
 TEST_F(Play, TheProgramEndsAtASignalWhileItReads) {

@@ -24,7 +24,7 @@ enum class TransformTopic {
 
 /// A recorded map, at one moment.
 struct PlayedMap {
-  double seconds = 0.0;  ///< since any moment that is the same for all maps of the topic [s]
+  double seconds = 0.0;  ///< since any moment that is the same for all of a recording [s]
   std::string frame;     ///< the frame of the map
   OccupancyGrid grid;    ///< with the pose of its lower left corner in that frame
 };
@@ -36,6 +36,8 @@ struct PlayedTopic {
   /// The next map, by time; none after the last. What it throws ends RosNode::run(). While it runs there,
   /// throw_if_cancelled() throws once the node is stopped.
   std::function<std::optional<PlayedMap>()> next;
+  /// Topics of the same recording keep their distance in time; one without a name is a recording of its own.
+  std::string recording = {};
 };
 
 /// What a RosNode hears and publishes.
@@ -50,8 +52,10 @@ struct RosNodeOptions {
   std::string output = "/merged_map";  ///< topic of the largest merged map; further ones get `_2`, ...
   TransformTopic transforms = TransformTopic::tf_static;  ///< where the robots' transforms go
   TeamOptions team;                                       ///< how maps are merged
-  /// Recorded maps that are published, and heard as any others. The first maps of all topics come at once.
-  /// Where several have the same frame, each is put into the topic's namespace: "map" becomes "tb1/map".
+  /// Recorded maps that are published, and heard as any others. The first maps of all recordings come at
+  /// once. More than ten minutes without a map, as where a clock jumped, are passed over, with a warning.
+  /// Where several topics begin with the same frame, the frames of each are put into the topic's namespace:
+  /// "map" becomes "tb1/map".
   std::vector<PlayedTopic> played;
   double play_rate = 1.0;  ///< seconds of the recording per second, above 0; the same for all topics
   bool once = false;       ///< end when all maps that are heard are merged as far as they can be
