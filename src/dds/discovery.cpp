@@ -81,7 +81,8 @@ std::vector<WriterEvent> Discovery::take() {
       event.writer.participant = digits_of(endpoint.participant_key);
       const std::string user_data = user_data_of(endpoint.qos);
       const bool is_played = user_data.find(kPlayedMark) != std::string::npos;
-      if (!topic || (event.writer.participant == own_ && !is_played)) continue;
+      event.writer.is_own = event.writer.participant == own_;
+      if (!topic || (event.writer.is_own && !is_played)) continue;
       event.writer.guid = digits_of(endpoint.key);
       event.writer.topic = *topic;
       event.writer.type = endpoint.type_name;

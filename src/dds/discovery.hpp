@@ -21,6 +21,7 @@ struct RemoteWriter {
   TopicQos qos;               // what it offers; the depth is that of its own history
   bool in_partition = false;  // of DDS's, which ROS knows nothing of
   bool is_merged = false;     // a gridmerge node's
+  bool is_own = false;        // of this participant, which plays a recording
 };
 
 /// What became of writers since the last look, in the order in which it happened.

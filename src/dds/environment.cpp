@@ -2,9 +2,6 @@
 #include "dds/environment.hpp"
 
 #include <fmt/format.h>
-#include <ifaddrs.h>
-#include <net/if.h>
-#include <sys/socket.h>
 
 #include <algorithm>
 #include <charconv>
@@ -142,18 +139,6 @@ std::optional<std::string> process_environment(const std::string& name) {
   const char* value = std::getenv(name.c_str());
   if (value == nullptr) return std::nullopt;
   return std::string(value);
-}
-
-bool has_network() {
-  ifaddrs* all = nullptr;
-  if (::getifaddrs(&all) != 0) return false;
-  bool found = false;
-  for (const ifaddrs* one = all; one != nullptr; one = one->ifa_next) {
-    const bool is_up = (one->ifa_flags & IFF_UP) != 0 && (one->ifa_flags & IFF_LOOPBACK) == 0;
-    found = found || (is_up && one->ifa_addr != nullptr && one->ifa_addr->sa_family == AF_INET);
-  }
-  ::freeifaddrs(all);
-  return found;
 }
 
 bool is_enclave_name(const std::string& name) {

@@ -59,9 +59,6 @@ RosEnvironment read_ros_environment(const Environment& environment, const std::s
 /// before it.
 bool is_enclave_name(const std::string& name);
 
-/// Whether this machine has an interface, up and with an address, that is not a loopback one.
-bool has_network();
-
 /// Cyclone DDS's configuration that does the same: XML, and behind a comma CYCLONEDDS_URI. Messages above
 /// `largest_message` bytes are not taken in.
 std::string cyclone_configuration(const RosEnvironment& environment, std::uint64_t largest_message,

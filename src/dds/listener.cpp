@@ -68,13 +68,33 @@ UpdateSample view_of(const map_msgs_msg_dds__OccupancyGridUpdate_& sample) {
 
 MapListener::MapListener(const Participant& participant, dds_entity_t waitset, RobotSelection selection,
                          Callbacks callbacks)
-    : participant_(participant.get()),
-      waitset_(waitset),
-      selection_(std::move(selection)),
-      callbacks_(std::move(callbacks)),
-      discovery_(participant.get(), participant.guid()) {
-  dds_set_status_mask(discovery_.reader(), DDS_DATA_AVAILABLE_STATUS);
-  require_dds(dds_waitset_attach(waitset_, discovery_.reader(), 0), "waiting for publishers");
+    : waitset_(waitset), selection_(std::move(selection)), callbacks_(std::move(callbacks)) {
+  join(participant);
+}
+
+void MapListener::join(const Participant& participant) {
+  participant_ = participant.get();
+  discovery_.emplace(participant.get(), participant.guid());
+  dds_set_status_mask(discovery_->reader(), DDS_DATA_AVAILABLE_STATUS);
+  require_dds(dds_waitset_attach(waitset_, discovery_->reader(), 0), "waiting for publishers");
+}
+
+void MapListener::leave() {
+  for (auto& [topic, robot] : robots_) {
+    const auto followed = robot.followed ? writers_.find(*robot.followed) : writers_.end();
+    // What this program plays will have another number, and is no robot that starts anew.
+    if (followed != writers_.end() && followed->second.writer.is_own) robot.heard.publisher.clear();
+    robot.followed.reset();
+    robot.others.clear();
+    robot.maps.clear();
+    robot.parts.clear();
+    robot.heard.publishers = robot.part_publishers = 0;
+  }
+  writers_.clear();
+  over_limit_.clear();
+  near_.clear();
+  pending_.clear();
+  discovery_.reset();
 }
 
 void MapListener::hear() {
@@ -210,7 +230,7 @@ void MapListener::add_near(const RemoteWriter& writer, std::string why) {
 
 std::vector<WriterEvent> MapListener::take_events() {
   std::vector<WriterEvent> events = std::exchange(pending_, {});
-  std::vector<WriterEvent> more = discovery_.take();
+  std::vector<WriterEvent> more = discovery_->take();
   std::move(more.begin(), more.end(), std::back_inserter(events));
   return events;
 }
@@ -286,7 +306,8 @@ void MapListener::use_map(Robot& robot, const RemoteWriter& writer, HeardMap map
     if (!has_room_for(robot, cells)) throw RefusedMessage("all maps together have above 2^30 cells");
   }
   const TeamTime now = std::chrono::system_clock::now();
-  const bool restarted = heard.maps > 0 && (heard.publisher != writer.guid || heard.frame != map.frame);
+  const bool is_other = !heard.publisher.empty() && heard.publisher != writer.guid;
+  const bool restarted = heard.maps > 0 && (is_other || heard.frame != map.frame);
   const std::string frame = map.frame;
   callbacks_.map(heard.name, std::move(map), restarted);  // may refuse it
   robot.followed = writer.handle;

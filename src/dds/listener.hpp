@@ -41,7 +41,7 @@ struct HeardRobot {
   std::uint64_t outdated = 0;  // updates that their publisher wrote before its map
   std::size_t publishers = 0;  // of the map that are there now
   std::uint64_t unheard = 0;   // messages of publishers beside the one that is heard
-  std::string publisher;       // RemoteWriter::guid of the one that is heard; empty before the first map
+  std::string publisher;       // RemoteWriter::guid of the one that is heard; empty where it is not known
   TeamTime heard_first;        // since when this frame is heard, by the oldest account
 };
 
@@ -63,6 +63,11 @@ class MapListener {
   /// What wakes `waitset` is then dealt with by hear().
   MapListener(const Participant& participant, dds_entity_t waitset, RobotSelection selection,
               Callbacks callbacks);
+
+  /// Lets go of the participant, and keeps what was heard: before the participant goes.
+  void leave();
+  /// Goes on with another one.
+  void join(const Participant& participant);
 
   /// Takes what has come in since it was last called.
   void hear();
@@ -124,11 +129,11 @@ class MapListener {
   const Known* find(dds_instance_handle_t handle);
   std::vector<WriterEvent> take_events();
 
-  dds_entity_t participant_;
+  dds_entity_t participant_ = 0;
   dds_entity_t waitset_;
   RobotSelection selection_;
   Callbacks callbacks_;
-  Discovery discovery_;
+  std::optional<Discovery> discovery_;
   std::vector<WriterEvent> pending_;     // what discovery told, for the next discover()
   std::map<std::string, Robot> robots_;  // by topic of the map
   std::map<dds_instance_handle_t, Known> writers_;

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "dds/network.hpp"
 #include "gridmerge/export.hpp"
 
 // These two take the place of Cyclone DDS's own, which the dynamic linker finds later than the program's.
@@ -111,8 +112,9 @@ Participant::Participant(const RosEnvironment& environment, std::uint64_t larges
     : log_(std::make_unique<Log>()) {
   try {
     domain_ = DdsEntity(
-        dds_create_domain(environment.domain,
-                          cyclone_configuration(environment, largest_message, has_network()).c_str()),
+        dds_create_domain(
+            environment.domain,
+            cyclone_configuration(environment, largest_message, !network_addresses().empty()).c_str()),
         fmt::format("domain {}", environment.domain));
     const QosPtr qos = participant_qos(environment);
     participant_ = DdsEntity(dds_create_participant(environment.domain, qos.get(), nullptr),

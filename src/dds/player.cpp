@@ -49,10 +49,19 @@ Player::Player(const Participant& participant, std::vector<PlayedTopic> topics, 
     recording.topics.push_back(topics_.size() - 1);
     recording.begin = std::min(recording.begin, topic.next->seconds);
   }
+  for (Topic& topic : topics_) topic.has_own_frames = frames[topic.next->frame] > 1;
+  join(participant);
+}
+
+void Player::leave() {
+  for (Topic& topic : topics_) topic.writer = {};
+}
+
+void Player::join(const Participant& participant) {
   for (Topic& topic : topics_) {
-    topic.has_own_frames = frames[topic.next->frame] > 1;
     topic.writer =
         make_writer(participant.get(), kMapType, dds_topic(topic.played.topic), {true, true, 1}, kPlayedMark);
+    if (!topic.due) topic.due = std::exchange(topic.sent, std::nullopt);
   }
 }
 
@@ -88,7 +97,8 @@ void Player::play(double seconds) {
     if (!topic.due) continue;
     const std::string& frame = topic.due->frame;
     const std::string written = topic.has_own_frames ? own_frame(topic.played.topic, frame) : frame;
-    if (write_map(topic.writer, topic.due->grid, written, now())) topic.due.reset();
+    if (write_map(topic.writer, topic.due->grid, written, now()))
+      topic.sent = std::exchange(topic.due, std::nullopt);
   }
 }
 

@@ -24,6 +24,11 @@ class Player {
   Player(const Participant& participant, std::vector<PlayedTopic> topics, double rate,
          std::function<void(const std::string&)> warn);
 
+  /// Lets go of the participant, before it goes.
+  void leave();
+  /// Goes on with another one. The newest maps are published once more, to who comes late too.
+  void join(const Participant& participant);
+
   /// Publishes what is due `seconds` after the beginning. Of several maps of a topic that are due, only the
   /// newest is published. What a subscriber holds back is tried again by the next call. Throws what
   /// PlayedTopic::next does, and Cancelled.
@@ -39,6 +44,7 @@ class Player {
     PlayedTopic played;
     DdsEntity writer;
     bool has_own_frames = false;    // in the topic's namespace
+    std::optional<PlayedMap> sent;  // the last that was published
     std::optional<PlayedMap> due;   // is to be published now
     std::optional<PlayedMap> next;  // comes later
   };

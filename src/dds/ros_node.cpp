@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -17,7 +16,8 @@
 #include "dds/listener.hpp"
 #include "dds/map_times.hpp"
 #include "dds/message.hpp"
-#include "dds/names.hpp"
+#include "dds/network.hpp"
+#include "dds/options.hpp"
 #include "dds/participant.hpp"
 #include "dds/player.hpp"
 #include "dds/publisher.hpp"
@@ -38,75 +38,15 @@ using std::chrono::milliseconds;
 constexpr milliseconds kTick{100};                 // transforms on /tf, and looks at the clock
 constexpr milliseconds kDiagnosesEvery{1000};      // as ROS's own tools expect
 constexpr milliseconds kDiagnosesApart{250};       // however fast answers come
+constexpr milliseconds kNetworkEvery{1000};        // looks at the machine's addresses
 constexpr milliseconds kQuiet{3000};               // `once`: so long nothing new has come up
 constexpr milliseconds kFlush{5000};               // `once`: so long subscribers may take
 constexpr double kWaitOnce = 10.0;                 // `once`: for a first map, and for robots to come [s]
 constexpr double kRemindAfter = 10.0;              // without `wait`: then it is said what is waited for [s]
 constexpr std::uint64_t kHeadOfMessage = 1 << 16;  // beside the cells
-
-RosNodeOptions completed(RosNodeOptions options) {
-  validate(options);
-  options.world_frame = read_frame(options.world_frame);
-  const auto ignore = [](const std::string&) {};
-  if (!options.tell) options.tell = ignore;
-  if (!options.warn) options.warn = ignore;
-  if (!options.detail) options.detail = ignore;
-  return options;
-}
-
-RobotSelection select(const RosNodeOptions& options) {
-  RobotSelection selection(options.patterns, options.robots);
-  for (const auto& [robot, pose] : options.known_poses)
-    if (!selection.can_have(robot))
-      throw std::invalid_argument(
-          fmt::format("a pose is given for the robot {}, which is none of those heard", robot));
-  return selection;
-}
-
-void validate_played(const RosNodeOptions& options, const RobotSelection& selection) {
-  if (!(options.play_rate > 0.0) || !std::isfinite(options.play_rate))
-    throw std::invalid_argument("maps are played at a rate above 0");
-  std::map<std::string, std::string> sources;
-  for (const PlayedTopic& played : options.played) {
-    if (!is_topic_name(played.topic))
-      throw std::invalid_argument(
-          fmt::format("{}: '{}' is no whole name of a topic, as /tb1/map is", played.source, played.topic));
-    if (!selection.robot_of(played.topic))
-      throw std::invalid_argument(
-          fmt::format("{}: its topic {} is not {}", played.source, played.topic, selection.describe()));
-    const auto [other, is_new] = sources.emplace(played.topic, played.source);
-    if (!is_new)
-      throw std::invalid_argument(
-          fmt::format("{} and {} would both be played on {}", other->second, played.source, played.topic));
-  }
-}
+constexpr std::uint64_t kLargestMessage = kMaxGridCells + kHeadOfMessage;
 
 }  // namespace
-
-void validate(const RosNodeOptions& options) {
-  if (!is_topic_name(options.output))
-    throw std::invalid_argument(
-        fmt::format("'{}' is no whole name of a topic, as /merged_map is", options.output));
-  if (options.name.find('/') != std::string::npos || !is_topic_name("/" + options.name))
-    throw std::invalid_argument(
-        fmt::format("'{}' is no name of a node: letters, digits and '_'", options.name));
-  if (!is_enclave_name(options.enclave))
-    throw std::invalid_argument(
-        fmt::format("'{}' is no enclave's name, as /robots/merger is", options.enclave));
-  try {
-    read_frame(options.world_frame);
-  } catch (const RefusedMessage& error) {
-    throw std::invalid_argument(fmt::format("the world's frame '{}': {}", options.world_frame, error.what()));
-  }
-  if (options.wait && !(*options.wait >= 0.0)) throw std::invalid_argument("a time to wait is 0 s or more");
-  validate(options.team);
-  for (const auto& [robot, pose] : options.known_poses) validate(pose);
-  validate_played(options, select(options));
-}
-
-bool is_heard(const RosNodeOptions& options, const std::string& topic) {
-  return RobotSelection(options.patterns, options.robots).robot_of(topic).has_value();
-}
 
 class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as public as RosNode
  public:
@@ -114,13 +54,14 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
       : options_(completed(std::move(options))),
         selection_(select(options_)),
         environment_(read_ros_environment(process_environment, options_.enclave)),
-        participant_(environment_, kMaxGridCells + kHeadOfMessage),
-        waitset_(dds_create_waitset(participant_.get()), "a wait set"),
-        wake_(dds_create_guardcondition(participant_.get()), "a guard condition"),
-        publisher_(participant_, options_),
-        player_(participant_, options_.played, options_.play_rate, options_.warn),
-        listener_(participant_, waitset_.get(), selection_, callbacks()),
-        ages_(participant_),
+        network_(network_addresses()),
+        participant_(std::in_place, environment_, kLargestMessage),
+        waitset_(dds_create_waitset(DDS_CYCLONEDDS_HANDLE), "a wait set"),
+        wake_(dds_create_guardcondition(DDS_CYCLONEDDS_HANDLE), "a guard condition"),
+        publisher_(std::in_place, *participant_, options_),
+        player_(*participant_, options_.played, options_.play_rate, options_.warn),
+        listener_(*participant_, waitset_.get(), selection_, callbacks()),
+        ages_(std::in_place, *participant_),
         team_(options_.team, [this](const std::shared_ptr<const TeamAnswer>&) { wake(); }) {
     require_dds(dds_waitset_attach(waitset_.get(), wake_.get(), 0), "waiting for answers");
     for (const auto& [robot, pose] : options_.known_poses) team_.set_known_pose(robot, pose);
@@ -139,6 +80,8 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
  private:
   MapListener::Callbacks callbacks();
   void take_map(const std::string& robot, HeardMap map, bool restarted);
+  void look_at_network();
+  void begin_anew();
   bool play();
   void hear_ages();
   void wait();
@@ -160,13 +103,14 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   RosNodeOptions options_;
   RobotSelection selection_;
   RosEnvironment environment_;
-  Participant participant_;
-  DdsEntity waitset_;
+  NetworkWatch network_;
+  std::optional<Participant> participant_;  // as the others, made anew for another network
+  DdsEntity waitset_;                       // these two stay: the team's thread wakes the node
   DdsEntity wake_;
-  Publisher publisher_;
+  std::optional<Publisher> publisher_;
   Player player_;
   MapListener listener_;
-  AgeListener ages_;
+  std::optional<AgeListener> ages_;
   MapTimes times_;
   std::map<std::string, TeamTime> told_ages_;  // to the team, of each robot
   std::atomic<bool> stopped_{false};
@@ -175,6 +119,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   Clock::time_point next_tick_ = began_;
   Clock::time_point next_diagnoses_ = began_;
   Clock::time_point diagnosed_ = began_ - kDiagnosesEvery;
+  Clock::time_point next_look_ = began_;
   std::uint64_t news_ = 0;
   std::uint64_t told_answer_ = 0;
   std::map<std::string, std::size_t> publishers_;  // of each robot, at the last look
@@ -231,6 +176,7 @@ RosNode::End RosNode::State::run() {
       environment_.enclave_files.empty() ? "" : fmt::format(", secure as {}", environment_.enclave),
       options_.output));
   while (!stopped_) {
+    look_at_network();
     if (!play()) break;
     wait();
     if (!enough_) listener_.hear();
@@ -239,11 +185,41 @@ RosNode::End RosNode::State::run() {
     publish();
     check_wait();
     if (const std::optional<End> end = check_once()) {
-      publisher_.flush(kFlush);
+      publisher_->flush(kFlush);
       return *end;
     }
   }
   return End::stopped;
+}
+
+void RosNode::State::look_at_network() {
+  if (Clock::now() < next_look_) return;
+  next_look_ = Clock::now() + kNetworkEvery;
+  switch (network_.look(network_addresses())) {
+    case NetworkWatch::Change::none:
+      return;
+    case NetworkWatch::Change::gone:
+      return options_.warn("the network is gone: other machines are not heard until it is back");
+    case NetworkWatch::Change::replaced:
+      options_.warn("this machine has other addresses in the network: the node joins it anew");
+      return begin_anew();
+  }
+}
+
+/// Cyclone DDS never looks again at the network that it began with. What was heard is kept.
+void RosNode::State::begin_anew() {
+  ages_.reset();
+  listener_.leave();
+  player_.leave();
+  publisher_.reset();
+  participant_.reset();
+  participant_.emplace(environment_, kLargestMessage);
+  publisher_.emplace(*participant_, options_);
+  player_.join(*participant_);
+  listener_.join(*participant_);
+  ages_.emplace(*participant_);
+  all_sent_ = false;
+  for (auto& [robot, publishers] : publishers_) publishers = 0;
 }
 
 /// False where it was stopped meanwhile: a recording may be long, or made to be.
@@ -257,7 +233,7 @@ bool RosNode::State::play() {
 }
 
 void RosNode::State::hear_ages() {
-  for (const RobotAge& age : ages_.take()) listener_.hear_age(age);
+  for (const RobotAge& age : ages_->take()) listener_.hear_age(age);
   for (const HeardRobot& robot : listener_.robots()) {
     if (robot.maps == 0) continue;
     TeamTime& told = told_ages_[robot.name];
@@ -275,7 +251,7 @@ void RosNode::State::wait() {
 }
 
 void RosNode::State::tell_changes() {
-  for (const std::string& line : participant_.take_log()) options_.warn("DDS: " + line);
+  for (const std::string& line : participant_->take_log()) options_.warn("DDS: " + line);
   if (listener_.news() != news_) {
     news_ = listener_.news();
     news_at_ = Clock::now();
@@ -301,13 +277,13 @@ void RosNode::State::publish() {
                                 answer->problem.empty() ? "" : "; " + answer->problem));
     if (options_.answered) options_.answered(answer);
   }
-  if (is_new || !all_sent_) all_sent_ = publisher_.publish_maps(*answer, times_.newest_of(*answer));
+  if (is_new || !all_sent_) all_sent_ = publisher_->publish_maps(*answer, times_.newest_of(*answer));
   const TeamTransforms transforms = team_transforms(*answer, robots, options_.world_frame);
   const Clock::time_point now = Clock::now();
   const bool is_tick = now >= next_tick_;
   if (is_tick) next_tick_ = std::max(next_tick_ + kTick, now);
   if (is_tick || options_.transforms == TransformTopic::tf_static)
-    publisher_.publish_transforms(transforms.transforms);
+    publisher_->publish_transforms(transforms.transforms);
   if (transforms.withheld != withheld_) {
     for (const auto& [robot, why] : transforms.withheld)
       if (!withheld_.contains(robot))
@@ -318,8 +294,8 @@ void RosNode::State::publish() {
   if (is_new) next_diagnoses_ = std::min(next_diagnoses_, diagnosed_ + kDiagnosesApart);
   const bool is_last = enough_ && team_.is_at_rest();  // `once`: who listens is told how it ended
   if (Clock::now() >= next_diagnoses_ || is_last) {
-    publisher_.publish_diagnoses(diagnose(
-        *answer, robots, transforms, {options_.name, participant_.undecodable(), listener_.over_limit()}));
+    publisher_->publish_diagnoses(diagnose(
+        *answer, robots, transforms, {options_.name, participant_->undecodable(), listener_.over_limit()}));
     diagnosed_ = Clock::now();
     next_diagnoses_ = diagnosed_ + kDiagnosesEvery;
   }
@@ -327,8 +303,8 @@ void RosNode::State::publish() {
 
 void RosNode::State::publish_node() {
   std::vector<dds_guid_t> readers = listener_.readers();
-  readers.push_back(guid_of(ages_.reader()));
-  publisher_.publish_node(readers, player_.writers());
+  readers.push_back(guid_of(ages_->reader()));
+  publisher_->publish_node(readers, player_.writers());
 }
 
 void RosNode::State::check_wait() {

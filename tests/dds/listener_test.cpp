@@ -10,11 +10,13 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dds/discovery.hpp"
 #include "dds/environment.hpp"
 #include "dds/participant.hpp"
+#include "dds/player.hpp"
 #include "peer.hpp"
 #include "running_node.hpp"
 
@@ -172,6 +174,46 @@ TEST_F(HeardByListener, UpdatesCountInTheOrderInWhichTheyWereWritten) {
     return robot.parts > 3;
   }));
   EXPECT_EQ(warnings, Told{});
+}
+
+TEST(AnotherParticipant, TakesOverWhatIsHeardAndPlayed) {
+  test::own_domain();
+  const RosEnvironment environment = read_ros_environment(process_environment);
+  std::optional<Participant> participant(std::in_place, environment, 1 << 20);
+  const DdsEntity waitset(dds_create_waitset(DDS_CYCLONEDDS_HANDLE), "a wait set");
+  const auto next = [is_first = true]() mutable -> std::optional<PlayedMap> {
+    if (!std::exchange(is_first, false)) return std::nullopt;
+    PlayedMap map{0.0, "a", {}};
+    map.grid.width = map.grid.height = 1;
+    map.grid.cells = {Cell::free};
+    return map;
+  };
+  const auto fail = [](const std::string& text) { ADD_FAILURE() << text; };
+  Player player(*participant, {{"/a/map", "a recording", next}}, 1.0, fail);
+  Told told;
+  const auto take = [&](const std::string&, const HeardMap& map, bool is_new) {
+    told.push_back((is_new ? "new map " : "map ") + map.frame);
+  };
+  MapListener listener(*participant, waitset.get(), RobotSelection({"/*/map"}, {}),
+                       {take, [](const std::string&, const HeardPart&) { return true; }, fail});
+  const auto hears = [&](std::size_t count) {
+    return comes_true([&] {
+      player.play(0.0);
+      listener.hear();
+      return told.size() == count;
+    });
+  };
+  ASSERT_TRUE(hears(1));
+  listener.leave();
+  player.leave();
+  participant.reset();
+  EXPECT_EQ(listener.robots().front().publishers, 0u);
+  participant.emplace(environment, 1 << 20);
+  player.join(*participant);
+  listener.join(*participant);
+  ASSERT_TRUE(hears(2));
+  EXPECT_EQ(told, (Told{"map a", "map a"}));  // the robot did not start anew
+  EXPECT_EQ(listener.robots().front().maps, 2u);
 }
 
 }  // namespace

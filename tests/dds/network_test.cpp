@@ -2,10 +2,14 @@
 // What becomes of the node when its network changes. The network is one of the test's own.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <initializer_list>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -55,13 +59,16 @@ TEST(Network, ThatIsGoneKeepsNoNodeFromEnding) {
 /// Sets a variable of this process while it lives.
 class Variable {
  public:
-  Variable(const char* name, const char* value) : name_(name) { ::setenv(name, value, 1); }
-  ~Variable() { ::unsetenv(name_); }
+  Variable(const char* name, const char* value) : name_(name), before_(internal::process_environment(name)) {
+    ::setenv(name, value, 1);
+  }
+  ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
   Variable(const Variable&) = delete;
   Variable& operator=(const Variable&) = delete;
 
  private:
   const char* name_;
+  std::optional<std::string> before_;
 };
 
 TEST(Network, ThatWasDownLeavesAMapWithItsUpdates) {
@@ -101,6 +108,47 @@ TEST(Network, ThatWasDownLeavesAMapWithItsUpdates) {
     EXPECT_EQ(value("refused"), "0") << value("last refusal");
   });
   if (!was_run) GTEST_SKIP() << "no network of its own can be made here";
+}
+
+/// Whether the commands could be run, one after the other, in the thread's network.
+bool can(std::initializer_list<const char*> commands) {
+  return std::all_of(commands.begin(), commands.end(), [](const std::string& command) {
+    return std::system((command + " > /dev/null 2>&1").c_str()) == 0;  // NOLINT(cert-env33-c)
+  });
+}
+
+/// Publishes this robot's map until the node says that it heard it.
+void expect_heard(RunningProgram& program, std::uint32_t domain, const std::string& robot) {
+  const internal::Participant network(internal::read_ros_environment(internal::process_environment), 1 << 20);
+  const Peer peer(domain);
+  const MapTopic map = peer.maps("/" + robot + "/map");
+  map.publish(RawMap{.frame = robot});
+  EXPECT_EQ(program.read_line().rfind(robot + ": first map", 0), 0u);
+}
+
+TEST(Network, IsJoinedWheneverItComesAndChanges) {
+  const std::uint32_t domain = own_domain();
+  const Variable everywhere("ROS_LOCALHOST_ONLY", "0");
+  bool has_interfaces = false;
+  const bool was_run = in_own_network([&] {
+    set_loopback(true);
+    RunningProgram program({"node"});
+    EXPECT_NE(program.read_line(), "");
+    has_interfaces = can({"ip link add gm0 type veth peer name gm1", "ip address add 10.99.0.1/24 dev gm0",
+                          "ip link set gm0 up", "ip link set gm1 up"});
+    if (!has_interfaces) return;
+    expect_heard(program, domain, "a");
+    ASSERT_TRUE(can({"ip address del 10.99.0.1/24 dev gm0", "ip address add 10.99.0.9/24 dev gm0"}));
+    program.read_line();  // the publisher is gone
+    expect_heard(program, domain, "b");
+    const Outcome outcome = program.end_with(SIGTERM);
+    EXPECT_EQ(outcome.exit_code, 0);
+    const std::string said = "the node joins it anew";
+    const std::size_t first = outcome.err.find(said);
+    ASSERT_NE(first, std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(said, first + 1), std::string::npos) << outcome.err;
+  });
+  if (!was_run || !has_interfaces) GTEST_SKIP() << "no network of its own can be made here";
 }
 
 }  // namespace

@@ -98,7 +98,8 @@ class GRIDMERGE_EXPORT RosNode {
   RosNode& operator=(const RosNode&) = delete;
 
   /// Hears and publishes until it ends. Throws std::runtime_error when no map came in within `wait`, saying
-  /// which topics are there that come near, and with `once` when maps cannot be merged, saying why.
+  /// which topics are there that come near; with `once` when maps cannot be merged, saying why; and when the
+  /// network changes and does not let the node in again.
   End run();
 
   /// Ends run() soon, from any thread, also before it begins.
