@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <mutex>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "dds/line_limiter.hpp"
 #include "dds/network.hpp"
 #include "gridmerge/export.hpp"
 
@@ -80,7 +82,7 @@ class Participant::Log {
   Log(const Log&) = delete;
   Log& operator=(const Log&) = delete;
 
-  std::vector<std::string> take() {
+  std::vector<LogLine> take() {
     const std::lock_guard lock(mutex_);
     return std::exchange(lines_, {});
   }
@@ -99,12 +101,23 @@ class Participant::Log {
       ++undecodable_;
       return;
     }
+    // Of these too, so that they are put together here: the node looks only now and then.
+    LogLine line{{}, std::string(text)};
+    line.kind = kind_of_line(line.text);
     const std::lock_guard lock(mutex_);
-    if (lines_.size() < kMaxLogLines) lines_.emplace_back(text);
+    const auto like_it = std::find_if(lines_.begin(), lines_.end(),
+                                      [&](const LogLine& other) { return other.kind == line.kind; });
+    if (like_it != lines_.end()) {
+      ++like_it->count;
+    } else if (lines_.size() < kMaxLogLines) {
+      lines_.push_back(std::move(line));
+    } else {
+      ++lines_.back().count;
+    }
   }
 
   std::mutex mutex_;
-  std::vector<std::string> lines_;
+  std::vector<LogLine> lines_;
   std::atomic<std::uint64_t> undecodable_{0};
 };
 
@@ -122,7 +135,7 @@ Participant::Participant(const RosEnvironment& environment, std::uint64_t larges
     require_dds(dds_get_guid(participant_.get(), &guid_), "the participant's number");
   } catch (const std::runtime_error& error) {
     std::string message = error.what();
-    for (const std::string& line : log_->take()) message += "; " + line;
+    for (const LogLine& line : log_->take()) message += "; " + line.text;
     throw std::runtime_error(message);
   }
 }
@@ -132,7 +145,7 @@ Participant::~Participant() {
   domain_.reset();
 }
 
-std::vector<std::string> Participant::take_log() {
+std::vector<Participant::LogLine> Participant::take_log() {
   return log_->take();
 }
 

@@ -36,8 +36,15 @@ class Participant {
   dds_entity_t get() const { return participant_.get(); }
   const dds_guid_t& guid() const { return guid_; }
 
-  /// What Cyclone DDS warned of since it was last asked, at most kMaxLogLines of it.
-  std::vector<std::string> take_log();
+  /// What Cyclone DDS warned of, and how often: `text` is the first of its kind.
+  struct LogLine {
+    std::string kind;  // kind_of_line()
+    std::string text;
+    std::uint64_t count = 1;
+  };
+
+  /// What it warned of since it was last asked, at most kMaxLogLines kinds of it.
+  std::vector<LogLine> take_log();
   /// Messages of peers that were no such messages at all.
   std::uint64_t undecodable() const;
 

@@ -13,6 +13,7 @@
 #include "dds/ages.hpp"
 #include "dds/entity.hpp"
 #include "dds/environment.hpp"
+#include "dds/line_limiter.hpp"
 #include "dds/listener.hpp"
 #include "dds/map_times.hpp"
 #include "dds/message.hpp"
@@ -43,6 +44,7 @@ constexpr milliseconds kQuiet{3000};               // `once`: so long nothing ne
 constexpr milliseconds kFlush{5000};               // `once`: so long subscribers may take
 constexpr double kWaitOnce = 10.0;                 // `once`: for a first map, and for robots to come [s]
 constexpr double kRemindAfter = 10.0;              // without `wait`: then it is said what is waited for [s]
+constexpr std::size_t kEventsOfAKind = 3;          // of one robot, that are told at once
 constexpr std::uint64_t kHeadOfMessage = 1 << 16;  // beside the cells
 constexpr std::uint64_t kLargestMessage = kMaxGridCells + kHeadOfMessage;
 
@@ -83,6 +85,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   void look_at_network();
   void begin_anew();
   bool play();
+  void count_restart(const std::string& robot);
   void hear_ages();
   void wait();
   void tell_changes();
@@ -124,6 +127,10 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   std::uint64_t told_answer_ = 0;
   std::map<std::string, std::size_t> publishers_;  // of each robot, at the last look
   std::map<std::string, std::string> withheld_;    // as it was told last
+  std::map<std::string, Restarts> restarts_;
+  std::uint64_t dds_warnings_ = 0;
+  LineLimiter told_{kEventsOfAKind, options_.tell};
+  LineLimiter warned_{1, options_.warn};
   bool all_sent_ = true;
   bool reminded_ = false;
   bool enough_ = false;  // `once`: what is heard is what is merged
@@ -151,7 +158,8 @@ void RosNode::State::take_map(const std::string& robot, HeardMap map, bool resta
     team_.forget(robot);
     times_.forget(robot);
     team_.set_known_pose(robot, std::nullopt);
-    options_.tell(fmt::format("{}: started anew: {}", robot, content));
+    told_.write("anew " + robot, fmt::format("{}: started anew: {}", robot, content), Clock::now());
+    count_restart(robot);
     if (known != options_.known_poses.end()) {
       options_.warn(fmt::format("{}: started anew, so that the pose given for it holds no longer", robot));
       options_.known_poses.erase(known);
@@ -166,6 +174,18 @@ void RosNode::State::take_map(const std::string& robot, HeardMap map, bool resta
   } catch (const std::invalid_argument& error) {
     throw RefusedMessage(error.what());
   }
+}
+
+void RosNode::State::count_restart(const std::string& robot) {
+  Restarts& restarts = restarts_[robot];
+  const Clock::time_point now = Clock::now();
+  restarts.count(now);
+  if (!restarts.are_many(now)) return;
+  const std::vector<HeardRobot> robots = listener_.robots();
+  const auto heard =
+      std::find_if(robots.begin(), robots.end(), [&](const HeardRobot& one) { return one.name == robot; });
+  if (heard != robots.end())
+    warned_.write("many restarts " + robot, robot + ": " + say_many_restarts(heard->topic), now);
 }
 
 RosNode::End RosNode::State::run() {
@@ -199,9 +219,12 @@ void RosNode::State::look_at_network() {
     case NetworkWatch::Change::none:
       return;
     case NetworkWatch::Change::gone:
-      return options_.warn("the network is gone: other machines are not heard until it is back");
+      return warned_.write("network is gone",
+                           "the network is gone: other machines are not heard until it is back",
+                           Clock::now());
     case NetworkWatch::Change::replaced:
-      options_.warn("this machine has other addresses in the network: the node joins it anew");
+      told_.write("network is replaced",
+                  "this machine has other addresses in the network: the node joins it anew", Clock::now());
       return begin_anew();
   }
 }
@@ -251,16 +274,22 @@ void RosNode::State::wait() {
 }
 
 void RosNode::State::tell_changes() {
-  for (const std::string& line : participant_->take_log()) options_.warn("DDS: " + line);
+  const Clock::time_point now = Clock::now();
+  for (const Participant::LogLine& line : participant_->take_log()) {
+    warned_.write("DDS " + line.kind, "DDS: " + line.text, now, line.count);
+    dds_warnings_ += line.count;
+  }
+  told_.tell_more(now);
+  warned_.tell_more(now);
   if (listener_.news() != news_) {
     news_ = listener_.news();
-    news_at_ = Clock::now();
+    news_at_ = now;
   }
   for (const HeardRobot& robot : listener_.robots()) {
     const auto before = publishers_.find(robot.name);
     if (before == publishers_.end()) continue;
     if (before->second > 0 && robot.publishers == 0)
-      options_.tell(fmt::format("{}: its publisher is gone; its map is kept", robot.name));
+      told_.write("gone " + robot.name, robot.name + ": its publisher is gone; its map is kept", now);
     before->second = robot.publishers;
   }
 }
@@ -271,7 +300,11 @@ void RosNode::State::publish() {
   const bool is_new = answer->number != told_answer_;
   if (is_new) {
     told_answer_ = answer->number;
-    for (const TeamEvent& event : team_.take_events()) options_.tell(event.text);
+    for (const TeamEvent& event : team_.take_events()) {
+      told_.write(fmt::format("event {} {}", static_cast<int>(event.kind), event.robot), event.text,
+                  Clock::now());
+      if (event.kind == TeamEvent::Kind::restarted) count_restart(event.robot);
+    }
     options_.detail(fmt::format("answer {}: {:.3f} s, {} merged maps of {} robots{}", answer->number,
                                 answer->seconds, answer->components.size(), answer->robots.size(),
                                 answer->problem.empty() ? "" : "; " + answer->problem));
@@ -287,7 +320,8 @@ void RosNode::State::publish() {
   if (transforms.withheld != withheld_) {
     for (const auto& [robot, why] : transforms.withheld)
       if (!withheld_.contains(robot))
-        options_.warn(fmt::format("{}: no transform is published: {}", robot, why));
+        warned_.write("no transform " + robot, fmt::format("{}: no transform is published: {}", robot, why),
+                      now);
     withheld_ = transforms.withheld;
   }
   publish_node();
@@ -295,7 +329,8 @@ void RosNode::State::publish() {
   const bool is_last = enough_ && team_.is_at_rest();  // `once`: who listens is told how it ended
   if (Clock::now() >= next_diagnoses_ || is_last) {
     publisher_->publish_diagnoses(diagnose(
-        *answer, robots, transforms, {options_.name, participant_->undecodable(), listener_.over_limit()}));
+        *answer, robots, transforms,
+        {options_.name, participant_->undecodable(), listener_.over_limit(), dds_warnings_, restarts_}));
     diagnosed_ = Clock::now();
     next_diagnoses_ = diagnosed_ + kDiagnosesEvery;
   }

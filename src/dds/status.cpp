@@ -40,7 +40,7 @@ std::string decimal(double value) {
 }
 
 Diagnosis diagnose_robot(const TeamAnswer& answer, const RobotStatus& status, const HeardRobot& heard,
-                         const TeamTransforms& transforms) {
+                         const TeamTransforms& transforms, const Restarts& restarts) {
   Diagnosis diagnosis;
   diagnosis.hardware = status.name;
   diagnosis.level = status.state == RobotState::placed ? Diagnosis::ok : Diagnosis::warning;
@@ -49,6 +49,10 @@ Diagnosis diagnose_robot(const TeamAnswer& answer, const RobotStatus& status, co
   if (withheld != transforms.withheld.end()) {
     diagnosis.level = Diagnosis::warning;
     diagnosis.message += "; no transform: " + withheld->second;
+  }
+  if (restarts.are_many(Restarts::Clock::now())) {
+    diagnosis.level = Diagnosis::warning;
+    diagnosis.message += "; " + say_many_restarts(heard.topic);
   }
   auto& values = diagnosis.values;
   values = {{"state", name_of(status.state)}, {kTopicKey, heard.topic}, {kFrameKey, heard.frame}};
@@ -66,6 +70,7 @@ Diagnosis diagnose_robot(const TeamAnswer& answer, const RobotStatus& status, co
     values.emplace_back(kPublisherKey, heard.publisher);
     values.emplace_back(kHeardFirstKey, format_time(heard.heard_first));
   }
+  values.emplace_back("started anew", std::to_string(restarts.total()));
   values.emplace_back("publishers", std::to_string(heard.publishers));
   values.emplace_back("messages of other publishers", std::to_string(heard.unheard));
   values.emplace_back("refused", std::to_string(heard.refused));
@@ -111,6 +116,10 @@ TeamTransforms team_transforms(const TeamAnswer& answer, const std::vector<Heard
   return result;
 }
 
+std::string say_many_restarts(const std::string& topic) {
+  return fmt::format("it starts anew again and again: do two robots publish on {}?", topic);
+}
+
 std::vector<Diagnosis> diagnose(const TeamAnswer& answer, const std::vector<HeardRobot>& robots,
                                 const TeamTransforms& transforms, const NodeHealth& health) {
   const auto statuses = statuses_of(answer, robots);
@@ -131,13 +140,16 @@ std::vector<Diagnosis> diagnose(const TeamAnswer& answer, const std::vector<Hear
                  {"solves", std::to_string(answer.number)},
                  {"seconds of the last solve", decimal(answer.seconds)},
                  {"messages that could not be decoded", std::to_string(health.undecodable)},
+                 {"warnings of DDS", std::to_string(health.dds_warnings)},
                  {"publishers beyond the limit", std::to_string(health.over_limit)}};
   if (!answer.problem.empty()) node.values.emplace_back("problem", answer.problem);
   if (health.undecodable > 0 || health.over_limit > 0 || !answer.problem.empty())
     node.level = Diagnosis::warning;
   std::vector<Diagnosis> diagnoses{node};
   for (const auto& [name, status] : statuses) {
-    diagnoses.push_back(diagnose_robot(answer, status, heard[name], transforms));
+    const auto restarts = health.restarts.find(name);
+    diagnoses.push_back(diagnose_robot(answer, status, heard[name], transforms,
+                                       restarts == health.restarts.end() ? Restarts() : restarts->second));
     diagnoses.back().name = fmt::format("{}: {}", health.name, name);
   }
   return diagnoses;

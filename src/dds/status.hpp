@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dds/listener.hpp"
+#include "dds/restarts.hpp"
 #include "gridmerge/grid/se2.hpp"
 #include "gridmerge/online/team.hpp"
 
@@ -54,7 +55,12 @@ struct NodeHealth {
   std::string name;               // of the node
   std::uint64_t undecodable = 0;  // messages that were none
   std::size_t over_limit = 0;     // publishers that are not heard
+  std::uint64_t dds_warnings = 0;
+  std::map<std::string, Restarts> restarts = {};  // of robots that did so
 };
+
+/// Asks whether two robots have one topic.
+std::string say_many_restarts(const std::string& topic);
 
 /// One of the node, then one of each robot by name.
 std::vector<Diagnosis> diagnose(const TeamAnswer& answer, const std::vector<HeardRobot>& robots,

@@ -143,6 +143,31 @@ TEST_F(NodeTest, TakesAnotherFrameForARobotThatStartedAnew) {
   EXPECT_TRUE(diagnosed("b", "frame", "b/map_2"));
 }
 
+TEST_F(NodeTest, AsksWhetherTwoRobotsHaveOneTopic) {
+  start();
+  const MapTopic topic = peer->maps("/a/map");
+  constexpr int kMessages = 20;
+  int restarts = 0;
+  for (const bool in_one_frame : {false, true}) {
+    for (int i = 0; i < kMessages; ++i) {
+      const bool is_first = i % 2 == 0;
+      topic.publish(map_of(is_first ? 0 : 3, in_one_frame || is_first ? "one" : "another"));
+      ASSERT_TRUE(diagnosed("a", "maps", std::to_string((in_one_frame ? kMessages : 0) + i + 1)));
+    }
+    ASSERT_TRUE(comes_true([&] {
+      return node->said("a: it starts anew again and again: do two robots publish on /a/map?");
+    })) << node->lines();
+    EXPECT_LE(node->times_said("started anew"), 6) << node->lines();
+    EXPECT_TRUE(comes_true([&] {
+      return std::stoi(diagnosis("a").values.at("started anew")) >= restarts + 4;
+    })) << node->lines();
+    restarts = std::stoi(diagnosis("a").values.at("started anew"));
+    EXPECT_NE(diagnosis("a").message.find("do two robots publish on /a/map?"), std::string::npos);
+    EXPECT_EQ(diagnosis("a").level, 1);
+  }
+  EXPECT_LE(node->times_said("again and again"), 2);
+}
+
 TEST_F(NodeTest, PublishesNoTransformOfANewFrameFromAnOldPose) {
   start();
   merge_two();

@@ -3,9 +3,15 @@
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <cstdint>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "running_node.hpp"
 
@@ -27,6 +33,37 @@ TEST(Participant, KeepsDescriptionsOfTypesFromCycloneDds) {
   EXPECT_NE(file_of("dds_create_participant").find("libddsc"), std::string::npos);
   for (const char* name : {"ddsi_tl_handle_request", "ddsi_tl_handle_reply"})
     EXPECT_EQ(file_of(name).find("libddsc"), std::string::npos) << file_of(name);
+}
+
+// What anybody may send, as often as they like.
+TEST(Participant, CountsWhatIsLoggedAgainAndAgain) {
+  const std::uint32_t domain = test::own_domain();
+  Participant participant(read_ros_environment(process_environment), 1 << 20);
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in port{};
+  port.sin_family = AF_INET;
+  port.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  port.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * domain + 10));  // of a domain's first one
+  std::string malformed = "RTPS\x02\x01\x01\x10............\x15\x01";
+  malformed += std::string("\x60\xea", 2) + std::string(20, '\1');  // longer than the packet
+  std::uint64_t count = 0;
+  std::set<std::string> kinds;
+  EXPECT_TRUE(test::comes_true([&] {
+    for (int i = 0; i < 100; ++i) {
+      malformed[8] = static_cast<char>(i);
+      ::sendto(socket, malformed.data(), malformed.size(), 0, reinterpret_cast<const sockaddr*>(&port),
+               sizeof port);
+    }
+    const std::vector<Participant::LogLine> lines = participant.take_log();
+    EXPECT_LE(lines.size(), 2u);
+    for (const Participant::LogLine& line : lines) {
+      kinds.insert(line.kind);
+      count += line.count;
+    }
+    return count > 1000;
+  })) << count;
+  EXPECT_TRUE(kinds.contains("malformed packet received"));
+  ::close(socket);
 }
 
 TEST(Participant, SaysWhyItIsNotLetIn) {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
@@ -77,10 +78,12 @@ class RunningNode {
   std::string describe() const { return node_.describe(); }
 
   /// Whether a line that it told or warned of holds this.
-  bool said(const std::string& part) const {
+  bool said(const std::string& part) const { return times_said(part) > 0; }
+  /// How many of them do.
+  std::ptrdiff_t times_said(const std::string& part) const {
     const std::lock_guard lock(mutex_);
-    return std::any_of(lines_.begin(), lines_.end(),
-                       [&](const std::string& line) { return line.find(part) != std::string::npos; });
+    return std::count_if(lines_.begin(), lines_.end(),
+                         [&](const std::string& line) { return line.find(part) != std::string::npos; });
   }
   /// All of it, for messages of tests.
   std::string lines() const {
