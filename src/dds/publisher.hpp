@@ -24,9 +24,9 @@ class Publisher {
   /// The node's name and where it publishes come from `options`. Throws std::runtime_error.
   Publisher(const Participant& participant, const RosNodeOptions& options);
 
-  /// A map for each component of the answer, with its time. One that is as it was last is not sent again; of a
-  /// component that is no more, late subscribers find no old map. Returns whether all was sent: a subscriber
-  /// that does not keep up may hold a map back, and it is worth trying again then.
+  /// A map for each component of the answer, with its time. One that is as it was last is not sent again; of
+  /// a component that is no more, late subscribers find no old map. Returns whether all was sent: a
+  /// subscriber that does not keep up may hold a map back, and it is worth trying again then.
   bool publish_maps(const TeamAnswer& answer, const std::vector<Stamp>& times);
 
   /// All transforms that there are. On /tf_static only what has changed is sent.
