@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
+#include <cstdlib>
 #include <future>
 #include <memory>
 #include <optional>
@@ -21,15 +22,26 @@ namespace gridmerge::cli {
 
 namespace {
 
-/// Stops the node at the first signal, for as long as this lives.
+constexpr std::chrono::seconds kLongestEnd{5};
+
+void warn_of_network() {
+  print_error("warning: the network does not let go of the node: it ends without telling others");
+}
+
+/// Stops the node at the first signal, for as long as this lives. DDS may wait for good for a network that is
+/// gone, also while the node joins another one: then the program ends without it.
 class StopAtSignal {
  public:
   StopAtSignal(const Interrupt& signal, RosNode& node)
-      : signal_(signal), waiter_([&signal, &node] {
-          signal.wait();
+      : signal_(signal), waiter_([this, &node] {
+          signal_.wait();
           node.stop();
+          if (ended_.get_future().wait_for(kLongestEnd) == std::future_status::ready) return;
+          warn_of_network();
+          std::_Exit(kDone);
         }) {}
   ~StopAtSignal() {
+    ended_.set_value();
     signal_.raise();
     waiter_.join();
   }
@@ -38,19 +50,17 @@ class StopAtSignal {
 
  private:
   const Interrupt& signal_;
-  std::thread waiter_;
+  std::promise<void> ended_;
+  std::thread waiter_;  // last: it uses what is above
 };
 
-constexpr std::chrono::seconds kLongestEnd{5};
-
-/// Deletes a node, and waits no longer than that: DDS may wait for good for a network that is gone.
+/// Deletes a node, and waits for that no longer than kLongestEnd.
 struct TakeDown {
   void operator()(RosNode* node) const {
     std::packaged_task<void()> take_down([node] { delete node; });
     const std::future<void> done = take_down.get_future();
     std::thread(std::move(take_down)).detach();
-    if (done.wait_for(kLongestEnd) != std::future_status::ready)
-      print_error("warning: the network does not let go of the node: it ends without telling others");
+    if (done.wait_for(kLongestEnd) != std::future_status::ready) warn_of_network();
   }
 };
 

@@ -24,6 +24,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr const char* kJoins = "this machine has other addresses in the network: the node joins it anew";
+/// Settings with which Cyclone DDS waits for good for a network that is gone.
+constexpr const char* kWaitsForGood =
+    "CYCLONEDDS_URI=<CycloneDDS><Domain><Internal><MultipleReceiveThreads>true</MultipleReceiveThreads>"
+    "</Internal></Domain></CycloneDDS>";
+
 /// Ends a node whose network went down before, and says how long that took.
 Clock::duration end_without_network(const RunOptions& options, Outcome& outcome) {
   set_loopback(true);
@@ -45,9 +51,7 @@ TEST(Network, ThatIsGoneKeepsNoNodeFromEnding) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_EQ(outcome.err.find("does not let go"), std::string::npos) << outcome.err;
     // With settings of the user's with which Cyclone DDS waits for good, too.
-    options.environment.emplace_back(
-        "CYCLONEDDS_URI=<CycloneDDS><Domain><Internal><MultipleReceiveThreads>true</MultipleReceiveThreads>"
-        "</Internal></Domain></CycloneDDS>");
+    options.environment.emplace_back(kWaitsForGood);
     EXPECT_LT(end_without_network(options, outcome), std::chrono::seconds(30));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_NE(outcome.err.find("does not let go"), std::string::npos) << outcome.err;
@@ -136,14 +140,34 @@ TEST(Network, IsJoinedWheneverItComesAndChanges) {
     has_interfaces = can({"ip link add gm0 type veth peer name gm1", "ip address add 10.99.0.1/24 dev gm0",
                           "ip link set gm0 up", "ip link set gm1 up"});
     if (!has_interfaces) return;
-    const std::string joins = "this machine has other addresses in the network: the node joins it anew";
-    EXPECT_EQ(program.read_line(), joins);
+    EXPECT_EQ(program.read_line(), kJoins);
     expect_heard(program, domain, "a");
     EXPECT_EQ(program.read_line(), "a: its publisher is gone; its map is kept");
     ASSERT_TRUE(can({"ip address del 10.99.0.1/24 dev gm0", "ip address add 10.99.0.9/24 dev gm0"}));
-    EXPECT_EQ(program.read_line(), joins);
+    EXPECT_EQ(program.read_line(), kJoins);
     expect_heard(program, domain, "b");
     EXPECT_EQ(program.end_with(SIGTERM).exit_code, 0);
+  });
+  if (!was_run || !has_interfaces) GTEST_SKIP() << "no network of its own can be made here";
+}
+
+TEST(Network, ThatIsReplacedKeepsNoNodeFromEnding) {
+  own_domain();
+  bool has_interfaces = false;
+  const bool was_run = in_own_network([&] {
+    set_loopback(true);
+    has_interfaces = can({"ip link add gm0 type veth peer name gm1", "ip address add 10.99.0.1/24 dev gm0",
+                          "ip link set gm0 up", "ip link set gm1 up"});
+    if (!has_interfaces) return;
+    RunOptions options;
+    options.environment = {"ROS_LOCALHOST_ONLY=0", kWaitsForGood};
+    RunningProgram program({"node"}, options);
+    EXPECT_NE(program.read_line(), "");
+    ASSERT_TRUE(can({"ip address del 10.99.0.1/24 dev gm0", "ip address add 10.99.0.9/24 dev gm0"}));
+    EXPECT_EQ(program.read_line(), kJoins);
+    const auto asked = Clock::now();
+    EXPECT_EQ(program.end_with(SIGTERM).exit_code, 0);
+    EXPECT_LT(Clock::now() - asked, std::chrono::seconds(30));
   });
   if (!was_run || !has_interfaces) GTEST_SKIP() << "no network of its own can be made here";
 }
