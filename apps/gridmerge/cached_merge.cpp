@@ -66,7 +66,7 @@ MergeResult CachedEngine::merge(const std::vector<OccupancyGrid>& maps, const Me
   Merger merger(maps, options, known_poses);
   MatchWorkOptions work;
   work.progress = options.progress;
-  const MatchWork done = match_with_cache(merger, maps, *cache_, work);
+  const MatchWork done = match_with_cache(merger, *cache_, work);
   work_.found += done.found;
   work_.made += done.made;
   return merger.solve();
@@ -96,7 +96,7 @@ ShardOutcome CachedEngine::make_shard(const std::vector<OccupancyGrid>& maps, co
   work.shard = parse_shard(options_.shard).value();
   work.goes_on_when_full = false;
   work.progress = options.progress;
-  const MatchWork done = match_with_cache(merger, maps, *cache_, work);
+  const MatchWork done = match_with_cache(merger, *cache_, work);
   std::string text = fmt::format("shard {}: {} made, {} were in the cache\n", options_.shard,
                                  matches(done.made), done.found);
   if (done.missing == 0)

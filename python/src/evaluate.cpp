@@ -47,7 +47,7 @@ EvaluateOptions make_options(const MatchOptions& match_options, bool up_the_tree
     joint.match = match_options;
     Merger merger(maps, joint);
     if (cache != nullptr) {
-      const MatchWork done = match_with_cache(merger, maps, cache->matches());
+      const MatchWork done = match_with_cache(merger, cache->matches());
       cache->count(done.found, done.made);
     }
     return merger.solve();

@@ -92,7 +92,7 @@ class MapMerger {
   /// Before matches that the cache lacks are made elsewhere.
   void warn_of_other_shards(Cache& cache) const {
     const OthersRun meanwhile;
-    gridmerge::warn_of_other_shards(merger_, grids(), cache.matches());
+    gridmerge::warn_of_other_shards(merger_, cache.matches());
   }
 
   /// With a cache, matches are those that it has, or are kept there.
@@ -116,15 +116,8 @@ class MapMerger {
   void match_with_cache(Cache& cache) {
     MatchWorkOptions work;
     work.progress = *progress_;
-    const MatchWork done = gridmerge::match_with_cache(merger_, grids(), cache.matches(), work);
+    const MatchWork done = gridmerge::match_with_cache(merger_, cache.matches(), work);
     cache.count(done.found, done.made);
-  }
-
-  std::vector<OccupancyGrid> grids() const {
-    std::vector<OccupancyGrid> grids;
-    grids.reserve(maps_.size());
-    for (const auto& [id, map] : maps_) grids.push_back(*map.grid);
-    return grids;
   }
 
   void replace(std::size_t id, const Map& map, void (Merger::*put)(Merger::MapId, OccupancyGrid)) {

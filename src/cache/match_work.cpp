@@ -61,13 +61,12 @@ class Round {
   const MatchWorkOptions& options_;
 };
 
-std::vector<std::string> contents_of(const Merger& merger, const std::vector<OccupancyGrid>& maps) {
-  if (merger.maps().size() != maps.size())
-    throw std::invalid_argument("these are not the maps that were added");
-  std::vector<std::string> contents;
-  contents.reserve(maps.size());
-  for (const OccupancyGrid& map : maps) contents.push_back(content_id(map));
-  return contents;
+std::map<Merger::MapId, std::string> contents_of(const Merger& merger) {
+  const std::vector<Merger::MapId> ids = merger.maps();
+  const std::vector<std::string> contents = merger.contents();
+  std::map<Merger::MapId, std::string> by_id;
+  for (std::size_t i = 0; i < ids.size(); ++i) by_id[ids[i]] = contents[i];
+  return by_id;
 }
 
 void warn_of_misfits(const MatchCache& cache, const std::vector<ShardRecord>& records, const MergeWork& work,
@@ -105,19 +104,14 @@ void end_shard(MatchCache& cache, const ShardRecord& record, const MatchWork& do
 
 }  // namespace
 
-void warn_of_other_shards(const Merger& merger, const std::vector<OccupancyGrid>& maps, MatchCache& cache) {
+void warn_of_other_shards(const Merger& merger, MatchCache& cache) {
   const std::vector<ShardRecord> records = find_shard_records(cache.directory());
-  if (!records.empty())
-    warn_of_misfits(cache, records, work_of(merger, contents_of(merger, maps)), AskedBy::merge);
+  if (!records.empty()) warn_of_misfits(cache, records, work_of(merger), AskedBy::merge);
 }
 
-MatchWork match_with_cache(Merger& merger, const std::vector<OccupancyGrid>& maps, MatchCache& cache,
-                           const MatchWorkOptions& options) {
+MatchWork match_with_cache(Merger& merger, MatchCache& cache, const MatchWorkOptions& options) {
   if (options.shard.index >= options.shard.count) throw std::invalid_argument("there is no such shard");
-  const std::vector<std::string> told_apart = contents_of(merger, maps);
-  const std::vector<Merger::MapId> ids = merger.maps();
-  std::map<Merger::MapId, std::string> contents;
-  for (std::size_t i = 0; i < ids.size(); ++i) contents[ids[i]] = told_apart[i];
+  const std::map<Merger::MapId, std::string> contents = contents_of(merger);
   const KeptComparisons kept(merger, comparisons_in(cache, options.shard, options.goes_on_when_full));
   const bool is_shard = options.shard.count > 1;
   bool is_told = false;  // what the user should know before matches are made
@@ -143,8 +137,7 @@ MatchWork match_with_cache(Merger& merger, const std::vector<OccupancyGrid>& map
     if (!missing.empty() && !is_told) {
       cache.announce(how.accept_probability);
       if (!is_shard)
-        warn_of_misfits(cache, find_shard_records(cache.directory()), work_of(merger, told_apart),
-                        AskedBy::merge);
+        warn_of_misfits(cache, find_shard_records(cache.directory()), work_of(merger), AskedBy::merge);
       is_told = true;
     }
     if (options.progress) options.progress(found, due.size());
@@ -152,7 +145,7 @@ MatchWork match_with_cache(Merger& merger, const std::vector<OccupancyGrid>& map
     work.found += found;
     work.made += missing.size();
   }
-  if (is_shard) end_shard(cache, {options.shard, work_of(merger, told_apart)}, work, options);
+  if (is_shard) end_shard(cache, {options.shard, work_of(merger)}, work, options);
   return work;
 }
 

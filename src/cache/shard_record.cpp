@@ -137,7 +137,8 @@ std::optional<Shard> parse_shard(std::string_view text) {
   return Shard{*index - 1, *count};
 }
 
-MergeWork work_of(const Merger& merger, const std::vector<std::string>& contents) {
+MergeWork work_of(const Merger& merger) {
+  const std::vector<std::string> contents = merger.contents();
   const MergeOptions& options = merger.options();
   // Copies count once, as in the merge.
   const std::set<std::string> distinct(contents.begin(), contents.end());

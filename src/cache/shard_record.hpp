@@ -27,8 +27,8 @@ struct MergeWork {
   bool operator==(const MergeWork&) const = default;
 };
 
-/// That of a merger. `contents` are content_id() of its maps, in their order.
-MergeWork work_of(const Merger& merger, const std::vector<std::string>& contents);
+/// That of a merger.
+MergeWork work_of(const Merger& merger);
 
 /// What a shard leaves in the cache once its run has ended.
 struct ShardRecord {

@@ -7,12 +7,20 @@
 #include <tuple>
 #include <utility>
 
+#include "grid/parallel.hpp"
+#include "gridmerge/match/stored_match.hpp"
 #include "match/prepared_map.hpp"
 
 namespace gridmerge::internal {
 
 MapStore::Input::Input(std::shared_ptr<const OccupancyGrid> map)
     : grid(std::move(map)), prepared(*grid), coverage(prepared.known()) {}
+
+const std::string& MapStore::Input::content() const {
+  const std::lock_guard lock(hashing_);
+  if (content_.empty()) content_ = content_id(*grid);
+  return content_;
+}
 
 MapStore::MapId MapStore::add(std::unique_ptr<const Input> input,
                               const std::optional<KnownPose>& known_pose) {
@@ -66,6 +74,12 @@ std::vector<std::optional<KnownPose>> MapStore::known_poses() const {
   std::vector<std::optional<KnownPose>> poses;
   for (const auto& [id, input] : inputs_) poses.push_back(known_pose(id));
   return poses;
+}
+
+std::vector<std::string> MapStore::contents_of(const std::vector<MapId>& maps) const {
+  std::vector<std::string> contents(maps.size());
+  parallel_for(maps.size(), [&](std::size_t i) { contents[i] = at(maps[i]).content(); });
+  return contents;
 }
 
 std::vector<MapStore::MapId> MapStore::in_canonical_order() const {

@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "gridmerge/grid/occupancy_grid.hpp"
@@ -26,9 +28,16 @@ class MapStore {
     /// Throws std::invalid_argument for an invalid map.
     explicit Input(std::shared_ptr<const OccupancyGrid> map);
 
+    /// content_id() of the grid, which is hashed once, when it is asked for first.
+    const std::string& content() const;
+
     std::shared_ptr<const OccupancyGrid> grid;
     PreparedMap prepared;
     Coverage coverage;
+
+   private:
+    mutable std::mutex hashing_;
+    mutable std::string content_;
   };
 
   /// Throws std::invalid_argument for an invalid pose, and is then as before.
@@ -47,6 +56,9 @@ class MapStore {
   std::vector<MapId> ids() const;
   std::vector<const OccupancyGrid*> grids() const;            ///< likewise
   std::vector<std::optional<KnownPose>> known_poses() const;  ///< likewise
+
+  /// The contents of these maps. Runs in the calling TBB arena.
+  std::vector<std::string> contents_of(const std::vector<MapId>& maps) const;
 
   /// An order that depends on the maps alone, so that sums are made in the same order whatever order they
   /// came in.

@@ -94,6 +94,12 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     return store_.known_pose(id);
   }
 
+  std::vector<std::string> contents() const {
+    std::vector<std::string> contents;
+    with_threads(options_.match.threads, [&] { contents = store_.contents_of(store_.ids()); });
+    return contents;
+  }
+
   ComparisonStore keep_comparisons(ComparisonStore store) {
     return choice_.keep_comparisons(std::move(store));
   }
@@ -314,6 +320,10 @@ const MergeOptions& Merger::options() const {
 
 std::optional<KnownPose> Merger::known_pose(MapId id) const {
   return state_->known_pose(id);
+}
+
+std::vector<std::string> Merger::contents() const {
+  return state_->contents();
 }
 
 ComparisonStore Merger::keep_comparisons(ComparisonStore store) {

@@ -9,7 +9,6 @@
 
 #include "grid/logistic.hpp"
 #include "grid/parallel.hpp"
-#include "gridmerge/match/stored_match.hpp"
 #include "merge/comparisons.hpp"
 #include "merge/prior.hpp"
 #include "preselect/compare.hpp"
@@ -102,11 +101,8 @@ void PairChoice::prepare(const MapStore& store, const std::vector<MapId>& maps) 
   for (const std::unique_ptr<const Signature>* signature : signatures) all.push_back(signature->get());
   const bool is_any_outdated =
       std::any_of(maps.begin(), maps.end(), [&](MapId id) { return outdated_.contains(id); });
-  log_odds_ = compare_all(all, is_any_outdated ? ComparisonStore{} : comparisons_, [&] {
-    std::vector<std::string> contents(maps.size());
-    parallel_for(maps.size(), [&](std::size_t i) { contents[i] = content_id(*store.at(maps[i]).grid); });
-    return contents;
-  });
+  log_odds_ = compare_all(all, is_any_outdated ? ComparisonStore{} : comparisons_,
+                          [&] { return store.contents_of(maps); });
   shift_ = shift_to_this_set(log_odds_);
   maps_ = maps;
 }

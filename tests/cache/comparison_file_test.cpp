@@ -57,7 +57,7 @@ class ComparisonsTest : public testing::Test {
     MatchCache cache(directory.file("matches"), [this](const std::string& line) { warned.push_back(line); });
     MatchWorkOptions how;
     how.shard = {shard, 100000};
-    return match_with_cache(merger, maps, cache, how);
+    return match_with_cache(merger, cache, how);
   }
 
   std::map<std::string, std::filesystem::file_time_type> parts() const {

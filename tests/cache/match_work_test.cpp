@@ -26,7 +26,7 @@ class MatchWorkTest : public testing::Test {
     MatchCache cache(directory.file("matches"));
     MatchWorkOptions options;
     options.shard = {index, count};
-    return match_with_cache(merger, team.maps, cache, options);
+    return match_with_cache(merger, cache, options);
   }
 
   Merger filled(const MergeOptions& options = {}) {
@@ -54,7 +54,7 @@ TEST_F(MatchWorkTest, ShardsMakeEachMatchOnceAndTheMergeIsThatOfOneMachine) {
   options.progress = [&](std::size_t, std::size_t) { ++matched; };
   Merger merger = filled(options);
   MatchCache cache(directory.file("matches"));
-  const MatchWork last = match_with_cache(merger, team.maps, cache);
+  const MatchWork last = match_with_cache(merger, cache);
   EXPECT_EQ(last.found, 14u);
   EXPECT_EQ(last.made, 0u);
   EXPECT_EQ(last.missing, 0u);
@@ -72,7 +72,7 @@ TEST_F(MatchWorkTest, TellsHowManyOfARoundAreThere) {
     MatchCache cache(directory.file("matches"));
     MatchWorkOptions options;
     options.progress = [&](std::size_t done, std::size_t total) { told.emplace_back(done, total); };
-    match_with_cache(merger, team.maps, cache, options);
+    match_with_cache(merger, cache, options);
     return told;
   };
   // Ten pairs, and then the four of the stranger: what is found, and each that is made.
@@ -107,10 +107,9 @@ TEST_F(MatchWorkTest, GoesOnWhereItWasCancelled) {
   MatchCache cache(directory.file("matches"));
   MatchWorkOptions options;
   options.progress = [&](std::size_t done, std::size_t) { cancelled = done == 4; };
-  EXPECT_THROW(with_cancellation(cancelled, [&] { match_with_cache(merger, team.maps, cache, options); }),
-               Cancelled);
+  EXPECT_THROW(with_cancellation(cancelled, [&] { match_with_cache(merger, cache, options); }), Cancelled);
   Merger again = filled();
-  const MatchWork rest = match_with_cache(again, team.maps, cache);
+  const MatchWork rest = match_with_cache(again, cache);
   EXPECT_GE(rest.found, 4u);
   EXPECT_EQ(rest.found + rest.made, 14u);
   expect_same(again.solve(), merge(team.maps));
@@ -122,7 +121,36 @@ TEST_F(MatchWorkTest, OtherOptionsAndMapsFindNothing) {
   options.match.accept_probability = 0.9;
   Merger merger = filled(options);
   MatchCache cache(directory.file("matches"));
-  EXPECT_EQ(match_with_cache(merger, team.maps, cache).found, 0u);
+  EXPECT_EQ(match_with_cache(merger, cache).found, 0u);
+}
+
+TEST_F(MatchWorkTest, KeepsMatchesByWhatTheMapsAreNow) {
+  const std::vector<OccupancyGrid> maps(team.maps.begin(), team.maps.begin() + 3);
+  OccupancyGrid moved = maps[0];  // its robot has started anew, in another frame
+  moved.origin = SE2{5, 3, 1} * moved.origin;
+  MatchCache cache(directory.file("matches"));
+  Merger updated(maps);
+  updated.update(updated.maps()[0], moved);
+  EXPECT_EQ(match_with_cache(updated, cache).made, 3u);
+  Merger fresh(maps);
+  const MatchWork work = match_with_cache(fresh, cache);
+  EXPECT_EQ(work.made, 2u) << "the pairs of the map before";
+  EXPECT_EQ(work.found, 1u);
+  expect_same(fresh.solve(), merge(maps));
+}
+
+TEST_F(MatchWorkTest, KeepsMatchesOfAMapThatHasGrownAsThoseOfTheNewMap) {
+  const OccupancyGrid building = test::draw_building(1);
+  const OccupancyGrid grown = test::map_part(building, {0, 0, 12, 13}, team.T_map_building[0]);
+  MatchCache cache(directory.file("matches"));
+  Merger merger({team.maps[0]});
+  merger.grow(merger.maps()[0], grown);
+  merger.add(team.maps[1]);
+  EXPECT_EQ(match_with_cache(merger, cache).made, 1u);
+  Merger before({team.maps[0], team.maps[1]});
+  EXPECT_EQ(match_with_cache(before, cache).found, 0u);
+  Merger after({grown, team.maps[1]});
+  EXPECT_EQ(match_with_cache(after, cache).found, 1u);
 }
 
 TEST_F(MatchWorkTest, RefusesWhatMakesNoSense) {
@@ -130,8 +158,7 @@ TEST_F(MatchWorkTest, RefusesWhatMakesNoSense) {
   MatchCache cache(directory.file("matches"));
   MatchWorkOptions options;
   options.shard = {2, 2};
-  EXPECT_THROW(match_with_cache(merger, team.maps, cache, options), std::invalid_argument);
-  EXPECT_THROW(match_with_cache(merger, {}, cache), std::invalid_argument);
+  EXPECT_THROW(match_with_cache(merger, cache, options), std::invalid_argument);
 }
 
 TEST_F(MatchWorkTest, WhatCannotBeKeptIsMadeAllTheSameIfThatIsAskedFor) {
@@ -140,13 +167,13 @@ TEST_F(MatchWorkTest, WhatCannotBeKeptIsMadeAllTheSameIfThatIsAskedFor) {
   std::filesystem::remove_all(directory.file("matches"));
   directory.write("matches", "a file now");
   Merger merger = filled();
-  EXPECT_EQ(match_with_cache(merger, team.maps, cache).made, 14u);
+  EXPECT_EQ(match_with_cache(merger, cache).made, 14u);
   EXPECT_EQ(warned.size(), 1u);
   expect_same(merger.solve(), merge(team.maps));
   Merger another = filled();
   MatchWorkOptions options;
   options.goes_on_when_full = false;
-  EXPECT_THROW(match_with_cache(another, team.maps, cache, options), FileError);
+  EXPECT_THROW(match_with_cache(another, cache, options), FileError);
 }
 
 TEST_F(MatchWorkTest, MatchesThatCannotBeKeptAreToldOnce) {
@@ -163,7 +190,7 @@ TEST_F(MatchWorkTest, MatchesThatCannotBeKeptAreToldOnce) {
     std::filesystem::remove_all(directory.file("matches"));
     directory.write("matches", "a file now");
   };
-  EXPECT_EQ(match_with_cache(merger, maps, cache, options).made, 3u);
+  EXPECT_EQ(match_with_cache(merger, cache, options).made, 3u);
   ASSERT_EQ(warned.size(), 1u);
   EXPECT_NE(warned[0].find("matches that cannot be kept are made all the same"), std::string::npos)
       << warned[0];

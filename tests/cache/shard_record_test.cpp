@@ -170,13 +170,7 @@ class ShardsTest : public testing::Test {
     MatchCache cache(directory.file("matches"), [this](const std::string& line) { warned.push_back(line); });
     MatchWorkOptions how;
     how.shard = shard;
-    return match_with_cache(merger, team.maps, cache, how);
-  }
-
-  std::vector<std::string> contents() const {
-    std::vector<std::string> names;
-    for (const OccupancyGrid& map : team.maps) names.push_back(content_id(map));
-    return names;
+    return match_with_cache(merger, cache, how);
   }
 
   const test::Team team;
@@ -191,46 +185,46 @@ TEST_F(ShardsTest, LeaveARecordThatReplacesTheirLast) {
   work({}, {0, 1});  // no shard
   const std::vector<ShardRecord> records = find_shard_records(directory.file("matches"));
   ASSERT_EQ(records.size(), 2u);
-  for (const ShardRecord& record : records) EXPECT_EQ(record.work, work_of(filled(), contents()));
+  for (const ShardRecord& record : records) EXPECT_EQ(record.work, work_of(filled()));
   EXPECT_TRUE(warned.empty());
 }
 
 TEST_F(ShardsTest, WorkIsToldApartByWhatChangesMatches) {
-  const MergeWork plain = work_of(filled(), contents());
+  const MergeWork plain = work_of(filled());
   MergeOptions options;
   options.max_missed = 0.5;  // of few maps all pairs are looked at
   options.transform = MapTransform::affine;
-  EXPECT_EQ(work_of(filled(options), contents()), plain);
+  EXPECT_EQ(work_of(filled(options)), plain);
   options.max_false_joins = 0.2;
-  EXPECT_NE(work_of(filled(options), contents()), plain);
+  EXPECT_NE(work_of(filled(options)), plain);
   const KnownPose known{{1.0, 2.0, 0.3}, 1.0, 0.1, false};
-  EXPECT_NE(work_of(filled({}, {known}), contents()), plain);
-  std::vector<std::string> others = contents();
+  EXPECT_NE(work_of(filled({}, {known})), plain);
+  std::vector<OccupancyGrid> others = team.maps;
   std::swap(others[0], others[1]);
-  EXPECT_EQ(work_of(filled(), others), plain);
-  others[0][3] = 'x';
-  EXPECT_NE(work_of(filled(), others), plain);
+  EXPECT_EQ(work_of(Merger(others)), plain);
+  others[0].cells[3] = Cell::occupied;
+  EXPECT_NE(work_of(Merger(others)), plain);
 }
 
 TEST_F(ShardsTest, WorkIsToldApartByEveryNumberOfAKnownPose) {
-  const MergeWork plain = work_of(filled(), contents());
+  const MergeWork plain = work_of(filled());
   EXPECT_EQ(plain.engine, engine_id());
   EXPECT_TRUE(std::find(plain.options.begin(), plain.options.end(),
                         std::pair<std::string, std::string>("known-poses", "none")) != plain.options.end());
   const KnownPose known{{1.0, 2.0, 0.3}, 1.0, 0.1, false};
-  std::vector<MergeWork> works{plain, work_of(filled({}, {known}), contents()),
-                               work_of(filled({}, {std::nullopt, known}), contents())};
+  std::vector<MergeWork> works{plain, work_of(filled({}, {known})),
+                               work_of(filled({}, {std::nullopt, known}))};
   for (int i = 0; i < 6; ++i) {
     KnownPose other = known;
     if (i < 5)
       *std::array{&other.T_world_map.x, &other.T_world_map.y, &other.T_world_map.theta, &other.sd_position,
                   &other.sd_theta}[static_cast<std::size_t>(i)] += 0.01;
     other.fixed = i == 5;
-    works.push_back(work_of(filled({}, {other}), contents()));
+    works.push_back(work_of(filled({}, {other})));
   }
   for (std::size_t i = 0; i < works.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) EXPECT_NE(works[i], works[j]) << i << " " << j;
-  EXPECT_EQ(works[1], work_of(filled({}, {known}), contents()));
+  EXPECT_EQ(works[1], work_of(filled({}, {known})));
 }
 
 TEST_F(ShardsTest, AMergeThatLacksMatchesIsTold) {
@@ -260,7 +254,7 @@ TEST_F(ShardsTest, AMergeThatLacksMatchesIsTold) {
 TEST_F(ShardsTest, WhoMakesMatchesElsewhereMayAsk) {
   work({}, {0, 2});
   MatchCache cache(directory.file("matches"), [this](const std::string& line) { warned.push_back(line); });
-  warn_of_other_shards(filled(), team.maps, cache);
+  warn_of_other_shards(filled(), cache);
   ASSERT_EQ(warned.size(), 1u);
   EXPECT_NE(warned[0].find("shards that have not ended here: 2/2"), std::string::npos) << warned[0];
 }
@@ -293,7 +287,7 @@ TEST_F(ShardsTest, ARecordThatCannotBeKeptIsAnErrorUnlessTheWorkMayGoOn) {
   MatchWorkOptions how;
   how.shard = {0, 2};
   how.goes_on_when_full = false;
-  EXPECT_THROW(match_with_cache(merger, team.maps, cache, how), FileError);
+  EXPECT_THROW(match_with_cache(merger, cache, how), FileError);
 }
 
 }  // namespace

@@ -7,8 +7,11 @@
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "gridmerge/grid/execution.hpp"
+#include "gridmerge/match/stored_match.hpp"
 #include "merge/team.hpp"
 #include "support/building.hpp"
 
@@ -89,6 +92,22 @@ TEST(Merger, AMapThatGrowsKeepsItsMatchesUntilItIsSearchedAgain) {
   EXPECT_EQ(matched, first + 2);
   EXPECT_THROW(merger.grow(grows + 7, grown), std::out_of_range);
   EXPECT_THROW(merger.search_again(grows + 7), std::out_of_range);
+}
+
+TEST(Merger, TellsWhatItsMapsHoldAsTheyAreNow) {
+  const Team team;
+  const auto ids = [](const std::vector<OccupancyGrid>& maps) {
+    std::vector<std::string> contents;
+    for (const OccupancyGrid& map : maps) contents.push_back(content_id(map));
+    return contents;
+  };
+  Merger merger({team.maps[0], team.maps[1], team.maps[2]});
+  EXPECT_EQ(merger.contents(), ids({team.maps[0], team.maps[1], team.maps[2]}));
+  merger.update(0, team.maps[3]);
+  merger.grow(1, team.maps[4]);
+  EXPECT_EQ(merger.contents(), ids({team.maps[3], team.maps[4], team.maps[2]}));
+  merger.remove(0);
+  EXPECT_EQ(merger.contents(), ids({team.maps[4], team.maps[2]}));
 }
 
 TEST(Merger, SoonAndBitByBitItIsTheSameInTheEnd) {

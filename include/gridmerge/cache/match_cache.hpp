@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "gridmerge/export.hpp"
-#include "gridmerge/grid/occupancy_grid.hpp"
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/merge/merger.hpp"
 
@@ -105,20 +104,19 @@ struct MatchWork {
 };
 
 /// Warns of the records of shards in the cache, if they do not fit this merge: for who makes the matches that
-/// it lacks by other means than match_with_cache(). `maps` are as there.
-GRIDMERGE_EXPORT void warn_of_other_shards(const Merger& merger, const std::vector<OccupancyGrid>& maps,
-                                           MatchCache& cache);
+/// it lacks by other means than match_with_cache().
+GRIDMERGE_EXPORT void warn_of_other_shards(const Merger& merger, MatchCache& cache);
 
 /// Hands the merger the matches that are due: those of the cache, and those of the shard that it makes and
-/// keeps there. Round by round, until nothing is due or the rest is for others to make. `maps` are those that
-/// were added, in the order of Merger::maps(). Threads as the merger's; may be cancelled, and then goes on
-/// where it was.
+/// keeps there. Round by round, until nothing is due or the rest is for others to make. Matches are found and
+/// kept by what the merger's maps hold as they are now. Threads as the merger's; may be cancelled, and then
+/// goes on where it was.
 ///
 /// A shard of several leaves a record of what it was a part of, once its run has ended. Where matches are
 /// missing, the cache warns of records that do not fit: of another number of shards, of other options or
-/// maps, or of another engine. Throws FileError, std::invalid_argument for a shard that there is not or
-/// another number of maps, and Cancelled.
-GRIDMERGE_EXPORT MatchWork match_with_cache(Merger& merger, const std::vector<OccupancyGrid>& maps,
-                                            MatchCache& cache, const MatchWorkOptions& options = {});
+/// maps, or of another engine. Throws FileError, std::invalid_argument for a shard that there is not, and
+/// Cancelled.
+GRIDMERGE_EXPORT MatchWork match_with_cache(Merger& merger, MatchCache& cache,
+                                            const MatchWorkOptions& options = {});
 
 }  // namespace gridmerge

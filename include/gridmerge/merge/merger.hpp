@@ -90,6 +90,10 @@ class GRIDMERGE_EXPORT Merger {
   /// What is known of a map's pose. Throws std::out_of_range for an unknown id.
   std::optional<KnownPose> known_pose(MapId id) const;
 
+  /// What the maps hold as they are now, in the order of maps(): content_id() of each, which is worked out
+  /// once.
+  std::vector<std::string> contents() const;
+
   /// From now on comparisons of maps are taken from the store, and kept there; from no store if it has
   /// neither function. Gives the store before. Throws std::invalid_argument for one with one function, or a
   /// `begin` outside [0, 1).

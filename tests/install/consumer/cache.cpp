@@ -7,8 +7,7 @@ int main() {
   gridmerge::MatchCache cache(directory);
   gridmerge::Merger merger;
   merger.add(gridmerge::make_grid(8, 8, 0.1));
-  const gridmerge::MatchWork work =
-      gridmerge::match_with_cache(merger, {gridmerge::make_grid(8, 8, 0.1)}, cache);
+  const gridmerge::MatchWork work = gridmerge::match_with_cache(merger, cache);
   std::filesystem::remove_all(directory);
   return work.made + work.missing == 0 ? 0 : 1;
 }
