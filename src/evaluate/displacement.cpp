@@ -52,6 +52,7 @@ double rms_displacement(const KnownMoments& moving, const SE2& T_estimate, const
 }  // namespace internal
 
 double rms_displacement(const OccupancyGrid& moving, const SE2& T_estimate, const SE2& T_truth) {
+  validate(moving);
   return rms_displacement(internal::known_moments(moving), T_estimate, T_truth);
 }
 

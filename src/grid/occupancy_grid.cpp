@@ -36,6 +36,13 @@ void add_few(const Cell* cells, std::size_t count, CellCounts& counts) {
   counts.occupied += occupied;
 }
 
+GRIDMERGE_MULTIVERSION
+std::uint8_t highest(const std::vector<Cell>& cells) {
+  std::uint8_t highest = 0;
+  for (const Cell cell : cells) highest = std::max(highest, static_cast<std::uint8_t>(cell));
+  return highest;
+}
+
 }  // namespace
 
 CellCounts count_cells(const OccupancyGrid& grid) {
@@ -56,10 +63,20 @@ void validate(const OccupancyGrid& grid) {
   if (!grid.probability.empty() && grid.probability.size() != size) {
     throw std::invalid_argument("the map's probabilities do not number width times height");
   }
-  if (!std::isfinite(grid.resolution) || grid.resolution <= 0.0) {
-    throw std::invalid_argument("the map's resolution must be a positive number of metres");
-  }
+  if (!(grid.resolution >= kMinResolution && grid.resolution <= kMaxResolution))
+    throw std::invalid_argument("the map's resolution must be between 1e-6 and 1000 metres per cell");
   if (!is_finite(grid.origin)) throw std::invalid_argument("the map's origin must be finite");
+  if (std::max(std::abs(grid.origin.x), std::abs(grid.origin.y)) > 2.0 * kMaxOrigin)
+    throw std::invalid_argument("the map's origin must lie within 2e9 metres of zero");
+  if (highest(grid.cells) > static_cast<std::uint8_t>(Cell::occupied))
+    throw std::invalid_argument("the map's cells must be unknown, free or occupied");
+}
+
+void validate(const PlacedMap& placed) {
+  if (placed.map == nullptr) throw std::invalid_argument("a placed map must have a map");
+  validate(*placed.map);
+  if (!is_finite(placed.T_output_map))
+    throw std::invalid_argument("the transform of a placed map must be finite");
 }
 
 }  // namespace gridmerge

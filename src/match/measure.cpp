@@ -9,7 +9,6 @@
 #include "gridmerge/match/match.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 #include "match/refine_pose.hpp"
-#include "similarity/lattice_frames.hpp"
 
 namespace gridmerge {
 
@@ -20,8 +19,8 @@ namespace {
 /// Nothing can be said of a map that touches no other one: all its figures would be those of the empty place
 /// where it lies.
 void check_contact(std::span<const PlacedMap> maps) {
+  for (const PlacedMap& map : maps) validate(map);
   for (std::size_t i = 1; i < maps.size(); ++i) {
-    check_finite(maps[i].T_output_map);
     bool touches = false;
     for (std::size_t j = 0; j < maps.size() && !touches; ++j) {
       touches = j != i && lie_on_each_other(*maps[j].map, *maps[i].map,

@@ -80,8 +80,7 @@ std::unique_ptr<const OccupancyGrid> as_seen(const OccupancyGrid& map) {
 
 FusedInputs::FusedInputs(std::vector<PlacedMap> maps) : maps_(std::move(maps)) {
   for (PlacedMap& input : maps_) {
-    if (input.map == nullptr) continue;  // cover() refuses it
-    validate(*input.map);
+    validate(input);
     if (seen_.emplace_back(as_seen(*input.map))) input.map = seen_.back().get();
   }
 }

@@ -58,13 +58,6 @@ Box known_box(const PlacedMap& input, const Deformation& deformation) {
   return box;
 }
 
-void validate_input(const PlacedMap& input) {
-  if (input.map == nullptr) throw std::invalid_argument("a placed map must have a map");
-  validate(*input.map);
-  if (!is_finite(input.T_output_map))
-    throw std::invalid_argument("the transform of a placed map must be finite");
-}
-
 // Lower-left corner of the input whose map frame is the output frame (the lowest one, should there be
 // several).
 std::optional<Point2> frame_anchor(const std::vector<PlacedMap>& inputs) {
@@ -313,7 +306,7 @@ void splat_map(const OccupancyGrid& map, const ToLattice& to_lattice, LogOddsPat
 Box covered_box(const std::vector<PlacedMap>& inputs, const std::vector<Deformation>& deformations) {
   Box box;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    validate_input(inputs[i]);
+    validate(inputs[i]);
     box.add(i < deformations.size() ? known_box(inputs[i], deformations[i]) : known_box(inputs[i]));
   }
   return box;
@@ -355,7 +348,7 @@ LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice, const
 
 LogOddsPatch draw_log_odds(const PlacedMap& input, const Lattice& lattice, const Deformation& deformation,
                            const CellBox& within) {
-  validate_input(input);
+  validate(input);
   LogOddsPatch patch = patch_over(known_box(input, deformation), lattice, within);
   if (patch.log_odds.empty()) return patch;
   const OccupancyGrid& map = *input.map;

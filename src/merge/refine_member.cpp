@@ -29,6 +29,8 @@ OccupancyGrid fuse_in_bounds(const std::vector<PlacedMap>& maps) {
 
 RefinedPose refine_member(const std::vector<PlacedMap>& fixed, const PlacedMap& moving) {
   if (fixed.empty()) throw std::invalid_argument("there is no fixed map");
+  validate(moving);
+  validate(fixed.front());
   const PreparedMap prepared(*moving.map);
   if (fixed.size() > 1) return refine_pose(PreparedMap(fuse_in_bounds(fixed)), prepared, moving.T_output_map);
   const SE2& T_output_fixed = fixed.front().T_output_map;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/grid/resample.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 #include "similarity/equal_cells.hpp"
@@ -14,11 +15,9 @@ using namespace internal;
 
 namespace {
 
-/// The map's cells on the lattice, where the box has cells. Empty if there are none.
+/// The map's cells on a valid lattice, where the box has cells. Empty if there are none.
 CellsOnLattice draw_within(const OccupancyGrid& lattice, const CellBox& limits, const PlacedMap& map) {
-  validate(lattice);
-  validate(*map.map);
-  check_finite(map.T_output_map);
+  validate(map);
   check_resolutions(lattice, *map.map);
   const SE2 T_lattice_grid = between_grids(lattice, *map.map, map.T_output_map);
   const CellBox box = intersect(box_on_lattice(*map.map, T_lattice_grid, lattice.resolution),
@@ -32,9 +31,11 @@ CellsOnLattice draw_within(const OccupancyGrid& lattice, const CellBox& limits, 
 }  // namespace
 
 OccupancyGrid draw_on_lattice(const OccupancyGrid& lattice, const PlacedMap& map) {
+  validate(lattice);
   const CellsOnLattice drawn = draw_within(lattice, all_cells(lattice), map);
   OccupancyGrid grid = make_grid(lattice.width, lattice.height, lattice.resolution, lattice.origin);
   for (int row = drawn.box.bottom; row < drawn.box.top; ++row) {
+    throw_if_cancelled();
     for (int column = drawn.box.left; column < drawn.box.right; ++column)
       grid.at(column, row) = static_cast<Cell>(*drawn.at(column, row));
   }
@@ -48,6 +49,7 @@ std::int64_t count_equal_cells(const OccupancyGrid& lattice, std::span<const Pla
 std::int64_t internal::count_equal_cells(const OccupancyGrid& lattice, std::span<const PlacedMap> maps,
                                          const CellBox& box) {
   if (maps.empty()) return 0;
+  validate(lattice);
   constexpr auto kUnknown = static_cast<std::uint8_t>(Cell::unknown);
   constexpr std::uint8_t kDiffer = 0xff;  // no value of a cell
   const auto width = static_cast<std::size_t>(box.width());
@@ -57,6 +59,7 @@ std::int64_t internal::count_equal_cells(const OccupancyGrid& lattice, std::span
     const bool is_first = &map == &maps.front();
     const CellsOnLattice drawn = draw_within(lattice, box, map);
     for (int row = box.bottom; row < box.top; ++row) {
+      throw_if_cancelled();
       std::uint8_t* const of_row = values.data() + static_cast<std::size_t>(row - box.bottom) * width;
       const bool inside = row >= drawn.box.bottom && row < drawn.box.top;
       const int left = inside ? drawn.box.left : box.right;

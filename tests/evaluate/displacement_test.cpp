@@ -65,6 +65,12 @@ TEST(RmsDisplacement, AnglesOnBothSidesOfHalfATurnAreClose) {
   EXPECT_LT(rms_displacement(map, {0, 0, std::numbers::pi - 1e-6}, {0, 0, -std::numbers::pi + 1e-6}), 1e-5);
 }
 
+TEST(RmsDisplacement, OfWhatIsNoMapThereIsNone) {
+  OccupancyGrid map;
+  map.width = map.height = 4000;  // and no cells
+  EXPECT_THROW(rms_displacement(map, {}, {1.0, 0.0, 0.0}), std::invalid_argument);
+}
+
 TEST(RmsDisplacement, OfAMapWithNoKnownCellIsThatOfItsMiddle) {
   const OccupancyGrid map = make_grid(20, 10, 0.1, {3.0, 0.0, 0.0});
   EXPECT_EQ(internal::known_moments(map).centroid, (Point2{4.0, 0.5}));

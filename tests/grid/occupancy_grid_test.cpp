@@ -75,6 +75,22 @@ TEST(Validate, AcceptsAGoodGrid) {
   EXPECT_NO_THROW(validate(grid));
 }
 
+TEST(Validate, AcceptsWhatFilesMayHoldAndALittleBeyond) {
+  for (const double resolution : {kMinResolution, kMaxResolution})
+    EXPECT_NO_THROW(validate(make_grid(2, 3, resolution))) << resolution;
+  for (const double x : {-kMaxOrigin, kMaxOrigin, kMaxOrigin + 100.0})
+    EXPECT_NO_THROW(validate(make_grid(2, 3, 0.05, {x, x, 0.0}))) << x;
+}
+
+TEST(Validate, APlacedMapHasAValidMapAndAFinitePose) {
+  const OccupancyGrid grid = make_grid(2, 3, 0.05);
+  const OccupancyGrid none;
+  EXPECT_NO_THROW(validate(PlacedMap{&grid, {1.0, 2.0, 3.0}}));
+  EXPECT_THROW(validate(PlacedMap{}), std::invalid_argument);
+  EXPECT_THROW(validate(PlacedMap{&none, {}}), std::invalid_argument);
+  EXPECT_THROW(validate(PlacedMap{&grid, {kNan, 0.0, 0.0}}), std::invalid_argument);
+}
+
 struct Flaw {
   const char* name;
   std::function<void(OccupancyGrid&)> spoil;
@@ -98,20 +114,25 @@ TEST_P(ValidateRefuses, AndSaysWhy) {
 
 INSTANTIATE_TEST_SUITE_P(
     Flaws, ValidateRefuses,
-    testing::Values(Flaw{"ZeroWidth", [](auto& g) { g.width = 0; }, "width and height"},
-                    Flaw{"NegativeHeight", [](auto& g) { g.height = -3; }, "width and height"},
-                    Flaw{"BothNegative", [](auto& g) { g.width = -2, g.height = -3; }, "width and height"},
-                    Flaw{"TooFewCells", [](auto& g) { g.cells.pop_back(); }, "cells"},
-                    Flaw{"TooManyCells", [](auto& g) { g.cells.push_back(Cell::free); }, "cells"},
-                    Flaw{"TooFewProbabilities", [](auto& g) { g.probability.assign(5, 0.5f); },
-                         "probabilities"},
-                    Flaw{"ZeroResolution", [](auto& g) { g.resolution = 0.0; }, "resolution"},
-                    Flaw{"NegativeResolution", [](auto& g) { g.resolution = -0.05; }, "resolution"},
-                    Flaw{"NanResolution", [](auto& g) { g.resolution = kNan; }, "resolution"},
-                    Flaw{"InfiniteResolution", [](auto& g) { g.resolution = kInfinity; }, "resolution"},
-                    Flaw{"NanX", [](auto& g) { g.origin.x = kNan; }, "origin"},
-                    Flaw{"InfiniteY", [](auto& g) { g.origin.y = -kInfinity; }, "origin"},
-                    Flaw{"NanYaw", [](auto& g) { g.origin.theta = kNan; }, "origin"}),
+    testing::Values(
+        Flaw{"ZeroWidth", [](auto& g) { g.width = 0; }, "width and height"},
+        Flaw{"NegativeHeight", [](auto& g) { g.height = -3; }, "width and height"},
+        Flaw{"BothNegative", [](auto& g) { g.width = -2, g.height = -3; }, "width and height"},
+        Flaw{"TooFewCells", [](auto& g) { g.cells.pop_back(); }, "cells"},
+        Flaw{"TooManyCells", [](auto& g) { g.cells.push_back(Cell::free); }, "cells"},
+        Flaw{"TooFewProbabilities", [](auto& g) { g.probability.assign(5, 0.5f); }, "probabilities"},
+        Flaw{"ZeroResolution", [](auto& g) { g.resolution = 0.0; }, "resolution"},
+        Flaw{"NegativeResolution", [](auto& g) { g.resolution = -0.05; }, "resolution"},
+        Flaw{"NanResolution", [](auto& g) { g.resolution = kNan; }, "resolution"},
+        Flaw{"InfiniteResolution", [](auto& g) { g.resolution = kInfinity; }, "resolution"},
+        Flaw{"TinyResolution", [](auto& g) { g.resolution = 9e-7; }, "resolution"},
+        Flaw{"HugeResolution", [](auto& g) { g.resolution = 1001.0; }, "resolution"},
+        Flaw{"FarOrigin", [](auto& g) { g.origin.y = -2.1 * kMaxOrigin; }, "origin"},
+        Flaw{"NoCell", [](auto& g) { g.cells[3] = static_cast<Cell>(3); }, "unknown, free"},
+        Flaw{"LastCell", [](auto& g) { g.cells.back() = static_cast<Cell>(255); }, "unknown, free"},
+        Flaw{"NanX", [](auto& g) { g.origin.x = kNan; }, "origin"},
+        Flaw{"InfiniteY", [](auto& g) { g.origin.y = -kInfinity; }, "origin"},
+        Flaw{"NanYaw", [](auto& g) { g.origin.theta = kNan; }, "origin"}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace

@@ -229,7 +229,13 @@ TEST(SaveMap, RefusesWhatCouldNotBeLoaded) {
   const TemporaryDirectory directory;
   OccupancyGrid grid = small_grid();
   grid.resolution = 1e-9;
-  EXPECT_TRUE(contains(error_of(grid, directory.file("a.yaml")), "the resolution 1e-09"));
+  EXPECT_THROW(save_map(grid, directory.file("a.yaml")), std::invalid_argument);
+  grid = small_grid();
+  grid.cells[1] = static_cast<Cell>(100);
+  EXPECT_THROW(save_map(grid, directory.file("a.yaml")), std::invalid_argument);
+  grid = small_grid();
+  grid.origin.x = 1.5 * kMaxOrigin;  // merged of maps far away, for example
+  EXPECT_TRUE(contains(error_of(grid, directory.file("a.yaml")), "'origin' is further than"));
   grid = small_grid();
   EXPECT_TRUE(contains(error_of(grid, directory.file("\x02\x9c.yaml")), "cannot be written in YAML"));
   grid.cells.pop_back();

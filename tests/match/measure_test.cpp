@@ -93,6 +93,7 @@ TEST(MeasureMaps, RefusesMapsThatLieApart) {
   EXPECT_THROW(measure_pose(pair.fixed, pair.moving, {0.0, 0.0, std::nan("")}), std::invalid_argument);
   EXPECT_THROW(measure_pose(pair.fixed, pair.moving, {}, -1), std::invalid_argument);
   EXPECT_THROW(measure_maps(pair.fixed, {}), std::invalid_argument);
+  EXPECT_THROW(measure_maps(pair.fixed, std::array{PlacedMap{}}), std::invalid_argument);
   // A map that lies on another moving map only is in its place.
   const SE2 beside = SE2{15.0, 0.0, 0.0} * pair.truth, far = SE2{30.0, 0.0, 0.0} * pair.truth;
   std::array<PlacedMap, 2> chain{{{&pair.moving, beside}, {&pair.moving, far}}};

@@ -149,7 +149,8 @@ TEST(RefinePose, OfSmallCellsItLooksNoFurtherThanSomeCells) {
   const PreparedMap fine = in_cells_of(0.005);
   EXPECT_LT(left_over(fine, 0.005, 30.0), 1.0);
   ASSERT_GT(left_over(fine, 0.005, 150.0), 10.0) << "with yet smaller cells this would take all memory";
-  for (const double cell : {1e-4, 1e-9}) EXPECT_LT(left_over(in_cells_of(cell), cell, 30.0), 1.0) << cell;
+  for (const double cell : {1e-4, kMinResolution})
+    EXPECT_LT(left_over(in_cells_of(cell), cell, 30.0), 1.0) << cell;
 }
 
 TEST(RefinePose, RefusesAStartThatIsNotFinite) {

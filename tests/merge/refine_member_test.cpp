@@ -55,6 +55,8 @@ TEST(RefineMember, RefusesWhatItCannotFuse) {
   EXPECT_THROW(refine_member({placed(kA, T_a_building), far}, moving), std::invalid_argument);
   EXPECT_THROW(refine_member({placed(kA, T_a_building), nowhere}, moving), std::invalid_argument);
   EXPECT_THROW(refine_member({nowhere}, moving), std::invalid_argument);
+  EXPECT_THROW(refine_member({PlacedMap{}}, moving), std::invalid_argument);
+  EXPECT_THROW(refine_member({placed(kA, T_a_building)}, PlacedMap{}), std::invalid_argument);
 }
 
 }  // namespace

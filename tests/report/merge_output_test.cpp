@@ -255,29 +255,29 @@ TEST(MergeOutput, MapsMayReachAsFarAsOriginsMay) {
 
 TEST(MergeOutput, AMergedMapMayHaveTwoToThe28Cells) {
   // 2^8 cells, each of which is 2^20 smaller ones.
-  std::vector<OccupancyGrid> maps{make_grid(16, 16, 1024.0, {}, Cell::free)};
+  std::vector<OccupancyGrid> maps{make_grid(16, 16, 512.0, {}, Cell::free)};
   const Names names{"a", "b"};
-  EXPECT_FALSE(check_merged_size(names, maps, 1.0));
-  EXPECT_EQ(message_of<FileError>([&] { check_merged_size(names, maps, 0.75); }),
-            "a: alone has 4.77e+08 cells of 0.75 m, and a merged map may have 2^28: choose an output "
-            "resolution of 1.5 m (--output-resolution)");
+  EXPECT_FALSE(check_merged_size(names, maps, 0.5));
+  EXPECT_EQ(message_of<FileError>([&] { check_merged_size(names, maps, 0.375); }),
+            "a: alone has 4.77e+08 cells of 0.375 m, and a merged map may have 2^28: choose an output "
+            "resolution of 0.71 m (--output-resolution)");
   // Two have twice as many: cells of twice the side have room to spare.
   maps.push_back(maps[0]);
-  EXPECT_DOUBLE_EQ(check_merged_size(names, maps, 1.0).value_or(0.0), 2.0);
-  EXPECT_FALSE(check_merged_size(names, maps, 2.0));
-  maps[1] = make_grid(1, 1, 1.0, {}, Cell::free);
-  EXPECT_DOUBLE_EQ(check_merged_size(names, maps, 1.0).value_or(0.0), 1.5);
+  EXPECT_DOUBLE_EQ(check_merged_size(names, maps, 0.5).value_or(0.0), 1.0);
+  EXPECT_FALSE(check_merged_size(names, maps, 1.0));
+  maps[1] = make_grid(1, 1, 0.5, {}, Cell::free);
+  EXPECT_DOUBLE_EQ(check_merged_size(names, maps, 0.5).value_or(0.0), 0.71);
 }
 
 TEST(MergeOutput, OfATooLargeMapWhatIsKnownCounts) {
   const Names names{"a"};
-  std::vector<OccupancyGrid> maps{make_grid(17, 16, 1024.0)};
-  EXPECT_TRUE(contains(message_of<FileError>([&] { check_merged_size(names, maps, 1.0); }),
+  std::vector<OccupancyGrid> maps{make_grid(17, 16, 512.0)};
+  EXPECT_TRUE(contains(message_of<FileError>([&] { check_merged_size(names, maps, 0.5); }),
                        "a: alone has 2.85e+08 cells"));  // nothing is known
   maps[0].at(0, 0) = maps[0].at(15, 15) = Cell::free;
-  EXPECT_FALSE(check_merged_size(names, maps, 1.0));
+  EXPECT_FALSE(check_merged_size(names, maps, 0.5));
   maps[0].at(16, 15) = Cell::free;
-  EXPECT_TRUE(contains(message_of<FileError>([&] { check_merged_size(names, maps, 1.0); }),
+  EXPECT_TRUE(contains(message_of<FileError>([&] { check_merged_size(names, maps, 0.5); }),
                        "a: alone has 2.85e+08 cells"));
 }
 

@@ -109,6 +109,12 @@ TEST(LieOnEachOther, WhenTheKnownRectanglesShareACell) {
   EXPECT_FALSE(lie_on_each_other(fixed, moving, {0.0, std::nan(""), 0.0}));
 }
 
+TEST(LieOnEachOther, AtTheVeryEdgeOfWhereMapsMayLie) {
+  OccupancyGrid map = make_grid(100, 100, 0.1, {kMaxOrigin, -kMaxOrigin, 0.5});
+  for (int i = 40; i < 60; ++i) map.at(i, 50) = Cell::free;
+  EXPECT_TRUE(lie_on_each_other(map, map, {}));
+}
+
 TEST(Lattice, RefusesWhatItCannotDraw) {
   const OccupancyGrid map = make_grid(6, 4, 0.1, {}, Cell::free);
   const OccupancyGrid fine = make_grid(6, 4, 0.0009, {}, Cell::free);
@@ -120,8 +126,13 @@ TEST(Lattice, RefusesWhatItCannotDraw) {
   EXPECT_THROW(draw_on_lattice(map, {&fine, {}}), std::invalid_argument);
   EXPECT_THROW(draw_on_lattice(broken, {&map, {}}), std::invalid_argument);
   EXPECT_THROW(lie_on_each_other(map, broken, {}), std::invalid_argument);
-  const std::vector<PlacedMap> maps{{&map, {}}, {&broken, {}}};
-  EXPECT_THROW(count_equal_cells(map, maps), std::invalid_argument);
+  EXPECT_THROW(draw_on_lattice(map, PlacedMap{}), std::invalid_argument);
+  for (const PlacedMap& bad : {PlacedMap{&broken, {}}, PlacedMap{}}) {
+    const std::vector<PlacedMap> maps{{&map, {}}, bad};
+    EXPECT_THROW(count_equal_cells(map, maps), std::invalid_argument);
+  }
+  const std::vector<PlacedMap> maps{{&map, {}}};
+  EXPECT_THROW(count_equal_cells(broken, maps), std::invalid_argument);
 }
 
 }  // namespace

@@ -20,7 +20,8 @@
 namespace gridmerge {
 
 /// Root mean square, over the known cells of the moving map, of the distance between where two transforms of
-/// it put a cell [m]. Symmetric in the transforms. O(cells).
+/// it put a cell [m]. Symmetric in the transforms. Throws std::invalid_argument for an invalid grid.
+/// O(cells).
 GRIDMERGE_EXPORT double rms_displacement(const OccupancyGrid& moving, const SE2& T_estimate,
                                          const SE2& T_truth);
 

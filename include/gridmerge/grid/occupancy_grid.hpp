@@ -55,6 +55,16 @@ struct OccupancyGrid {
 /// exact as a floating point number too.
 inline constexpr std::uint32_t kMaxGridCells = std::uint32_t{1} << 28;
 
+/// Resolutions below this are no map's [m/cell]: what has one is damaged or hostile.
+inline constexpr double kMinResolution = 1e-6;
+/// Nor are resolutions above this [m/cell].
+inline constexpr double kMaxResolution = 1e3;
+
+/// [m] Origins further from zero are in no file and no bag: far beyond any map, and still far from where a
+/// double stops resolving micrometres. A grid's may lie twice as far: what is cut out of maps, or merged of
+/// them, reaches beyond their origins.
+inline constexpr double kMaxOrigin = 1e9;
+
 /// A grid of `width` x `height` cells, all of them `fill`. Throws std::invalid_argument for a negative size.
 GRIDMERGE_EXPORT OccupancyGrid make_grid(int width, int height, double resolution, const SE2& origin = {},
                                          Cell fill = Cell::unknown);
@@ -73,7 +83,8 @@ struct CellCounts {
 GRIDMERGE_EXPORT CellCounts count_cells(const OccupancyGrid& grid);
 
 /// Throws std::invalid_argument, saying what is wrong, unless sizes are positive, the vectors' lengths fit
-/// them, and resolution and origin are finite (resolution also positive).
+/// them, the resolution lies within [kMinResolution, kMaxResolution], the origin within 2 kMaxOrigin of zero
+/// along each axis, its yaw is finite, and every cell has a value that Cell names. O(cells).
 GRIDMERGE_EXPORT void validate(const OccupancyGrid& grid);
 
 /// A map, and the transform that takes its frame to the output's.
@@ -81,5 +92,8 @@ struct PlacedMap {
   const OccupancyGrid* map = nullptr;  ///< not owned; outlives its use
   SE2 T_output_map;                    ///< takes the map's frame to the output's [m, rad]
 };
+
+/// Throws std::invalid_argument unless there is a map, a valid one, and the transform is finite.
+GRIDMERGE_EXPORT void validate(const PlacedMap& placed);
 
 }  // namespace gridmerge

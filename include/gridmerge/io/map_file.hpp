@@ -12,15 +12,6 @@
 
 namespace gridmerge {
 
-/// Resolutions below this are no map's [m/cell]: a file that has one is damaged or hostile.
-inline constexpr double kMinResolution = 1e-6;
-/// Nor are resolutions above this [m/cell].
-inline constexpr double kMaxResolution = 1e3;
-
-/// [m] Origins further from zero are no map's: far beyond any, and still far from where a double stops
-/// resolving micrometres.
-inline constexpr double kMaxOrigin = 1e9;
-
 /// How map files are read.
 struct LoadOptions {
   double resolution = 0.0;                ///< [m/cell] of a bare image; 0 = a bare image is an error

@@ -32,9 +32,9 @@ struct JointMeasure {
 };
 
 /// Measures moving maps laid on a fixed one: their `T_output_map` is T_fixed_moving [m, rad]. `threads` as in
-/// MatchOptions; the result does not depend on it. Throws std::invalid_argument for no moving map, as
-/// SimilarityMeter does, and for a map that lies on none of the others (lie_on_each_other()), naming it by
-/// its place. Per moving map the time of match() and of a Delta.
+/// MatchOptions; the result does not depend on it. Throws std::invalid_argument for no moving map, for one
+/// that validate() refuses, as SimilarityMeter does, and for a map that lies on none of the others
+/// (lie_on_each_other()), naming it by its place. Per moving map the time of match() and of a Delta.
 GRIDMERGE_EXPORT JointMeasure measure_maps(const OccupancyGrid& fixed, std::span<const PlacedMap> moving,
                                            int threads = 0);
 
