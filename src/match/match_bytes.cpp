@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <cmath>
-#include <span>
 #include <stdexcept>
 
 #include "gridmerge/match/stored_match.hpp"
@@ -13,24 +10,8 @@ using namespace internal;
 
 namespace {
 
-constexpr std::uint8_t kLastVerdict = static_cast<std::uint8_t>(Verdict::accepted);
-constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::contradicts_others);
-
 std::size_t bytes_of_a_hypothesis() {
   return 8 * (6 + pose_figures().size());
-}
-
-/// Throws std::invalid_argument for what no match can have found.
-void check_scale(double scale) {
-  if (!(std::isfinite(scale) && scale > 0.0)) throw std::invalid_argument("holds a scale that no match has");
-}
-
-void check_figures(double score, const PoseFigures& figures) {
-  const std::span<const PoseFigure> all = pose_figures();
-  const bool are_sound =
-      std::isfinite(score) && figures.sigma >= 0.0 &&
-      std::all_of(all.begin(), all.end(), [&](const auto& one) { return std::isfinite(figures.*one.value); });
-  if (!are_sound) throw std::invalid_argument("holds a figure that no match has");
 }
 
 }  // namespace
@@ -57,26 +38,20 @@ MatchResult match_from_bytes(std::string_view bytes) {
   ByteReader reader(bytes);
   MatchResult match;
   read_pair_pose(reader, match);
-  const std::uint8_t verdict = reader.byte(), reason = reader.byte();
-  if (verdict > kLastVerdict || reason > kLastReason)
-    throw std::invalid_argument("holds a verdict that no match has");
-  match.verdict = static_cast<Verdict>(verdict);
-  match.reason = static_cast<Reason>(reason);
+  match.verdict = static_cast<Verdict>(reader.byte());
+  match.reason = static_cast<Reason>(reader.byte());
   match.seconds = reader.number();
   match.scale = reader.number();
-  check_scale(match.scale);
   match.hypotheses.resize(reader.count(bytes_of_a_hypothesis()));
   for (Hypothesis& one : match.hypotheses) {
     one.T_fixed_moving = reader.pose();
     one.score = reader.number();
     one.probability = reader.number();
-    check_pose(one.T_fixed_moving, one.probability);
     one.scale = reader.number();
-    check_scale(one.scale);
     for (const PoseFigure& figure : pose_figures()) one.figures.*figure.value = reader.number();
-    check_figures(one.score, one.figures);
   }
   if (!reader.is_at_end()) throw std::invalid_argument("holds more than a match");
+  if (const char* flaw = flaw_of(match)) throw std::invalid_argument(flaw);
   return match;
 }
 

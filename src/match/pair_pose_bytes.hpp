@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
 #include <stdexcept>
 
 #include "gridmerge/match/match_result.hpp"
 #include "match/bytes.hpp"
+#include "match/flaw.hpp"
 
 namespace gridmerge::internal {
-
-/// Throws std::invalid_argument for what no match can have found.
-inline void check_pose(const SE2& T, double probability) {
-  const bool is_sound = is_finite(T) && probability >= 0.0 && probability <= 1.0;
-  if (!is_sound) throw std::invalid_argument("holds a pose that no match has");
-}
 
 inline void write_pair_pose(const PairPose& pose, ByteWriter& writer) {
   writer.pose(pose.T_fixed_moving);
@@ -24,6 +18,7 @@ inline void write_pair_pose(const PairPose& pose, ByteWriter& writer) {
   writer.number(pose.overlap);
 }
 
+/// Throws std::invalid_argument for what no match can have found.
 inline void read_pair_pose(ByteReader& reader, PairPose& pose) {
   pose.T_fixed_moving = reader.pose();
   pose.probability = reader.number();
@@ -31,10 +26,7 @@ inline void read_pair_pose(ByteReader& reader, PairPose& pose) {
   pose.agreement = static_cast<std::int64_t>(reader.whole());
   pose.disagreement = static_cast<std::int64_t>(reader.whole());
   pose.overlap = reader.number();
-  check_pose(pose.T_fixed_moving, pose.probability);
-  if (!(std::isfinite(pose.acceptance_index) && pose.agreement >= 0 && pose.disagreement >= 0 &&
-        pose.overlap >= 0.0 && std::isfinite(pose.overlap)))
-    throw std::invalid_argument("holds a comparison that no match has");
+  if (const char* flaw = flaw_of(pose)) throw std::invalid_argument(flaw);
 }
 
 }  // namespace gridmerge::internal

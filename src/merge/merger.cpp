@@ -32,6 +32,15 @@ MergeOptions checked(MergeOptions options) {
   return options;
 }
 
+/// Throws std::invalid_argument for poses that the joint solution could not weigh: it divides by deviations.
+void require_weighable(const MatchResult& match) {
+  constexpr double kLeast = 1e-9, kMost = 1e9;  // [m]
+  for (const CandidateJoin& candidate : candidate_joins(match)) {
+    if (!(candidate.sd >= kLeast && candidate.sd <= kMost))
+      throw std::invalid_argument("the match holds a likely pose without a `sigma` that walls can have");
+  }
+}
+
 std::unique_ptr<const MapStore::Input> prepare(OccupancyGrid map) {
   return std::make_unique<const MapStore::Input>(std::make_shared<const OccupancyGrid>(std::move(map)));
 }
@@ -134,6 +143,8 @@ class __attribute__((visibility("hidden"))) Merger::State {  // or it is as publ
     store_.require(made.fixed);
     store_.require(made.moving);
     if (made.fixed == made.moving) throw std::invalid_argument("a map is not matched with itself");
+    validate(match);
+    require_weighable(match);
     looks_.hand_in({made.fixed, made.moving}, made.search, std::move(match));
     if (made.search == looks_.first_search()) first_.reset();
   }

@@ -26,7 +26,7 @@ MatchResult drawn_match() {
   match.disagreement = count();
   match.overlap = share();
   match.verdict = *rc::gen::element(Verdict::refused, Verdict::accepted);
-  match.reason = static_cast<Reason>(*rc::gen::inRange(0, 7));
+  match.reason = static_cast<Reason>(*rc::gen::inRange(0, 8));
   match.seconds = *rc::gen::arbitrary<double>();
   match.scale = *rc::gen::inRange(1, 5000) / 977.0;
   match.hypotheses.resize(*rc::gen::inRange<std::size_t>(0, 5));
@@ -78,7 +78,16 @@ TEST(MatchBytes, RefuseWhatNoMatchHas) {
   match.probability = 0.5;
   match.reason = static_cast<Reason>(77);
   EXPECT_THROW(match_from_bytes(to_bytes(match)), std::invalid_argument);
-  match.reason = Reason::none;
+  match.reason = Reason::over_budget;
+  EXPECT_EQ(match_from_bytes(to_bytes(match)).reason, Reason::over_budget);
+  match.verdict = static_cast<Verdict>(2);
+  EXPECT_THROW(match_from_bytes(to_bytes(match)), std::invalid_argument);
+  match.verdict = Verdict::refused;
+  match.T_fixed_moving.y = 1e300;
+  EXPECT_THROW(match_from_bytes(to_bytes(match)), std::invalid_argument);
+  EXPECT_THROW(validate(match), std::invalid_argument);
+  match.T_fixed_moving.y = 0.0;
+  EXPECT_NO_THROW(validate(match));
   std::string bytes = to_bytes(match);
   bytes[bytes.size() - 1] = '\x7f';  // more hypotheses than there can be
   EXPECT_THROW(match_from_bytes(bytes), std::invalid_argument);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <random>
@@ -185,6 +186,36 @@ TEST(DueMatches, RefuseWhatNobodyAskedFor) {
   EXPECT_THROW(merger.hand_in({1, 1, SearchMethod::quick}, {}), std::invalid_argument);
   EXPECT_THROW(merger.hand_in({0, 1, SearchMethod::thorough}, {}), std::invalid_argument);
   EXPECT_EQ(merger.due().size(), 1u);
+}
+
+TEST(DueMatches, RefuseMatchesThatNoSearchCanHaveFound) {
+  const Team team;
+  Merger merger({team.maps[0], team.maps[1]});
+  const DueMatch due = merger.due().at(0);
+  const MatchResult sound = merger.make(due);
+  ASSERT_GT(sound.hypotheses.at(0).probability, 0.5);
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::function<void(MatchResult&)>> flaws{
+      [](MatchResult& match) { match.probability = kNaN; },
+      [](MatchResult& match) { match.probability = 2.0; },
+      [](MatchResult& match) { match.hypotheses[0].probability = -1.0; },
+      [](MatchResult& match) { match.T_fixed_moving.x = kNaN; },
+      [](MatchResult& match) { match.hypotheses[0].T_fixed_moving.y = 1e300; },
+      [](MatchResult& match) { match.hypotheses[0].figures.held = kNaN; },
+      [](MatchResult& match) { match.hypotheses[0].figures.sigma = 0.0; },
+      [](MatchResult& match) { match.hypotheses[0].figures.sigma = 1e-300; },
+      [](MatchResult& match) { match.hypotheses[0].figures.sigma = 1e300; },
+      [](MatchResult& match) { match.overlap = -1.0; },
+      [](MatchResult& match) { match.scale = 0.0; },
+      [](MatchResult& match) { match.reason = static_cast<Reason>(77); }};
+  for (std::size_t i = 0; i < flaws.size(); ++i) {
+    MatchResult bad = sound;
+    flaws[i](bad);
+    EXPECT_THROW(merger.hand_in(due, bad), std::invalid_argument) << i;
+    EXPECT_EQ(merger.due().size(), 1u) << i;
+  }
+  merger.hand_in(due, sound);
+  EXPECT_TRUE(merger.due().empty());
 }
 
 }  // namespace

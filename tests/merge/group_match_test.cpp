@@ -104,6 +104,7 @@ TEST_F(GroupMatchesTest, PlaceMapsWhateverTheSearch) {
           match.T_fixed_moving = between(one.fixed, one.moving);
           match.probability = 0.999;
           match.hypotheses.push_back({match.T_fixed_moving, 1000.0, match.probability});
+          match.hypotheses.back().figures.sigma = 0.1;
         }
         merger.hand_in(one, match);
       }

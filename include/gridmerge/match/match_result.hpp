@@ -108,6 +108,11 @@ struct MatchResult : PairPose {
   std::vector<Hypothesis> hypotheses;
 };
 
+/// Throws std::invalid_argument, saying what is wrong, for what no match of two maps can have found: a pose
+/// or a figure that is not finite, a probability outside [0, 1], a negative count, share or `sigma`, a scale
+/// that is not positive, or another verdict or reason than those that there are. O(hypotheses).
+GRIDMERGE_EXPORT void validate(const MatchResult& match);
+
 /// The result of the same two maps when the other one is called fixed. O(hypotheses).
 GRIDMERGE_EXPORT MatchResult inverse(MatchResult result);
 

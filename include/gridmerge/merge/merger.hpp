@@ -119,7 +119,8 @@ class GRIDMERGE_EXPORT Merger {
 
   /// Takes a match that was made elsewhere, as if solve() had made it: of the two maps as they were added
   /// last, with match_options(). Also serves for a match that is not due any more. Throws std::out_of_range
-  /// for an unknown id, and std::invalid_argument for two equal ids or a search that no look takes.
+  /// for an unknown id, and std::invalid_argument for two equal ids, a search that no look takes, a match
+  /// that validate() refuses, and a likely hypothesis without `sigma`.
   void hand_in(const DueMatch& made, MatchResult match);
 
   /// The matches that are made and still hold, for who wants to go on elsewhere: hand_in() takes them.
