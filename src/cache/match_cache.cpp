@@ -26,6 +26,7 @@ using namespace internal;
 
 namespace {
 
+constexpr std::size_t kKeyDigits = 64;
 constexpr std::size_t kFolderDigits = 2;
 constexpr const char* kMadeWith = "made-with";  // a file for each engine and probability
 constexpr std::string_view kAccept = "_accept_";
@@ -138,6 +139,10 @@ void MatchCache::warn(const std::string& message) const {
 }
 
 std::filesystem::path MatchCache::file_of(const std::string& key) const {
+  const bool is_digest =
+      key.size() == kKeyDigits && key.find_first_not_of("0123456789abcdef") == std::string::npos;
+  if (!is_digest)  // any other may lead out of the directory
+    throw std::invalid_argument("the key of a match has 64 hexadecimal digits, as match_key() gives it");
   return directory_ / key.substr(0, kFolderDigits) / (key.substr(kFolderDigits) + ".match");
 }
 

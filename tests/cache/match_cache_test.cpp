@@ -122,6 +122,20 @@ TEST_F(MatchCacheTest, AMatchUnderAnothersNameIsMissing) {
   EXPECT_EQ(cache.damaged(), 1u);
 }
 
+TEST_F(MatchCacheTest, WhatIsNoKeyIsRefused) {
+  MatchCache cache = open();
+  const std::string digits(62, '0');
+  for (const std::string& bad : {std::string(), std::string("a"), digits + "0", digits + "000", digits + "0G",
+                                 "../" + digits.substr(1), "/x" + digits, digits + "AB"}) {
+    EXPECT_THROW(cache.find(bad), std::invalid_argument) << bad;
+    EXPECT_THROW(cache.keep(bad, some_match(1.0)), std::invalid_argument) << bad;
+    EXPECT_THROW(cache.keep_if_possible(bad, some_match(1.0)), std::invalid_argument) << bad;
+    EXPECT_THROW(cache.find_or_make(bad, [] { return some_match(1.0); }), std::invalid_argument) << bad;
+  }
+  EXPECT_FALSE(cache.find(digits + "ab"));
+  EXPECT_TRUE(warned.empty());
+}
+
 TEST_F(MatchCacheTest, WhatIsNoFileIsMissing) {
   MatchCache cache = open();
   std::filesystem::create_directories(file_of(key));  // a folder

@@ -21,9 +21,10 @@ namespace internal {
 class MadeDirectories;
 }
 
-/// Matches on disk, by what they are matches of: match_key(). A file of a few kilobytes holds one, in one of
-/// 256 folders, with a digest of all that it holds. Several processes may use a directory at once, on one
-/// machine or on a shared file system: files are written whole, and renamed into place.
+/// Matches on disk, by what they are matches of: match_key(). What takes a key throws std::invalid_argument
+/// for one that is not of that form, 64 hexadecimal digits in lower case. A file of a few kilobytes holds
+/// one, in one of 256 folders, with a digest of all that it holds. Several processes may use a directory at
+/// once, on one machine or on a shared file system: files are written whole, and renamed into place.
 ///
 /// A file that is damaged, or that somebody else has put there, counts as missing. Matches of other maps,
 /// options or engines have other names, and so are never found; announce() tells of them.
