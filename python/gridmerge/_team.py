@@ -204,7 +204,7 @@ class Team:
     def forget(self, robot: str) -> None:
         """The robot is gone, and its map with it.
 
-        From now on answer() gives no pose that is of this map; the merged map goes without it from the next answer on.
+        From now on the robot has no pose in answer(). Components and merged maps go without it from the next answer on.
         """
         self._core.forget(_name("robot", robot))
 

@@ -278,20 +278,24 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
       using Effort = TeamSolver::Effort;
       const Effort effort = is_quiet ? Effort::full : goes_further ? Effort::further : Effort::soon;
       std::shared_ptr<const TeamAnswer> answer = solve(std::move(news), effort);
-      // Where nothing differs but how often robots were heard, it is the answer before.
-      const bool is_new =
-          answer && (answer->number != answer_->number || answer->problem != answer_->problem);
-      if (is_new && on_answer_) on_answer_(answer);
       lock.lock();
-      is_at_work_ = false;
       may_be_cancelled_ = answer != nullptr;
       has_unfinished_ = !answer;
       if (answer) {
         has_failed_ = !answer->problem.empty();
         is_all_done_ = answer->settled || is_quiet || (is_all_done_ && is_idle);
+        // Where nothing differs but how often robots were heard, it is the answer before.
+        const bool is_new = answer->number != answer_->number || answer->problem != answer_->problem;
         if (is_new) keep_events(answer->events);
-        answer_ = without_forgotten(std::move(answer), news_);
+        answer = without_forgotten(std::move(answer), news_);
+        answer_ = answer;
+        if (is_new && on_answer_) {  // by now answer() and take_events() have what it is given
+          lock.unlock();
+          on_answer_(answer);
+          lock.lock();
+        }
       }
+      is_at_work_ = false;
       changed_.notify_all();
     }
   }

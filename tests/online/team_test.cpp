@@ -321,6 +321,51 @@ TEST(Team, SaysThatWhatWasHeardOfAForgottenRobotIsBeingLookedAt) {
   EXPECT_EQ(team.answer()->robots.at(0).why, "there is no other map yet");
 }
 
+TEST(Team, HasWhatItTellsWhenItTellsIt) {
+  TeamOptions options;
+  options.quiet = 0ms;
+  std::atomic<Team*> its = nullptr;
+  std::atomic<int> told = 0;
+  const Explorers explorers;
+  Team team(options, [&](const std::shared_ptr<const TeamAnswer>& answer) {
+    EXPECT_EQ(its.load()->answer(), answer);
+    EXPECT_EQ(its.load()->take_events().size(), answer->events.size());
+    EXPECT_FALSE(its.load()->wait_until_settled(0ms)) << "this is work, too";
+    ++told;
+  });
+  its = &team;
+  team.hear("anna", explorers.map(0, 5));
+  team.hear("bert", explorers.map(1, 5));
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  EXPECT_GT(told, 0);
+}
+
+TEST(Team, TellsNoPoseOfARobotThatWasForgottenMeanwhile) {
+  const Explorers explorers;
+  TeamOptions options;
+  options.quiet = 0ms;
+  std::atomic<bool> is_gone = false;
+  std::atomic<int> placed_after = 0, told = 0;
+  Team team(options, [&](const std::shared_ptr<const TeamAnswer>& answer) {
+    ++told;
+    for (const RobotStatus& robot : answer->robots)
+      placed_after += is_gone && robot.name == "bert" && robot.state == RobotState::placed ? 1 : 0;
+  });
+  team.hear("anna", explorers.map(0, 5));
+  team.hear("bert", explorers.map(1, 5));
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  OccupancyGrid changed = explorers.map(0, 5);
+  for (int i = 0; i < 3; ++i) {  // work that has been cancelled once goes on to its end, so this is answered
+    changed.at(i, 0) = Cell::occupied;
+    team.hear("anna", changed);
+    std::this_thread::sleep_for(2ms);
+  }
+  team.forget("bert");
+  is_gone = true;
+  ASSERT_TRUE(team.wait_until_settled(kLong));
+  EXPECT_EQ(placed_after, 0);
+}
+
 TEST(Team, RefusesWhatMakesNoSense) {
   TeamOptions options;
   options.max_robots = 2;

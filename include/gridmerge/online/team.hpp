@@ -43,8 +43,10 @@ struct RobotStatus {
   SE2 T_world_map;               ///< takes the map's frame to its component's; the identity for one in none
   double probability = 0.0;      ///< that it lies there
   std::uint64_t maps_heard = 0;  ///< maps and parts of maps, those that changed nothing too
-  TeamTime heard_first = {};     ///< since when it is heard, by the oldest account
-  bool has_known_pose = false;   ///< one was set, and its map has not started anew since (Team::hear)
+  /// Since when it is heard, by the oldest account; TeamTime::max() for one that was not heard, but of whose
+  /// pose something is known.
+  TeamTime heard_first = {};
+  bool has_known_pose = false;  ///< one was set, and its map has not started anew since (Team::hear)
 
   /// Whether all of it is the same.
   friend bool operator==(const RobotStatus&, const RobotStatus&) = default;
@@ -87,7 +89,7 @@ struct TeamEvent {
 
   Kind kind = Kind::joined;  ///< what happened
   std::string robot;         ///< to whom
-  std::string text;          ///< one line for people, that names the robot
+  std::string text;          ///< one line for people; the robot's name stands in it as it was given
 };
 
 /// What a team knows at one moment.
@@ -141,8 +143,11 @@ GRIDMERGE_EXPORT void validate(const TeamOptions& options);
 /// component's frame is that of the robot that was heard first, for as long as it lives.
 class GRIDMERGE_EXPORT Team {
  public:
-  /// Is given each answer of a new number, by the team's thread, one after the other; must not throw, nor
-  /// call the team's destructor.
+  /// Is given each answer of a new number or with a new problem, by the team's thread, one after the other,
+  /// when answer() and take_events() have it already; must not throw, nor call the team's destructor. The
+  /// team is at work until it returns, so in it wait_until_settled() says false when its time is over. A
+  /// robot that is forgotten at the very moment at which it is called may still have its pose in what it is
+  /// given.
   using OnAnswer = std::function<void(const std::shared_ptr<const TeamAnswer>&)>;
 
   /// Throws std::invalid_argument for options that make no sense.
@@ -169,8 +174,8 @@ class GRIDMERGE_EXPORT Team {
   /// another order or started anew. Of a robot without a map it says nothing.
   void hear_age(const std::string& robot, TeamTime heard_first);
 
-  /// The robot is gone, and its map with it. From now on answer() gives no pose that is of this map; the
-  /// merged map goes without it from the next answer on. O(robots).
+  /// The robot is gone, and its map with it. From now on no RobotStatus of answer() has a pose that is of
+  /// this map. Components, their maps and TeamAnswer::merge go without it from the next answer on. O(robots).
   void forget(const std::string& robot);
 
   /// What is known of where a robot's map lies, heard or not yet. It holds until its map starts anew
