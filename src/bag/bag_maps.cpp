@@ -141,19 +141,22 @@ BagMaps::BagMaps(BagMaps&&) noexcept = default;
 BagMaps& BagMaps::operator=(BagMaps&&) noexcept = default;
 
 const std::string& BagMaps::topic() const {
-  return state_->topic;
+  static const std::string none;
+  return state_ ? state_->topic : none;
 }
 
 std::size_t BagMaps::messages() const {
-  return state_->messages.size();
+  return state_ ? state_->messages.size() : 0;
 }
 
 std::size_t BagMaps::updates() const {
+  if (!state_) return 0;
   return static_cast<std::size_t>(std::ranges::count_if(
       state_->messages, [](const BagContent::Message& message) { return message.stored.topic != kMap; }));
 }
 
 std::optional<BagMap> BagMaps::next() {
+  if (!state_) return std::nullopt;
   State& state = *state_;
   while (state.next < state.messages.size()) {
     const BagContent::Message& message = state.messages[state.next++];
@@ -163,6 +166,7 @@ std::optional<BagMap> BagMaps::next() {
 }
 
 BagMap BagMaps::last() {
+  if (!state_) throw EmptyTopic("the maps of the topic were moved elsewhere");
   const State& state = *state_;
   GrowingMap map(state.content->max_cells());
   const std::optional<std::size_t> begin = state.find_last_whole(map);

@@ -283,6 +283,20 @@ TEST_F(BagMapsTest, AMessagePackedByItselfIsUnpacked) {
                "unpacks to more than"));
 }
 
+TEST_F(BagMapsTest, WhatWasMovedElsewhereHasNothingLeft) {
+  BagMaps maps(bag_of({row_at(1, {0, 100}), row_at(2, {100, 0})}));
+  BagMaps other(std::move(maps));
+  EXPECT_EQ(other.next()->time, 1);
+  EXPECT_EQ(maps.topic(), "");
+  EXPECT_EQ(maps.messages(), 0u);
+  EXPECT_EQ(maps.updates(), 0u);
+  EXPECT_FALSE(maps.next());
+  EXPECT_THROW(maps.last(), EmptyTopic);
+  maps = std::move(other);
+  EXPECT_EQ(maps.next()->time, 2);
+  EXPECT_FALSE(other.next());
+}
+
 TEST_F(BagMapsTest, ABagCanBeCopiedAndReadTwice) {
   const Bag bag = bag_of({row_at(1, {0, 100}), row_at(2, {100, 0}), row_at(3, {100, 100})});
   const Bag copy = bag;

@@ -96,9 +96,9 @@ class GRIDMERGE_EXPORT BagMaps {
   /// O(bytes of the chunks, or messages, in which the topic is).
   explicit BagMaps(const Bag& bag, const std::string& topic = {});
   ~BagMaps();
-  /// The other has nothing left.
+  /// The other has nothing left: no topic, no messages, no maps.
   BagMaps(BagMaps&&) noexcept;
-  /// The other has nothing left.
+  /// Likewise.
   BagMaps& operator=(BagMaps&&) noexcept;
 
   /// The topic's whole name.
