@@ -7,21 +7,21 @@ namespace gridmerge {
 using namespace internal;
 
 namespace {
-thread_local const std::atomic<bool>* current = nullptr;
+thread_local const Cancellation* current = nullptr;
 }  // namespace
 
 namespace internal {
 
-const std::atomic<bool>* current_cancellation() {
+const Cancellation* current_cancellation() {
   return current;
 }
 
-CancellationScope::CancellationScope(const std::atomic<bool>* flag) : outer_(current) {
-  current = flag;
+CancellationScope::CancellationScope(const Cancellation* cancellation) : before_(current) {
+  current = cancellation;
 }
 
 CancellationScope::~CancellationScope() {
-  current = outer_;
+  current = before_;
 }
 
 }  // namespace internal
@@ -29,12 +29,15 @@ CancellationScope::~CancellationScope() {
 Cancelled::Cancelled() : std::runtime_error("the work was cancelled") {}
 
 void with_cancellation(const std::atomic<bool>& cancelled, const std::function<void()>& work) {
-  const CancellationScope scope(&cancelled);
+  const Cancellation own{&cancelled, current};
+  const CancellationScope scope(&own);
   work();
 }
 
 void throw_if_cancelled() {
-  if (current != nullptr && current->load(std::memory_order_relaxed)) throw Cancelled();
+  for (const Cancellation* one = current; one != nullptr; one = one->outer) {
+    if (one->flag->load(std::memory_order_relaxed)) throw Cancelled();
+  }
 }
 
 }  // namespace gridmerge

@@ -26,7 +26,7 @@ void with_threads(int threads, const std::function<void()>& work) {
   if (threads < 0) throw std::invalid_argument("threads must not be negative");
   std::atomic<int> begun{0};
   std::atomic<int> ended{0};
-  const std::atomic<bool>* const cancellation = current_cancellation();
+  const Cancellation* const cancellation = current_cancellation();
   begun.store(1, std::memory_order_release);
   tbb::task_arena arena(thread_count(threads));
   arena.execute([&] {
@@ -49,7 +49,7 @@ int thread_count(int threads) {
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
   std::atomic<int> begun{0};
   std::atomic<std::size_t> ended{0};
-  const std::atomic<bool>* const cancellation = current_cancellation();
+  const Cancellation* const cancellation = current_cancellation();
   begun.store(1, std::memory_order_release);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     (void)begun.load(std::memory_order_acquire);

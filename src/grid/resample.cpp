@@ -61,6 +61,7 @@ OccupancyGrid downsample(const OccupancyGrid& grid, int factor) {
   OccupancyGrid coarse = make_grid((grid.width - 1) / factor + 1, (grid.height - 1) / factor + 1,
                                    grid.resolution * factor, grid.origin);
   for (int row = 0; row < grid.height; ++row) {
+    throw_if_cancelled();
     for (int column = 0; column < grid.width; ++column) {
       Cell& target = coarse.at(column / factor, row / factor);
       target = std::max(target, grid.at(column, row));  // unknown < free < occupied

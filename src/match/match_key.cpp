@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
 #include "grid/sha256.hpp"
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/match/stored_match.hpp"
 #include "match/bytes.hpp"
 
@@ -18,6 +20,14 @@ std::string_view bytes_of(const std::vector<Value>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
 }
 
+void add(std::string_view bytes, Sha256& sha) {
+  constexpr std::size_t kAtOnce = std::size_t{1} << 16;
+  for (; !bytes.empty(); bytes.remove_prefix(std::min(kAtOnce, bytes.size()))) {
+    throw_if_cancelled();
+    sha.add(bytes.substr(0, kAtOnce));
+  }
+}
+
 }  // namespace
 
 std::string content_id(const OccupancyGrid& grid) {
@@ -27,7 +37,11 @@ std::string content_id(const OccupancyGrid& grid) {
   head.number(grid.resolution);
   head.pose(grid.origin);
   head.byte(grid.probability.empty() ? 0 : 1);
-  return to_hex(Sha256().add(head.take()).add(bytes_of(grid.cells)).add(bytes_of(grid.probability)).digest());
+  Sha256 sha;
+  sha.add(head.take());
+  add(bytes_of(grid.cells), sha);
+  add(bytes_of(grid.probability), sha);
+  return to_hex(sha.digest());
 }
 
 std::string match_key(const std::string& fixed_content, const std::string& moving_content,

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/similarity/image_similarity.hpp"
 #include "similarity/distance_kernels.hpp"
 
@@ -31,6 +32,7 @@ void pass_from_corner(DistanceMap& map, int away) {
            static_cast<std::size_t>(column);
   };
   for (int i = 0; i < map.height; ++i) {
+    throw_if_cancelled();
     const int row = away < 0 ? map.height - 1 - i : i;
     for (int j = 0; j < map.width; ++j) {
       const int column = away < 0 ? j : map.width - 1 - j;
@@ -70,6 +72,7 @@ DistanceMap make_distance_map(const OccupancyGrid& grid, Cell value) {
   const auto row_at = [&](int row) { return rows.data() + static_cast<std::size_t>(row) * stride; };
   const std::vector<std::uint16_t> below(stride, kFarDistance);  // the first row
   for (int row = 0; row < grid.height; ++row) {
+    throw_if_cancelled();
     pass_row(cells + grid.index(0, row), static_cast<std::size_t>(grid.width),
              static_cast<std::uint8_t>(value), row > 0 ? row_at(row - 1) : below.data(), row_at(row));
   }
@@ -77,6 +80,7 @@ DistanceMap make_distance_map(const OccupancyGrid& grid, Cell value) {
 
   std::vector<std::uint16_t> strip(stride * kStripRows);
   for (int first = 0; first < grid.height; first += kStripRows) {
+    throw_if_cancelled();
     rows_to_strip(row_at(first), stride, static_cast<int>(stride), strip.data());
     sweep_right(strip.data(), static_cast<int>(stride));
     sweep_left(strip.data(), static_cast<int>(stride));

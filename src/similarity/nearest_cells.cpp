@@ -9,6 +9,7 @@
 
 #include "grid/box.hpp"
 #include "grid/multiversion.hpp"
+#include "gridmerge/grid/execution.hpp"
 
 namespace gridmerge::internal {
 
@@ -147,6 +148,7 @@ void draw_nearest_cells(const OccupancyGrid& grid, const SE2& T_lattice_grid, do
 
   const auto* cells = reinterpret_cast<const std::uint8_t*>(grid.cells.data());
   for (int piece = box.left; piece < box.right; piece += kPiece) {
+    throw_if_cancelled();
     for (int row = box.bottom; row < box.top; ++row) {
       const int first = std::max(result.span(row).left, piece);
       const int last = std::min(result.span(row).right, piece + kPiece);

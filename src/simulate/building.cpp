@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/simulate/simulate.hpp"
 #include "simulate/building_parts.hpp"
 #include "simulate/floor_plan.hpp"
@@ -99,6 +100,7 @@ OccupancyGrid draw_building(const Building& building, double resolution) {
       make_grid(static_cast<int>(columns), static_cast<int>(rows), resolution, {-kMargin, -kMargin, 0.0});
   const ManyPointsTransform T_building_grid(grid.origin);
   for (int row = 0; row < grid.height; ++row) {
+    throw_if_cancelled();
     for (int column = 0; column < grid.width; ++column) {
       const int cell =
           plan.cell_at(T_building_grid * Point2{(column + 0.5) * resolution, (row + 0.5) * resolution});

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "gridmerge/grid/execution.hpp"
+
 namespace gridmerge::internal {
 
 void Draughtsman::polygon(const std::vector<Point2>& corners, double echo) {
+  throw_if_cancelled();  // whatever is drawn is drawn of these
   for (std::size_t i = 0; i < corners.size(); ++i) {
     edges.push_back({corners[i], corners[(i + 1) % corners.size()], echo});
   }

@@ -3,10 +3,15 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <stdexcept>
+#include <vector>
 
 #include "grid/parallel.hpp"
 #include "gridmerge/grid/execution.hpp"
+#include "gridmerge/grid/resample.hpp"
+#include "gridmerge/match/stored_match.hpp"
+#include "gridmerge/similarity/image_similarity.hpp"
 
 namespace gridmerge {
 
@@ -40,6 +45,35 @@ TEST(Cancellation, ReachesLoopsInLoopsWithThreadsOfTheirOwn) {
   };
   EXPECT_THROW(with_cancellation(cancelled, work), Cancelled);
   EXPECT_LT(calls.load(), 1000u);
+}
+
+TEST(Cancellation, OfTheWholeReachesAPartThatMayBeCancelledByItself) {
+  std::atomic<bool> whole{false};
+  const std::atomic<bool> part{false};
+  std::atomic<std::size_t> calls{0};
+  const auto loop = [&] {
+    parallel_for(1000000, [&](std::size_t) {
+      if (++calls == 10) whole = true;
+    });
+  };
+  EXPECT_THROW(with_cancellation(whole, [&] { with_cancellation(part, [&] { with_threads(2, loop); }); }),
+               Cancelled);
+  EXPECT_LT(calls.load(), 1000u);
+}
+
+TEST(Cancellation, ReachesLongFunctionsOfOneThread) {
+  const std::atomic<bool> cancelled{true};
+  const OccupancyGrid map = make_grid(40, 30, 0.1, {}, Cell::free);
+  const auto expect_cancelled = [&](const std::function<void()>& work) {
+    EXPECT_NO_THROW(work());
+    EXPECT_THROW(with_cancellation(cancelled, work), Cancelled);
+  };
+  expect_cancelled([&] { downsample(map, 2); });
+  expect_cancelled([&] { content_id(map); });
+  expect_cancelled([&] { make_distance_map(map, Cell::free); });
+  expect_cancelled([&] { trace_distance_map(map, Cell::free); });
+  expect_cancelled([&] { draw_on_lattice(map, {&map, {}}); });
+  expect_cancelled([&] { count_equal_cells(map, std::vector<PlacedMap>{{&map, {}}}); });
 }
 
 TEST(Cancellation, ReachesThoseWhoAskThemselves) {

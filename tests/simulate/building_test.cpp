@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "gridmerge/grid/execution.hpp"
 #include "gridmerge/simulate/simulate.hpp"
 #include "simulate/floor_plan.hpp"
 #include "simulate/visit.hpp"
@@ -113,6 +115,14 @@ TEST(Building, EveryCompilerDrawsTheSame) {
     }
     EXPECT_NEAR(others, expected.others, 1e-2);
   }
+}
+
+TEST(Building, CanBeCancelled) {
+  const std::atomic<bool> cancelled{true};
+  const Building building = make_building(BuildingKind::office, 40.0, 25.0, 3);
+  EXPECT_THROW(with_cancellation(cancelled, [] { make_building(BuildingKind::office, 40.0, 25.0, 3); }),
+               Cancelled);
+  EXPECT_THROW(with_cancellation(cancelled, [&] { draw_building(building, 0.1); }), Cancelled);
 }
 
 TEST(Building, RefusesSidesThatAreNone) {

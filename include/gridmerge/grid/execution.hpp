@@ -23,8 +23,9 @@ class GRIDMERGE_EXPORT Cancelled : public std::runtime_error {
 };
 
 /// Runs `work` so that it ends with Cancelled soon after `cancelled` becomes true, from whichever thread. All
-/// long functions of the library look at it, in the threads too that they use. An exception of `work` is
-/// passed on.
+/// long functions of the library look at it, in the threads too that they use; RosNode::run() is ended by
+/// RosNode::stop() alone. Within other work that may be cancelled, either flag ends it. An exception of
+/// `work` is passed on.
 GRIDMERGE_EXPORT void with_cancellation(const std::atomic<bool>& cancelled,
                                         const std::function<void()>& work);
 
