@@ -110,7 +110,8 @@ void warn_of_other_shards(const Merger& merger, MatchCache& cache) {
 }
 
 MatchWork match_with_cache(Merger& merger, MatchCache& cache, const MatchWorkOptions& options) {
-  if (options.shard.index >= options.shard.count) throw std::invalid_argument("there is no such shard");
+  if (options.shard.index >= options.shard.count || options.shard.count > kMostShards)
+    throw std::invalid_argument("there is no such shard");
   const std::map<Merger::MapId, std::string> contents = contents_of(merger);
   const KeptComparisons kept(merger, comparisons_in(cache, options.shard, options.goes_on_when_full));
   const bool is_shard = options.shard.count > 1;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -18,6 +19,11 @@ const std::string& cell(const std::string& text) {
   return text;
 }
 
+double finite(double number) {
+  if (!std::isfinite(number)) throw std::invalid_argument("a number in a table must be finite");
+  return number;
+}
+
 }  // namespace
 
 std::string format_pairs(const std::vector<TruePair>& pairs) {
@@ -28,8 +34,8 @@ std::string format_pairs(const std::vector<TruePair>& pairs) {
   for (const TruePair& pair : pairs) {
     const SE2& T = pair.T_fixed_moving;
     fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\t{}{}\t{}\n", cell(pair.fixed.name),
-                   cell(pair.moving.name), T.x, T.y, T.theta, pair.tolerance,
-                   has_tiers ? cell(pair.tier) + '\t' : "", pair.overlap, pair.shared_wall);
+                   cell(pair.moving.name), finite(T.x), finite(T.y), finite(T.theta), finite(pair.tolerance),
+                   has_tiers ? cell(pair.tier) + '\t' : "", finite(pair.overlap), finite(pair.shared_wall));
   }
   return text;
 }
@@ -47,7 +53,8 @@ std::string format_sets(const std::vector<TrueSet>& sets) {
     for (const TrueMember& member : set.members) {
       const SE2& T = member.T_set_map;
       fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\n", cell(set.name),
-                     cell(member.map.name), T.x, T.y, T.theta, member.tolerance);
+                     cell(member.map.name), finite(T.x), finite(T.y), finite(T.theta),
+                     finite(member.tolerance));
     }
   }
   return text;

@@ -141,6 +141,8 @@ void validate(const ScaleRange& scales) {
 }
 
 void validate(const MatchOptions& options) {
+  if (static_cast<std::size_t>(options.search) >= search_methods().size())
+    throw std::invalid_argument("there is no such search");
   if (options.scales) {
     validate(*options.scales);
     if (options.search == SearchMethod::random_walk)

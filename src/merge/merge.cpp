@@ -21,6 +21,8 @@ void validate(const MergeOptions& options) {
         "(merge_up_tree() takes it)");
   if (options.match.scales)
     throw std::invalid_argument("maps are merged at one scale: only match() searches scales");
+  if (static_cast<std::size_t>(options.transform) >= map_transforms().size())
+    throw std::invalid_argument("there is no such transform");
   validate_merge({}, options.resolution);
   false_joins_allowed(options.max_false_joins, 0);  // throws for one that makes no sense
   if (!(options.max_missed >= 0.0 && options.max_missed < 1.0))

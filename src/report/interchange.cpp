@@ -42,6 +42,7 @@ void check_placed(const NamedMerge& merge) {
   if (merge.result.components.empty())
     throw std::invalid_argument("no two maps were joined, so that no map has a place to tell");
   for (const Component& component : merge.result.components) {
+    if (component.members.empty()) throw std::invalid_argument("a component must have members");
     for (const Member& member : component.members) {
       if (member.map >= merge.names.size() || member.map >= merge.maps.size())
         throw std::out_of_range("there are fewer names or maps than the result speaks of");

@@ -47,6 +47,7 @@ Json own_verdict_json(const MatchResult& match) {
 }
 
 std::optional<std::size_t> frame_of(const Component& component) {
+  if (component.members.empty()) throw std::invalid_argument("a component must have members");
   if (!component.in_world_frame) return component.members.front().map;
   for (const Member& member : component.members) {
     if (member.T_component_map == SE2{}) return member.map;  // such as a fixed map of which no pose is known

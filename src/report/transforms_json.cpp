@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "gridmerge/report/merge_record.hpp"
@@ -99,6 +101,10 @@ std::string refused_text(const MergeResult& result, const ToldJoins& told) {
 }  // namespace
 
 std::string transforms_json(const std::vector<std::string>& map_names, const MergeResult& result) {
+  for (const std::string& name : map_names) {
+    if (name.empty() || name.find('\0') != std::string::npos)  // parse_transforms() would refuse it
+      throw std::invalid_argument("the name of a map must not be empty, nor hold a null character");
+  }
   const bool has_escapes = !std::all_of(map_names.begin(), map_names.end(), is_utf8) ||
                            (result.plan && !is_utf8(result.plan->name));
   const auto written = [&](const std::string& name) { return has_escapes ? escape_bytes(name) : name; };

@@ -67,6 +67,8 @@ void internal::validate_sides(double width, double height) {
 
 Building make_building(BuildingKind kind, double width, double height, std::uint64_t seed) {
   validate_sides(width, height);
+  if (static_cast<std::size_t>(kind) >= kKinds.size())
+    throw std::invalid_argument("there is no such kind of building");
   Random random(seed);
   Draughtsman pen;
   kKinds[static_cast<std::size_t>(kind)].draw(pen, random, width, height);

@@ -157,8 +157,10 @@ TEST_F(MatchWorkTest, RefusesWhatMakesNoSense) {
   Merger merger = filled();
   MatchCache cache(directory.file("matches"));
   MatchWorkOptions options;
-  options.shard = {2, 2};
-  EXPECT_THROW(match_with_cache(merger, cache, options), std::invalid_argument);
+  for (const Shard& none : {Shard{2, 2}, Shard{0, 0}, Shard{0, kMostShards + 1}}) {
+    options.shard = none;
+    EXPECT_THROW(match_with_cache(merger, cache, options), std::invalid_argument);
+  }
 }
 
 TEST_F(MatchWorkTest, WhatCannotBeKeptIsMadeAllTheSameIfThatIsAskedFor) {

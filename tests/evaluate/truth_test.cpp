@@ -3,6 +3,8 @@
 
 #include <clocale>
 #include <functional>
+#include <limits>
+#include <stdexcept>
 
 #include "gridmerge/evaluate/evaluate.hpp"
 #include "gridmerge/io/file_error.hpp"
@@ -166,6 +168,23 @@ TEST_F(TruthFiles, ANameWithANulIsRefused) {
   EXPECT_EQ(complaint(pairs_, kPairs + "a\0\tb\t0\t0\t0\t1\tA\t0\n"s),
             "truth.tsv:2: fixed holds a NUL character");
   EXPECT_EQ(complaint(sets_, kSets + "s\t\0a\t0\t0\t0\t1\n"s), "truth.tsv:2: map holds a NUL character");
+}
+
+TEST_F(TruthFiles, NumbersThatCouldNotBeReadAreNotWritten) {
+  TruePair pair;
+  pair.fixed.name = "a";
+  pair.moving.name = "b";
+  pair.tolerance = 1.0;
+  EXPECT_NO_THROW(format_pairs({pair}));
+  for (double TruePair::*const value : {&TruePair::tolerance, &TruePair::overlap, &TruePair::shared_wall}) {
+    TruePair bad = pair;
+    bad.*value = std::numeric_limits<double>::infinity();
+    EXPECT_THROW(format_pairs({bad}), std::invalid_argument);
+  }
+  pair.T_fixed_moving.theta = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(format_pairs({pair}), std::invalid_argument);
+  TrueSet set{"s", {{pair.fixed, {}, std::numeric_limits<double>::quiet_NaN()}}};
+  EXPECT_THROW(format_sets({set}), std::invalid_argument);
 }
 
 TEST_F(TruthFiles, ASetOfOneMapIsRefused) {

@@ -204,6 +204,12 @@ TEST(SearchMethod, PreparedMapsAreNeitherWalkedNorScaled) {
   EXPECT_THROW(match(map, map, scaled), std::invalid_argument);
 }
 
+TEST(SearchMethod, OthersThanThereAreAreRefused) {
+  MatchOptions options;
+  options.search = static_cast<SearchMethod>(77);
+  EXPECT_THROW(validate(options), std::invalid_argument);
+}
+
 TEST(SearchMethod, HowManyAreListedChangesNothingElse) {
   const OccupancyGrid one = test::draw_building(1), other = test::draw_building(2);
   MatchOptions options;

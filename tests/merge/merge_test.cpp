@@ -220,6 +220,12 @@ TEST(Merge, EndsBeforeItTakesMapsInWhenCancelled) {
   EXPECT_THROW(with_cancellation(cancelled, [&] { fuse(placed, 0.05); }), Cancelled);
 }
 
+TEST(Merge, RefusesATransformThatThereIsNot) {
+  MergeOptions options;
+  options.transform = static_cast<MapTransform>(77);
+  EXPECT_THROW(validate(options), std::invalid_argument);
+}
+
 TEST(Merge, RefusesWhatMakesNoSense) {
   const Team team;
   MergeOptions options;

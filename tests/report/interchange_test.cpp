@@ -114,6 +114,15 @@ TEST(OpenRmf, HasALevelForEachMergedMap) {
   EXPECT_EQ(yaml["merged_maps"]["merged_2.yaml"]["upper_left"].size(), 2u);
 }
 
+TEST(Exports, RefuseAComponentWithoutMembers) {
+  const std::vector<OccupancyGrid> maps(2, map_from({"#.", ".#"}, 0.1));
+  const std::vector<std::string> names = test::fleet_names(2);
+  MergeResult result = test::merged(maps, {{{0, {}}, {1, {}}}});
+  result.components.emplace_back();
+  for (const ExportFormat format : {ExportFormat::g2o, ExportFormat::open_rmf, ExportFormat::geojson})
+    EXPECT_THROW(export_text(format, {names, maps, result}), std::invalid_argument) << name_of(format);
+}
+
 TEST(Exports, TakeNamesForTextAlone) {
   const std::size_t count = test::kHostileNames.size();
   std::vector<std::string> names = test::kHostileNames;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -219,6 +220,8 @@ TEST(MergeOutput, ForeseesTheSizeOfTheMergedMap) {
   EXPECT_FALSE(check_merged_size(kNames, kMaps, 0.0));
   EXPECT_FALSE(check_merged_size({}, {}, 0.0));
   EXPECT_THROW(check_merged_size({}, kMaps, 0.0), std::out_of_range);
+  for (const double none : {std::nan(""), -1.0, 1e-300, 1e-7, 1001.0})
+    EXPECT_THROW(check_merged_size(kNames, kMaps, none), std::invalid_argument) << none;
   // 150 million cells each.
   const std::optional<double> coarser = check_merged_size(kNames, kMaps, 1e-5);
   ASSERT_TRUE(coarser);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -88,6 +89,17 @@ TEST(MergeRecord, HoldsWhatWasWritten) {
   EXPECT_EQ(read.result.not_compared->pairs, 9u);
   EXPECT_EQ(read.result.not_compared->expected_joins, 1.0 / 3.0);
   EXPECT_TRUE(read.result.components[0].fused.grid.cells.empty());
+}
+
+TEST(MergeRecord, WhatCouldNotBeReadIsNotWritten) {
+  for (const std::string& bad : {std::string(), std::string("a\0b", 3)}) {
+    std::vector<std::string> names = kNames;
+    names[1] = bad;
+    EXPECT_THROW(transforms_json(names, any_result()), std::invalid_argument);
+  }
+  MergeResult result = any_result();
+  result.components.emplace_back();  // without members
+  EXPECT_THROW(transforms_json(kNames, result), std::invalid_argument);
 }
 
 TEST(MergeRecord, KeepsNamesOfAnyBytes) {

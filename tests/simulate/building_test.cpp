@@ -117,6 +117,10 @@ TEST(Building, EveryCompilerDrawsTheSame) {
   }
 }
 
+TEST(Building, RefusesKindsThatAreNone) {
+  EXPECT_THROW(make_building(static_cast<BuildingKind>(99), 20.0, 20.0, 1), std::invalid_argument);
+}
+
 TEST(Building, CanBeCancelled) {
   const std::atomic<bool> cancelled{true};
   const Building building = make_building(BuildingKind::office, 40.0, 25.0, 3);

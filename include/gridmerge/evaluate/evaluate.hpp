@@ -79,8 +79,8 @@ GRIDMERGE_EXPORT std::vector<NegativePair> read_negatives(const std::filesystem:
 GRIDMERGE_EXPORT std::vector<TrueSet> read_sets(const std::filesystem::path& path);
 
 /// The text of a ground-truth file, which reads back to the same values (numbers to the bit). Names are those
-/// of the maps, not their paths; throws std::invalid_argument for one with a tab or a line break, and where
-/// some pairs have a tier and others have none.
+/// of the maps, not their paths; throws std::invalid_argument for one with a tab or a line break, for a
+/// number that is not finite, and where some pairs have a tier and others have none.
 GRIDMERGE_EXPORT std::string format_pairs(const std::vector<TruePair>& pairs);
 /// As format_pairs().
 GRIDMERGE_EXPORT std::string format_negatives(const std::vector<NegativePair>& negatives);

@@ -18,7 +18,8 @@
 namespace gridmerge {
 
 /// A merge as outputs show it: with its maps, and what they are called. Not owned: all of it outlives this.
-/// What takes one throws std::out_of_range when a map that it speaks of has no name.
+/// What takes one throws std::out_of_range when a map that it speaks of has no name, and
+/// std::invalid_argument for a component without members.
 struct NamedMerge {
   const std::vector<std::string>& names;   ///< `names[i]` is what to call map i
   const std::vector<OccupancyGrid>& maps;  ///< as given to merge()
@@ -38,8 +39,8 @@ GRIDMERGE_EXPORT void prepare_merge_output(const std::filesystem::path& director
 /// map, when one alone has more than kMaxGridCells of `resolution` [m] (0: merged maps are drawn so that they
 /// fit), or lies so far from zero that the merged map may begin further off than a map file can say. Returns
 /// a resolution to choose where the merged map may have more cells than that, as all maps side by side have;
-/// else nothing. Throws std::out_of_range when there are fewer names
-/// than maps. O(cells).
+/// else nothing. Throws std::invalid_argument for a resolution that is neither 0 nor within [kMinResolution,
+/// kMaxResolution], and std::out_of_range when there are fewer names than maps. O(cells).
 GRIDMERGE_EXPORT std::optional<double> check_merged_size(const std::vector<std::string>& names,
                                                          const std::vector<OccupancyGrid>& maps,
                                                          double resolution);
@@ -54,7 +55,8 @@ GRIDMERGE_EXPORT std::optional<double> check_merged_size(const std::vector<std::
 ///
 /// At every point of time who opens files by name finds all of an earlier run's or all of this one's, whether
 /// the program is killed, the disk is full or another merge writes there too; what a killed one has left is
-/// put in order first. Throws FileError: then the directory is as it was, or is not made.
+/// put in order first. Throws FileError, and std::invalid_argument as transforms_json(): then the directory
+/// is as it was, or is not made.
 GRIDMERGE_EXPORT std::vector<std::filesystem::path> write_merge_output(
     const std::filesystem::path& directory, const std::vector<std::filesystem::path>& inputs,
     const NamedMerge& merge);

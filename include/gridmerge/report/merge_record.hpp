@@ -18,9 +18,10 @@ namespace gridmerge {
 /// `transforms.json` of a merge, indented: all that there is to say of it but the maps' cells, the order of
 /// the maps included, and no times, so that the same merge gives the same bytes. Keys come in the order in
 /// which the documentation lists them, numbers in the shortest form that reads back to the same bits.
-/// `names[i]` is what to call map i, and may hold any bytes: where one is not UTF-8, all are escaped, and
-/// parse_transforms() takes that back. Throws std::out_of_range when there are fewer names than maps, and
-/// std::invalid_argument for a number that is not finite.
+/// `names[i]` is what to call map i, and may hold any bytes but null: where one is not UTF-8, all are
+/// escaped, and parse_transforms() takes that back. Throws std::out_of_range when there are fewer names than
+/// maps, and std::invalid_argument for an empty name or one with a null, a component without members, and a
+/// number that is not finite.
 GRIDMERGE_EXPORT std::string transforms_json(const std::vector<std::string>& names,
                                              const MergeResult& result);
 
