@@ -188,6 +188,24 @@ TEST(DueMatches, RefuseWhatNobodyAskedFor) {
   EXPECT_EQ(merger.due().size(), 1u);
 }
 
+TEST(DueMatches, OfPosesTooFarApartTheMergeSaysWhatIsWrong) {
+  const Team team;
+  Merger merger({team.maps[0], team.maps[1], team.maps[4]});
+  for (std::vector<DueMatch> due = merger.due(); !due.empty(); due = merger.due()) {
+    for (const DueMatch& one : due) {
+      MatchResult match = merger.make(one);
+      for (Hypothesis& hypothesis : match.hypotheses) hypothesis.T_fixed_moving.x = 1e12;
+      merger.hand_in(one, match);
+    }
+  }
+  try {
+    merger.solve();
+    FAIL() << "merged";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("would exceed 2^28 cells"), std::string::npos) << error.what();
+  }
+}
+
 TEST(DueMatches, RefuseMatchesThatNoSearchCanHaveFound) {
   const Team team;
   Merger merger({team.maps[0], team.maps[1]});
