@@ -32,44 +32,24 @@ void validate_budget(double max_false_joins) {
     throw std::invalid_argument("max_false_joins must be a number from 0 on");
 }
 
-/// In the frame of the lowest map, maps ascending.
-NodeGroup in_order(NodeGroup group) {
-  std::sort(group.begin(), group.end(),
-            [](const PlacedNode& a, const PlacedNode& b) { return a.map < b.map; });
-  const SE2 T_first_group = inverse(group.front().T_group_map);
-  for (PlacedNode& node : group) node.T_group_map = T_first_group * node.T_group_map;
-  group.front().T_group_map = {};
-  return group;
-}
-
-/// How surely each member of a group lies as it does, given the others.
-void doubt_members(const JoinWeights& weights, NodeGroup& group) {
-  if (group.size() < 2) return;
-  std::vector<double> probabilities(group.size(), 1.0);
-  parallel_for(group.size(), [&](std::size_t i) {
-    if (weights.is_fixed(group[i].map)) return;
-    const auto [rest, alone] = taken_out(group, i);
-    probabilities[i] = weights.probability_of_lying_so(rest, alone);
-  });
-  for (std::size_t i = 0; i < group.size(); ++i) {
-    if (!weights.is_fixed(group[i].map)) group[i].probability = probabilities[i];
+std::vector<UsedCandidate> used_in_all(const JoinWeights& weights, const NodeGroups& groups) {
+  std::vector<UsedCandidate> all;
+  for (const NodeGroup& group : groups) {
+    for (const UsedCandidate& used : weights.used_in(group)) all.push_back(used);
   }
-}
-
-ConsistentSet consistent_set_of(const JoinWeights& weights, const GroupCuts& cuts) {
-  ConsistentSet consistent_set;
-  consistent_set.groups = cuts.groups();
-  for (NodeGroup& group : consistent_set.groups) group = in_order(std::move(group));
-  std::sort(consistent_set.groups.begin(), consistent_set.groups.end(),
-            [](const NodeGroup& a, const NodeGroup& b) { return a.front().map < b.front().map; });
-  parallel_for(consistent_set.groups.size(),
-               [&](std::size_t g) { doubt_members(weights, consistent_set.groups[g]); });
-  for (const NodeGroup& group : consistent_set.groups) {
-    for (const UsedCandidate& used : weights.used_in(group)) consistent_set.used.push_back(used);
-  }
-  std::sort(consistent_set.used.begin(), consistent_set.used.end(),
+  std::sort(all.begin(), all.end(),
             [](const UsedCandidate& a, const UsedCandidate& b) { return a.pair < b.pair; });
-  return consistent_set;
+  return all;
+}
+
+double expected_false_joins_of(const NodeGroups& groups) {
+  double expected = 0.0;
+  for (const NodeGroup& group : groups) {
+    // Every map is doubted given the others: two maps doubt one join twice.
+    const double share = static_cast<double>(group.size() - 1) / static_cast<double>(group.size());
+    for (const PlacedNode& node : group) expected += share * (1.0 - node.probability);
+  }
+  return expected;
 }
 
 }  // namespace
@@ -109,13 +89,7 @@ std::vector<OpenJoin> find_open_joins(const JoinProblem& problem, const Consiste
 }
 
 double expected_false_joins(const ConsistentSet& consistent_set) {
-  double expected = 0.0;
-  for (const NodeGroup& group : consistent_set.groups) {
-    // Every map is doubted given the others: two maps doubt one join twice.
-    const double share = static_cast<double>(group.size() - 1) / static_cast<double>(group.size());
-    for (const PlacedNode& node : group) expected += share * (1.0 - node.probability);
-  }
-  return expected;
+  return expected_false_joins_of(consistent_set.groups);
 }
 
 double false_joins_allowed(double max_false_joins, std::size_t maps) {
@@ -130,12 +104,13 @@ ConsistentSet find_consistent_set_within(const JoinProblem& problem, double acce
   const JoinWeights weights(problem);
   GroupCuts cuts(weights, GroupSearch(weights, problem, accept_probability).groups());
   cuts.cut_below(accept_probability);
-  ConsistentSet consistent_set = consistent_set_of(weights, cuts);
-  const std::vector<UsedCandidate> without_budget = consistent_set.used;
+  ConsistentSet consistent_set{cuts.weighed_groups(), {}};
+  const std::vector<UsedCandidate> without_budget = used_in_all(weights, consistent_set.groups);
   while (expected_false_joins(consistent_set) > max_false_joins && cuts.cut_least()) {
     cuts.cut_below(accept_probability);
-    consistent_set = consistent_set_of(weights, cuts);
+    consistent_set.groups = cuts.weighed_groups();
   }
+  consistent_set.used = used_in_all(weights, consistent_set.groups);
   const std::vector<UsedCandidate>& used = consistent_set.used;
   for (const UsedCandidate& one : without_budget) {
     const auto less = [](const UsedCandidate& a, const UsedCandidate& b) { return a.pair < b.pair; };

@@ -7,6 +7,33 @@
 
 namespace gridmerge::internal {
 
+namespace {
+
+/// In the frame of the lowest map, maps ascending.
+NodeGroup in_order(NodeGroup group) {
+  std::sort(group.begin(), group.end(),
+            [](const PlacedNode& a, const PlacedNode& b) { return a.map < b.map; });
+  const SE2 T_first_group = inverse(group.front().T_group_map);
+  for (PlacedNode& node : group) node.T_group_map = T_first_group * node.T_group_map;
+  group.front().T_group_map = {};
+  return group;
+}
+
+void doubt_members(const JoinWeights& weights, NodeGroup& group) {
+  if (group.size() < 2) return;
+  std::vector<double> probabilities(group.size(), 1.0);
+  parallel_for(group.size(), [&](std::size_t i) {
+    if (weights.is_fixed(group[i].map)) return;
+    const auto [rest, alone] = taken_out(group, i);
+    probabilities[i] = weights.probability_of_lying_so(rest, alone);
+  });
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    if (!weights.is_fixed(group[i].map)) group[i].probability = probabilities[i];
+  }
+}
+
+}  // namespace
+
 GroupCuts::GroupCuts(const JoinWeights& weights, const NodeGroups& groups) : weights_(weights) {
   for (const NodeGroup& group : groups) add(group);
   find_least_from(0);
@@ -15,6 +42,20 @@ GroupCuts::GroupCuts(const JoinWeights& weights, const NodeGroups& groups) : wei
 NodeGroups GroupCuts::groups() const {
   NodeGroups all;
   for (const Part& part : parts_) all.push_back(part.group);
+  return all;
+}
+
+NodeGroups GroupCuts::weighed_groups() {
+  parallel_for(parts_.size(), [&](std::size_t i) {
+    if (parts_[i].weighed) return;
+    NodeGroup group = in_order(parts_[i].group);
+    doubt_members(weights_, group);
+    parts_[i].weighed = std::move(group);
+  });
+  NodeGroups all;
+  for (const Part& part : parts_) all.push_back(*part.weighed);
+  std::sort(all.begin(), all.end(),
+            [](const NodeGroup& a, const NodeGroup& b) { return a.front().map < b.front().map; });
   return all;
 }
 
@@ -43,7 +84,7 @@ bool GroupCuts::cut_least() {
 void GroupCuts::add(NodeGroup group) {
   NodeGroups held_together = weights_.connected(group);
   if (held_together.size() == 1) {
-    parts_.push_back({std::move(group), {}});
+    parts_.push_back({std::move(group), {}, {}});
     return;
   }
   for (NodeGroup& part : held_together) add(weights_.adjusted(std::move(part)));

@@ -20,6 +20,11 @@ class GroupCuts {
 
   NodeGroups groups() const;
 
+  /// Each in the frame of its lowest map, maps ascending, and the groups by their first maps; with how surely
+  /// each member lies as it does, given the others. For a group of n maps that is new since, n joins are
+  /// weighed.
+  NodeGroups weighed_groups();
+
   /// Cuts as long as some parts belong together less surely than so. For a group of n maps, each cut weighs
   /// less than 2 n others.
   void cut_below(double keep_probability);
@@ -34,7 +39,8 @@ class GroupCuts {
   };
   struct Part {
     NodeGroup group;
-    std::optional<Cut> least;  ///< none of a single map, or of maps that are all fixed
+    std::optional<Cut> least;          ///< none of a single map, or of maps that are all fixed
+    std::optional<NodeGroup> weighed;  ///< none before anybody asked
   };
 
   void add(NodeGroup group);
