@@ -248,6 +248,23 @@ test("a map that is only looked at in hand is not placed", async () => {
   await tab.close();
 });
 
+test("a map that is only looked at in hand is not saved", async () => {
+  const tab = await open(mergeInto("four", [...examples, elsewhere]));
+  const { page } = tab;
+  await page.click("#tab-hand");
+  await page.selectOption("#hand-map", "1");
+  await page.fill("#hand-x", "4.5");
+  await page.selectOption("#hand-map", "3");
+  const download = page.waitForEvent("download");
+  await page.click("#hand-save");
+  const file = join(source, "build/web/poses.tsv");
+  await (await download).saveAs(file);
+  const rows = readFileSync(file, "utf8").split("\n").slice(1, -1);
+  rmSync(file);
+  assert.deepEqual(rows.map((row) => row.split("\t")[0].replace(/^.*\//, "")), ["robot_1.yaml", "robot_2.yaml", "robot_3.yaml"]);
+  await tab.close();
+});
+
 test("a page is told that another merge is served at its address now", async () => {
   const first = await view(mergeInto("pair", pair, "--accept", "1"));
   const tab = await open(first.address);

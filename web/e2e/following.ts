@@ -164,6 +164,7 @@ test("a new answer loses nothing that the reader has done", () => follow(mergeIn
   assert.deepEqual(await page.locator(".saving li").allTextContents(), ["2robot_2.yaml"]);
   await page.selectOption("#hand-map", "1");
   assert.equal(await page.inputValue("#hand-x"), "3.300");
+  assert.equal(await page.inputValue("#hand-sd"), "0.05");
 }));
 
 test("the page waits while its reader is at work, and when it is told to", () => follow(mergeInto("three", examples), async (tab, page, node, next) => {

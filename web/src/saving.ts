@@ -8,7 +8,7 @@ import { radians } from "./numbers";
 import type { State } from "./state";
 
 const fileName = "poses.tsv";
-/** How well the poses of maps that were not moved are taken to be known, if the merge does not say; and never better than the last. */
+/** How well the poses of maps that were not moved are taken to be known, if the merge does not say; but never as less than `leastSd`. */
 const keptSd = { position: 0.1, theta: 0.01 };
 const leastSd = { position: 0.02, theta: 0.002 };
 /** Of those that were, in metres and degrees, unless the user knows better. */
@@ -30,7 +30,8 @@ export class Saving {
   });
   private readonly reason = h("p", { class: "invalid", id: "hand-reason", role: "status" });
   private buttons: HTMLButtonElement[] = [];
-  private maps = "";
+  private readonly deviations = h("p", {}, "Known to within ", this.sd.element, " m and ", this.sdTheta.element, " °");
+  private maps: string | null = null;
 
   constructor(state: State, poseProblem: () => string | null) {
     this.state = state;
@@ -49,10 +50,8 @@ export class Saving {
   }
 
   private rebuild(moved: number[]): void {
-    if (moved.length === 0) {
-      replace(this.element);
-      return;
-    }
+    // The fields stay where nothing is placed: the page that is loaded next finds what they hold.
+    this.element.hidden = moved.length === 0;
     const { report } = this.state;
     const command = commandWith(report, fileName);
     const save = h("button", { type: "button", id: "hand-save", class: "primary", click: () => this.save() }, `Save ${fileName}`);
@@ -61,7 +60,7 @@ export class Saving {
     replace(this.element,
       h("h3", {}, "Placed by hand"),
       h("ul", {}, ...moved.map((map) => h("li", {}, mapLabel(this.state, map)))),
-      h("p", {}, "Known to within ", this.sd.element, " m and ", this.sdTheta.element, " °"),
+      this.deviations,
       this.reason,
       h("div", { class: "buttons" }, save),
       command === null
@@ -91,7 +90,7 @@ export class Saving {
     const degrees = this.sdTheta.value;
     if (sd === null || degrees === null) return;
     const byHand = this.state.byHand();
-    const text = asInitialPoses(this.state.placed().map(({ map, T_scene_map }) => ({
+    const text = asInitialPoses(this.state.settled().map(({ map, T_scene_map }) => ({
       name: this.state.report.maps[map].name,
       transform: T_scene_map,
       ...(byHand.has(map) ? { sd, sdTheta: radians(degrees) } : this.keptDeviation(map)),

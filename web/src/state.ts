@@ -121,8 +121,14 @@ export class State {
     this.changed("hand");
   }
 
-  /** Where the maps of the scene lie, those that were put there by hand included. */
+  /** Where the maps of the scene lie, one that is only offered included. */
   placed(): Placed[] {
+    const offered = this.offered ? [{ map: this.handled!, T_scene_map: this.offered }] : [];
+    return [...this.settled(), ...offered];
+  }
+
+  /** The same without the one that is offered: where the merge or somebody has put them. */
+  settled(): Placed[] {
     const byHand = this.byHand();
     const own = this.scene.placed.map((placed) => {
       const T_scene_map = byHand.get(placed.map);
@@ -130,8 +136,7 @@ export class State {
     });
     const isOwn = (map: number) => this.scene.placed.some((placed) => placed.map === map);
     const added: Placed[] = [...byHand].filter(([map]) => !isOwn(map)).map(([map, T_scene_map]) => ({ map, T_scene_map }));
-    const offered = this.offered ? [{ map: this.handled!, T_scene_map: this.offered }] : [];
-    return [...own, ...added, ...offered];
+    return [...own, ...added];
   }
 
   poseOf(map: number): SE2 | null {
