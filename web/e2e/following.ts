@@ -92,7 +92,6 @@ test("the page of a node follows its answers, and stays where its reader looks",
     assert.equal(node.loaded, loaded + 1);
     assert.equal(await page.inputValue("#hand-map"), "1", "it is still in hand");
     await page.click("button:text-is('Let go')");
-    await page.focus("canvas");
 
     node.newest = null;
     await says(page, "The node does not answer: this is its answer 3");
@@ -165,6 +164,85 @@ test("a new answer loses nothing that the reader has done", () => follow(mergeIn
   await page.selectOption("#hand-map", "1");
   assert.equal(await page.inputValue("#hand-x"), "3.300");
   assert.equal(await page.inputValue("#hand-sd"), "0.05");
+}));
+
+test("the page goes on following, whatever has the focus", () => follow(mergeInto("three", examples), async (_tab, page, node, next) => {
+  const focus = () => page.evaluate(() => document.activeElement!.id);
+  await page.click("#layer-0");
+  await next();
+  await next();
+  assert.equal(await focus(), "", "a box that was clicked is left");
+  await page.focus("#layer-0");
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Tab");
+  assert.equal(await focus(), "strength-0");
+  node.order = [1, 2, 0];
+  await next();
+  assert.equal(await focus(), "strength-2", "it is the same robot's");
+  await next();
+  await page.click("#tab-hand");
+  await page.selectOption("#hand-map", "1");
+  await page.click("button:text-is('Let go')");
+  await next();
+  await next();
+}));
+
+test("what is hidden comes back as strong as it was, and a page that is loaded twice at once keeps its fields", () => follow(mergeInto("three", examples), async (tab, page, _node, next) => {
+  await page.fill("#strength-1", "30");
+  await page.click("#layer-1");
+  await page.click("#tab-transforms");
+  await page.fill("#tf-parent", "site");
+  await page.click("#tab-layers");
+  await page.addInitScript(() => {
+    if (sessionStorage.getItem("twice") === null) return;
+    sessionStorage.removeItem("twice");
+    // Before the first frame.
+    addEventListener("DOMContentLoaded", () => location.reload());
+  });
+  await page.evaluate(() => sessionStorage.setItem("twice", ""));
+  await page.reload();
+  await tab.settled();
+  await next();
+  assert.equal(await page.evaluate(() => sessionStorage.getItem("twice")), null);
+  assert.equal(await page.inputValue("#tf-parent"), "site");
+  await page.click("#layer-1");
+  assert.equal(await page.inputValue("#strength-1"), "30");
+}));
+
+test("where the browser keeps nothing, the page stays once its reader has done something", () => follow(mergeInto("three", examples), async (tab, page, node, next) => {
+  const place = await page.evaluate(() => {
+    dispatchEvent(new Event("pagehide"));
+    const [key] = Object.keys(sessionStorage);
+    sessionStorage.setItem(key, JSON.stringify({ view: { merge: 1 } }));
+    return key;
+  });
+  await page.addInitScript(() => {
+    Storage.prototype.setItem = () => {
+      throw new DOMException("full", "QuotaExceededError");
+    };
+  });
+  await page.evaluate((key) => {
+    // What the page that goes would keep is not what the next one finds.
+    Storage.prototype.setItem = () => {};
+    return key;
+  }, place);
+  await next();
+  assert.equal(await page.evaluate((key) => sessionStorage.getItem(key), place), null, "what nobody can read is gone");
+  await next();
+  await page.click("#tab-hand");
+  await page.selectOption("#hand-map", "1");
+  await page.fill("#hand-x", "4.5");
+  await page.click("button:text-is('Let go')");
+  await page.focus("canvas");
+  const loaded = node.loaded;
+  node.newest!++;
+  await says(page, `Answer ${node.newest! - 1}; a newer one is there`);
+  await page.waitForTimeout(2000);
+  assert.equal(node.loaded, loaded);
+  await page.click("#load-newest");
+  await says(page, `Live: answer ${node.newest}`);
+  await tab.settled();
+  await next();
 }));
 
 test("the page waits while its reader is at work, and when it is told to", () => follow(mergeInto("three", examples), async (tab, page, node, next) => {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { watchReader } from "./at_work";
 import { announce, download } from "./clipboard";
 import { h, replace } from "./dom";
 import { Following } from "./follow";
@@ -13,7 +14,7 @@ import { OverviewPanel } from "./panel_overview";
 import { PageMemory } from "./page_memory";
 import { TransformsPanel } from "./panel_transforms";
 import { type PackedGrid, type Report, expandRefused, heading, isLarge, pageTitle, summary } from "./report";
-import { describeRuler, isUnfinished } from "./ruler";
+import { describeRuler } from "./ruler";
 import { type SceneId, firstScene } from "./scene";
 import { type SE2, compose } from "./se2";
 import { SharedState } from "./shared_state";
@@ -301,6 +302,7 @@ function build(report: Report): void {
       tell("Merged map", state.merged.visible);
     },
     toggleAgreement: () => {
+      if (state.placed().length < 2) return;
       layers.toggle(state.agreement);
       tell("Agreement", state.agreement.visible);
     },
@@ -320,11 +322,8 @@ function build(report: Report): void {
     help: () => help.showModal(),
     refine: () => void hand.refine(),
   });
-  // What a new page would end: a map in hand, a pointer that is down, a measurement, a selection, a field that is filled in or worked
-  // by keyboard, a dialogue. And a join, which may be no more in the next answer.
-  const isBusy = () => state.handled !== null || state.scene.id.kind === "join" || (state.ruler !== null && isUnfinished(state.ruler)) ||
-    stage.canvas.classList.contains("grabbing") || getSelection()?.isCollapsed === false || document.querySelector(busyFields) !== null;
-  const following = report.answer === undefined ? null : new Following(report.answer, isBusy);
+  const isAtWork = watchReader(state, stage.canvas);
+  const following: Following | null = report.answer === undefined ? null : new Following(report.answer, () => isAtWork() || !memory.isSafe());
   replace(document.getElementById("app")!,
     shared.note,
     h("header", {},
@@ -335,7 +334,7 @@ function build(report: Report): void {
       h("aside", {}, tabs.element)),
     help);
   document.title = pageTitle(report);
-  const memory = new PageMemory(state, {
+  const memory: PageMemory = new PageMemory(state, {
     shared,
     take: (map) => hand.take(map),
     get sorting() {
@@ -355,9 +354,6 @@ function build(report: Report): void {
   window.addEventListener("hashchange", () => shared.restore(location.hash));
   void unpackAll(state);
 }
-
-const busyFields = "dialog[open], select:focus, input:focus-visible, input:active, input[type=color]:focus, input[type=number]:focus, " +
-  "input[type=text]:focus, input[type=search]:focus";
 
 /** A title as a file may be called. */
 function fileNameOf(title: string): string {

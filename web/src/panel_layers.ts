@@ -104,7 +104,7 @@ export class LayersPanel {
   private ownRow(id: string, label: string, look: Look, legend: Node | null, key: string): HTMLElement {
     return h("div", { class: "layer" },
       h("label", { class: "layer-name" }, this.checkbox(`layer-${id}`, look), label, keyHint(key)),
-      this.slider(label, look), legend);
+      this.slider(`strength-${id}`, label, look), legend);
   }
 
   private mapRow(map: number): HTMLElement {
@@ -115,7 +115,7 @@ export class LayersPanel {
     const coarser = coarseness(state.report.maps[map]);
     this.readings.set(map, reading);
     const color = h("input", {
-      type: "color", value: look.color, "aria-label": `Colour of ${mapName}`, "data-map": map,
+      type: "color", id: `color-${map}`, value: look.color, "aria-label": `Colour of ${mapName}`, "data-map": map,
       input: (event) => {
         look.color = (event.target as HTMLInputElement).value;
         state.changed("colors");
@@ -124,7 +124,7 @@ export class LayersPanel {
     return focusPointsOut(h("div", { class: "layer", "data-map": map },
       h("label", { class: "layer-name" }, this.checkbox(`layer-${map}`, look), mapLabel(state, map), byHandTag(),
         map < 9 ? keyHint(String(map + 1)) : null),
-      color, this.slider(mapName, look), reading, coarser === "" ? null : h("span", { class: "legend soft" }, coarser)), state, map);
+      color, this.slider(`strength-${map}`, mapName, look), reading, coarser === "" ? null : h("span", { class: "legend soft" }, coarser)), state, map);
   }
 
   private checkbox(id: string, look: Look): HTMLInputElement {
@@ -134,9 +134,9 @@ export class LayersPanel {
     return box;
   }
 
-  private slider(label: string, look: Look): HTMLInputElement {
+  private slider(id: string, label: string, look: Look): HTMLInputElement {
     const slider = h("input", {
-      type: "range", min: 0, max: 100, value: 100 * look.opacity, "aria-label": `How strongly ${label} is drawn`,
+      type: "range", id, min: 0, max: 100, value: 100 * look.opacity, "aria-label": `How strongly ${label} is drawn`,
       input: () => {
         look.opacity = Number(slider.value) / 100;
         this.state.changed("looks");
