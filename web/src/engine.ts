@@ -42,18 +42,29 @@ export async function refine({ merge, moving, pose, fixed }: Question, asking: A
       }),
       signal: asking.signal,
     });
-    const answer: unknown = await response.json().catch((error: unknown) => {
-      if (asking.signal.aborted) throw error;
-      return {};
-    });
-    if (!response.ok) throw new Error((answer as { error?: string }).error ?? `gridmerge answered ${response.status}`);
+    if (!response.ok) throw new Error(await refusal(response, asking.signal));
+    const answer = await response.json() as Partial<Refined> | null;
+    if (!isPose(answer?.transform)) throw new SyntaxError("no pose");
     return answer as Refined;
   } catch (error) {
     if (isLate) throw new Error(`gridmerge has not answered for ${longest / 1000} s`);
-    // What a browser says of a server that is gone names no cause.
-    if (error instanceof TypeError) throw new Error("gridmerge does not answer: it has ended, or cannot be reached. Start it again, and reload this page");
+    // What a browser says of a server that is gone, or has ended while it answered, names no cause.
+    if (error instanceof TypeError || error instanceof SyntaxError) throw new Error("gridmerge does not answer: it has ended, or cannot be reached. Start it again, and reload this page");
     throw error;
   } finally {
     clearTimeout(timer);
   }
+}
+
+/** The words of a server that refuses, or the number if it has none. */
+async function refusal(response: Response, signal: AbortSignal): Promise<string> {
+  const answer = await response.json().catch((error: unknown) => {
+    if (signal.aborted) throw error;
+    return null;
+  }) as { error?: unknown } | null;
+  return typeof answer?.error === "string" ? answer.error : `gridmerge answered ${response.status}`;
+}
+
+function isPose(pose: SE2 | undefined): boolean {
+  return [pose?.x, pose?.y, pose?.theta].every(Number.isFinite);
 }

@@ -12,6 +12,8 @@ export interface KeptScene {
   /** The map whose frame it is; null: the world's. */
   frame: string | null;
   placed: [string, SE2][];
+  /** Of a join: its fixed map and its moving one. */
+  pair: [string, string] | null;
 }
 
 /** As JSON holds it. */
@@ -39,7 +41,11 @@ export function keysOf({ maps }: Report): string[] {
 
 function keptScene(report: Report, keys: string[], id: SceneId): KeptScene {
   const { frame, placed } = makeScene(report, id);
-  return { kind: id.kind, frame: frame === null ? null : keys[frame], placed: placed.map(({ map, T_scene_map }) => [keys[map], T_scene_map]) };
+  const join = id.kind === "join" ? report.joins[id.join] : null;
+  return {
+    kind: id.kind, frame: frame === null ? null : keys[frame], placed: placed.map(({ map, T_scene_map }) => [keys[map], T_scene_map]),
+    pair: join && [keys[join.fixed], keys[join.moving]],
+  };
 }
 
 export function keptView(report: Report, view: SharedView, hand: HandPoses): KeptView {
@@ -73,7 +79,7 @@ export function carriedOver(report: Report, kept: KeptView): { view: SharedView;
   const moved = (point: Point): Point => (found?.T_now_then ? apply(found.T_now_then, point) : point);
   return {
     view: {
-      ...rest, scene: found?.id ?? firstScene(report), maps: byMap(kept.maps), placed: new Map(),
+      ...rest, scene: found?.id ?? sameScene(report, keys, kept.scene) ?? firstScene(report), maps: byMap(kept.maps), placed: new Map(),
       colors: byMap(kept.colors),
       center: found && kept.center && moved(kept.center),
       ruler: found && kept.ruler && { from: moved(kept.ruler.from), to: moved(kept.ruler.to) },
@@ -82,7 +88,7 @@ export function carriedOver(report: Report, kept: KeptView): { view: SharedView;
   };
 }
 
-/** The scene that shows what `kept` did, and how its frame lies in that one's; null: the frame is the same. */
+/** The scene that shows what `kept` did, and how its frame lies in that one's, if that is known; null: the frame is the same. */
 function findScene(report: Report, keys: string[], kept: KeptScene): { id: SceneId; T_now_then: SE2 | null } | null {
   const id = sameScene(report, keys, kept);
   if (!id) return null;
@@ -93,7 +99,7 @@ function findScene(report: Report, keys: string[], kept: KeptScene): { id: Scene
   return shared ? { id, T_now_then: compose(shared.T_scene_map, inverse(then.get(keys[shared.map])!)) } : null;
 }
 
-function sameScene(report: Report, keys: string[], { kind, placed }: KeptScene): SceneId | null {
+function sameScene(report: Report, keys: string[], { kind, placed, pair }: KeptScene): SceneId | null {
   const maps = placed.map(([key]) => keys.indexOf(key));
   switch (kind) {
     case "map":
@@ -105,8 +111,15 @@ function sameScene(report: Report, keys: string[], { kind, placed }: KeptScene):
       return most === 0 ? null : { kind, component: common.indexOf(most) };
     }
     case "join": {
-      const join = report.joins.findIndex(({ fixed, moving }) => fixed === maps[0] && moving === maps[1]);
-      return join < 0 ? null : { kind, join, hypothesis: nearestWay(report, join, compose(inverse(placed[0][1]), placed[1][1])) };
+      // An answer that counts the two otherwise turns them round.
+      const [one, other] = pair!.map((key) => keys.indexOf(key));
+      const join = report.joins.findIndex(({ fixed, moving }) => (fixed === one && moving === other) || (fixed === other && moving === one));
+      if (join < 0) return null;
+      const { fixed, transform } = report.joins[join];
+      const then = new Map(placed);
+      const [T_one, T_other] = pair!.map((key) => then.get(key));
+      const way = !T_one || !T_other ? transform : fixed === one ? compose(inverse(T_one), T_other) : compose(inverse(T_other), T_one);
+      return { kind, join, hypothesis: nearestWay(report, join, way) };
     }
   }
 }

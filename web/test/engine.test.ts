@@ -22,7 +22,7 @@ const never = (signal: AbortSignal) =>
   new Promise<Response>((_, reject) => signal.addEventListener("abort", () => reject(signal.reason as Error)));
 
 test("a question names the merge whose maps it numbers", async () => {
-  const asked = serve(() => Promise.resolve(new Response(JSON.stringify({ moved: 0.5 }))));
+  const asked = serve(() => Promise.resolve(new Response(JSON.stringify({ moved: 0.5, transform: identity }))));
   assert.equal((await refine(question, new AbortController())).moved, 0.5);
   assert.deepEqual(asked, [{ merge: question.merge, moving: 1, transform: identity, fixed: [{ map: 0, transform: identity }] }]);
 });
@@ -37,6 +37,13 @@ test("a refusal has the words of the server, or its number", async () => {
 test("of a server that is gone it says so, in no browser's words", async () => {
   serve(() => Promise.reject(new TypeError("Failed to fetch")));
   await assert.rejects(refine(question, new AbortController()), { message: /^gridmerge does not answer: it has ended/ });
+});
+
+test("an answer that is cut short, or has no pose, is none", async () => {
+  for (const body of ["{", "", "null", "{}", '{"transform": {"x": 1, "y": 2}}', '{"transform": {"x": 1, "y": null, "theta": 0}}']) {
+    serve(() => Promise.resolve(new Response(body, { status: 200 })));
+    await assert.rejects(refine(question, new AbortController()), { message: /^gridmerge does not answer/ }, body);
+  }
 });
 
 test("nobody waits for ever", async () => {

@@ -71,6 +71,28 @@ test("a group that parts is followed by the pose to where most of it is, and a s
   assert.equal(there.view.center, null, "a place of a scene that is no more");
 });
 
+test("a join that is turned round, or has no way, is shown still", () => {
+  const ways = [pose(1, 2, 0.3), pose(4, -1, 2)].map((transform) => ({ transform, score: 1, probability: 0.5 }));
+  const [one, ...others] = report.joins;
+  const ambiguous = { ...report, joins: [{ ...one, transform: ways[0].transform, hypotheses: ways }, ...others] };
+  const view: SharedView = { ...defaultView(report), scene: { kind: "join", join: 0, hypothesis: 1 }, center: { x: 3, y: 1 }, metres: 4 };
+  const hand: HandPoses = [[view.scene, new Map([[1, pose(5, 5, 1)]])]];
+  const turned = carried(ambiguous, view, hand, reordered(ambiguous, [1, 0, 2]));
+  assert.deepEqual(turned.view.scene, view.scene);
+  const T = inverse(ways[1].transform);
+  near({ ...apply(T, view.center!), theta: 0 }, { ...turned.view.center!, theta: 0 });
+  assert.deepEqual(turned.hand.map(([id]) => id), [view.scene]);
+  near(turned.hand[0][1].get(0)!, compose(T, pose(5, 5, 1)));
+
+  const wayless = { ...report, joins: [{ ...one, outcome: "refused" as const, probability: 0 }, ...others] };
+  const scene = { kind: "join" as const, join: 0, hypothesis: -1 };
+  const laid: HandPoses = [[scene, new Map([[1, pose(5, 5, 1)]])]];
+  assert.deepEqual(carried(wayless, { ...view, scene }, laid, wayless), { view: { ...view, scene }, hand: laid });
+  const both = carried(wayless, { ...view, scene }, laid, reordered(wayless, [1, 0, 2]));
+  assert.deepEqual(both.view.scene, scene);
+  assert.deepEqual(carried(wayless, { ...view, scene }, [], ambiguous).view.scene, { ...scene, hypothesis: 0 }, "it has a way now");
+});
+
 test("maps of one name are told apart", () => {
   const twins = { ...report, maps: report.maps.map((map) => ({ ...map, name: "map.yaml" })) };
   const view = { ...defaultView(twins), maps: new Map([[0, 0.5], [2, 0]]) };

@@ -36,7 +36,14 @@ export function reordered(report: Report, order: number[]): Report {
       ...component, frame: component.frame === null ? null : now(component.frame),
       members: component.members.map((member) => ({ ...member, map: now(member.map) })),
     })),
-    joins: report.joins.map((one) => ({ ...one, fixed: now(one.fixed), moving: now(one.moving) })),
+    joins: report.joins.map((one) => {
+      const [fixed, moving] = [now(one.fixed), now(one.moving)];
+      // The map that comes first is the fixed one.
+      return fixed <= moving ? { ...one, fixed, moving } : {
+        ...one, fixed: moving, moving: fixed, transform: inverse(one.transform),
+        hypotheses: one.hypotheses.map((way) => ({ ...way, transform: inverse(way.transform) })),
+      };
+    }),
     left_out: report.left_out.map((one) => ({ ...one, map: now(one.map) })),
     open_ways: report.open_ways.map((way) => ({ ...way, fixed: now(way.fixed), moving: now(way.moving) })),
   };
