@@ -63,6 +63,7 @@ std::shared_ptr<const std::string> LivePage::page() {
   with_threads(threads_, [&] { made = page_of(*answer); });
   page_ = std::make_shared<const std::string>(std::move(made.html));
   page_answer_ = answer;
+  if (answer->merge->maps.empty()) return page_;  // nobody is at work on the page that waits
   const std::lock_guard lock(mutex_);
   std::erase_if(shown_, [&](const Shown& shown) { return shown.merge == made.merge; });
   shown_.push_front({std::move(made.merge), answer->merge->maps});

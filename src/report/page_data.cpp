@@ -157,7 +157,8 @@ Json page_data(const NamedMerge& merge) {
                {"left_out", std::move(left_out)}, {"open_ways", std::move(open_ways)}};
   if (result.plan) content["plan"] = plan_page_json(merge);
   Json page{{"version", kVersion}, {"live", false}, {"merge", name_of_content(content)}};
-  page.update(content);
+  // Moved: it holds all cells.
+  for (auto& [key, value] : content.items()) page[key] = std::move(value);
   return page;
 }
 
