@@ -75,6 +75,13 @@ test("keys of the map say what they have done, and so does a button that copies"
   await page.click("#tab-transforms");
   await page.click("button:text-is('TF') >> nth=0");
   await hears(page, "Copied robot_1.yaml as TF, for static_transform_publisher");
+  // One map by itself has nothing to agree with.
+  await page.selectOption("#scene", { index: 1 });
+  await page.focus("canvas");
+  await page.keyboard.press("g");
+  await hears(page, "Metre grid shown");
+  await page.keyboard.press("a");
+  await hears(page, "Metre grid shown");
   await tab.close();
 });
 
@@ -123,6 +130,9 @@ test("nothing that has the focus lies under the map, however small the window is
       assert.ok(left >= 0 && right <= width, "all buttons are on the screen");
       assert.ok(bottom <= map.y + 1, "and beside the map");
     }
+    await page.locator(".stage-buttons button").last().focus();
+    await page.keyboard.press("Tab");
+    assert.equal(await page.evaluate(() => document.activeElement!.id), "stage", "Tab goes down the window");
     await page.evaluate(() => window.scrollTo(0, 0));
     await tab.screenshot(`small_${width}`);
     await tab.close();

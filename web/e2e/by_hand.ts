@@ -140,12 +140,17 @@ test("no other numbers are saved than those that the fields show", async () => {
     return row.split("\t");
   };
   assert.deepEqual((await saved()).slice(4), ["0.3", String((2 * Math.PI) / 180)]);
+  await page.press("#hand-sd-theta", "ArrowUp");
+  assert.equal(await page.inputValue("#hand-sd-theta"), "2.5", "by a round step");
   const fields = [["#hand-sd", "0.05"], ["#hand-sd-theta", "1"], ["#hand-x", "2.25"], ["#hand-y", "3"], ["#hand-theta", "30"]];
   for (const [field, right] of fields) {
     for (const wrong of ["0", "-5", "", "1e9", "1e300"].filter((text) => field.startsWith("#hand-sd") || Math.abs(Number(text)) > 5 || text === "")) {
       const pose = await page.inputValue("#hand-x");
       await page.fill(field, wrong);
       assert.equal(await page.getAttribute(field, "aria-invalid"), "true", `${field} ${wrong}`);
+      const isPose = !field.startsWith("#hand-sd");
+      assert.equal(await page.getAttribute(field, "aria-describedby"), isPose ? "hand-pose-note" : "hand-reason");
+      assert.equal(await page.getAttribute("#hand-reason", "aria-live"), isPose ? "off" : "polite", "what is wrong is heard once");
       assert.match((await page.textContent("#hand-reason"))!, /^Not to be saved: .+ has to be a number from -?[\d.]+ to \d+\.$/);
       for (const button of ["#hand-save", "button:text-is('Copy command')"]) assert.ok(await page.isDisabled(button), `${field} ${wrong}`);
       if (field === "#hand-x") {
@@ -157,6 +162,7 @@ test("no other numbers are saved than those that the fields show", async () => {
     }
     await page.fill(field, right);
     assert.equal(await page.getAttribute(field, "aria-invalid"), "false");
+    assert.equal(await page.getAttribute(field, "aria-describedby"), null);
     assert.equal(await page.textContent("#hand-reason"), "");
   }
   const [, x, y, theta, sd, sdTheta] = (await saved()).map(Number);
@@ -349,6 +355,15 @@ test("with gridmerge view the engine refines what was placed by hand", async () 
     assert.equal(await page.textContent(".answer"), "");
     server.kill("SIGCONT");
     await refineAgain();
+
+    // A field in which nothing is typed shows where the map has come to.
+    await type(page, { x: truth.x + 0.4, y: truth.y, theta: truth.theta });
+    server.kill("SIGSTOP");
+    await page.click("#hand-refine");
+    await page.focus("#hand-x");
+    server.kill("SIGCONT");
+    await page.waitForSelector(".answer:has-text('Moved by')");
+    assert.ok(near(await pose(page), refined));
 
     server.kill("SIGKILL");
     await type(page, { x: truth.x + 0.4, y: truth.y, theta: truth.theta });

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 import { probability } from "./numbers";
-import { type Join, type Report, isUsed } from "./report";
+import { type Join, type Outcome, type Report, isUsed } from "./report";
 
 // What the merge made of a join, and why, in sentences: each holds for the join's outcome, its reason, what the two maps say by
 // themselves, and where the merge has put them.
 
 /** Whether the merge has the two maps in one merged map, in two, or has left out one of them or both. */
 export type Placement = "together" | "apart" | "one left out" | "both left out";
+
+/** Of all joins of an outcome, whatever the two maps say by themselves. */
+export const outcomeMeaning: Record<Outcome, string> = {
+  accepted: "believed by itself",
+  rescued: "too weak by itself, but it agrees with the other maps, or with a pose that was given",
+  known: "they lie so because their poses were given",
+  rejected: "contradicts the other maps, or a pose that was given",
+  refused: "not believed, or too doubtful for the budget of false joins",
+};
 
 const reasons: Record<string, string> = {
   ambiguous: "another way to lay them fits nearly as well",
@@ -29,12 +38,11 @@ export function decision(join: Join, placement: Placement): string {
   const isBelieved = join.by_themselves?.verdict === "accepted";
   switch (join.outcome) {
     case "accepted":
-      return "believed by itself";
     case "known":
-      return "they lie so because their poses were given";
+      return outcomeMeaning[join.outcome];
     case "rescued":
       return isBelieved ? "believed by itself in another way, but the other maps, or a pose that was given, speak for this one"
-        : "too weak by itself, but it agrees with the other maps, or with a pose that was given";
+        : outcomeMeaning.rescued;
     case "rejected": {
       const others = placement === "together" ? "the other maps, or a pose that was given, lay the two otherwise"
         : "it contradicts the other maps";

@@ -34,6 +34,11 @@ export function name(text: string, whole = text): HTMLElement {
   return h("bdi", { title: flat(whole) }, text === "" ? "(no name)" : text);
 }
 
+/** What is said once is not said again: screen readers read a text that is set anew. */
+export function say(element: HTMLElement, text: string): void {
+  if (element.textContent !== text) element.textContent = text;
+}
+
 export function swatch(color: string): HTMLElement {
   const box = h("span", { class: "swatch", "aria-hidden": "true" });
   box.style.background = color;

@@ -56,6 +56,7 @@ export function toHash(view: SharedView, report: Report): string {
   if (faded.length > 0) parts.set("maps", faded.map(([map, opacity]) => `${map}:${short(opacity)}`).join(","));
   const colored = [...view.colors].filter(([map, color]) => color !== report.maps[map].color);
   if (colored.length > 0) parts.set("colors", colored.map(([map, color]) => `${map}:${color.slice(1)}`).join(","));
+  // A pose is no matter of pixels: far from the origin the least turn moves its map.
   const placed = [...view.placed].map(([map, { x, y, theta }]) => `${map}:${[x, y, theta].map((value) => String(value + 0)).join(",")}`);
   if (placed.length > 0) parts.set("placed", placed.join(";"));
   if (!view.grid) parts.set("grid", "0");
@@ -133,10 +134,7 @@ function sceneOf(text: string, report: Report): SceneId | null {
   return null;
 }
 
-/**
- * Finer than any pixel, so that a view comes back as it was. A pose is no matter of pixels: far from the origin the least turn
- * moves its map.
- */
+/** Finer than any pixel, so that a view comes back as it was. */
 function short(value: number): string {
   return String(Number(value.toFixed(5)) + 0);
 }

@@ -329,7 +329,7 @@ function build(report: Report): void {
     h("header", {},
       h("h1", {}, heading(report)), h("p", { id: "summary" }, summary(report)), following?.element ?? null, mergedSwitch(state, toggleMerged), scenePicker(state)),
     h("main", {},
-      h("div", { class: "stage" }, stage.canvas, stageButtons(stage, state, actions), said.element,
+      h("div", { class: "stage" }, stageButtons(stage, state, actions), stage.canvas, said.element,
         h("div", { class: "readings" }, byHandNote(state), rulerReading(state), cursorReading(state, stage))),
       h("aside", {}, tabs.element)),
     help);

@@ -12,6 +12,8 @@ export interface NumberFieldOptions {
   step: number;
   /** Whether it is as it was when the page is loaded anew. */
   isKept?: boolean;
+  /** The id of what says what is wrong with it. */
+  note: string;
   /** Of each text that is typed, of numbers and of others. */
   typed(): void;
 }
@@ -20,17 +22,27 @@ export interface NumberFieldOptions {
 export class NumberField {
   readonly element: HTMLInputElement;
   private readonly options: NumberFieldOptions;
+  private isTyped = false;
 
   constructor(options: NumberFieldOptions) {
     this.options = options;
-    const { id, label, least, most, step, isKept = false } = options;
+    const { id, label, step, isKept = false } = options;
     this.element = h("input", {
-      type: "number", id, min: least, max: most, step, "data-kept": isKept, ...(label === undefined ? {} : { "aria-label": label }),
+      // No bounds: browsers count steps from the lower one.
+      type: "number", id, step, "data-kept": isKept, ...(label === undefined ? {} : { "aria-label": label }),
+      focus: () => (this.isTyped = false),
+      blur: () => (this.isTyped = false),
       input: () => {
+        this.isTyped = true;
         this.mark();
         options.typed();
       },
     });
+  }
+
+  /** Whether something was typed since it has the focus, which another text would take away. */
+  get isBeingTyped(): boolean {
+    return this.isTyped;
   }
 
   /** Null: there is none. */
@@ -51,6 +63,9 @@ export class NumberField {
   }
 
   private mark(): void {
-    this.element.setAttribute("aria-invalid", String(this.value === null));
+    const isWrong = this.value === null;
+    this.element.setAttribute("aria-invalid", String(isWrong));
+    if (isWrong) this.element.setAttribute("aria-describedby", this.options.note);
+    else this.element.removeAttribute("aria-describedby");
   }
 }

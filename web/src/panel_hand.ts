@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { mapLabel } from "./badge";
-import { h, replace } from "./dom";
+import { h, replace, say } from "./dom";
 import { refine } from "./engine";
 import { Gauge } from "./gauge";
 import type { Grid } from "./grid";
@@ -18,6 +18,7 @@ import { type Yardstick, laid, yardstickOf } from "./yardstick";
 const longWait = 10000; // milliseconds
 const mostTurned = 3600; // degrees: whole turns may have been counted
 const yardstickBudget = 4; // milliseconds a frame
+
 /** A field for a part of a pose. */
 interface PoseInput {
   field: NumberField;
@@ -169,7 +170,7 @@ export class HandPanel {
     if (handled !== this.toolsOf) this.rebuildTools();
     const pose = handled === null ? null : this.state.poseOf(handled);
     for (const { field, get } of this.inputs) {
-      if (pose && document.activeElement !== field.element) field.show(fixed(get(pose), 3));
+      if (pose && !field.isBeingTyped) field.show(fixed(get(pose), 3));
     }
     this.tellPose();
     this.tellPlace(handled, pose);
@@ -220,7 +221,7 @@ export class HandPanel {
   private poseInput(
     part: "x" | "y" | "theta", most: number, step: number, get: (pose: SE2) => number, set: (pose: SE2, value: number) => SE2): PoseInput {
     const field = new NumberField({
-      id: `hand-${part}`, what: part === "theta" ? "θ" : part, least: -most, most, step, typed: () => {
+      id: `hand-${part}`, what: part === "theta" ? "θ" : part, least: -most, most, step, note: "hand-pose-note", typed: () => {
         const map = this.state.handled;
         const pose = map === null ? null : this.state.poseOf(map);
         if (map !== null && pose && field.value !== null) this.state.put(map, set(pose, field.value));
@@ -238,7 +239,7 @@ export class HandPanel {
 
   private tellPose(): void {
     const problem = this.poseProblem();
-    this.poseNote.textContent = problem === null ? "" : `${problem}: the map stays where it was.`;
+    say(this.poseNote, problem === null ? "" : `${problem}: the map stays where it was.`);
   }
 
   private score(): void {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { mapLabel } from "./badge";
-import { decision, needsExplanation, ownVerdict, placementOf, withoutWitnesses } from "./decision";
+import { decision, needsExplanation, outcomeMeaning, ownVerdict, placementOf, withoutWitnesses } from "./decision";
 import { h, replace } from "./dom";
 import { describe } from "./formats";
 import { joinGraph } from "./join_graph";
@@ -8,7 +8,7 @@ import { joinMatrix } from "./join_matrix";
 import { JoinTable } from "./join_table";
 import { sayOffset, sayWitnesses } from "./join_words";
 import { fixed, percent, probability } from "./numbers";
-import { type Join, type Outcome, hasFigures, hasWay, isLarge, isUsed, outcomeMeaning, outcomes } from "./report";
+import { type Join, type Outcome, hasFigures, hasWay, isLarge, isUsed, outcomes } from "./report";
 import type { SE2 } from "./se2";
 import { searchBox } from "./search";
 import type { State } from "./state";
@@ -23,10 +23,10 @@ const mostInGraph = 8;
 /** Every comparison that the merge made: as a graph or a matrix, as a table, and one of them in full. */
 export class JoinsPanel {
   readonly element = h("div", { class: "panel", id: "panel-joins", tabindex: -1 });
+  readonly table: JoinTable;
   private readonly state: State;
   private readonly chosen = h("section", { class: "chosen-join" });
   private readonly graph = h("div");
-  readonly table: JoinTable;
   private readonly shown: Set<Outcome>;
   private readonly placeByHand: (map: number, on: number, T_on_map: SE2) => void;
 

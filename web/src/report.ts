@@ -46,14 +46,6 @@ export type Outcome = "accepted" | "rescued" | "known" | "rejected" | "refused";
 
 export const outcomes: readonly Outcome[] = ["accepted", "rescued", "known", "rejected", "refused"];
 
-export const outcomeMeaning: Record<Outcome, string> = {
-  accepted: "believed by itself",
-  rescued: "too weak by itself, but it agrees with the other maps, or with a pose that was given",
-  known: "they lie so because their poses were given",
-  rejected: "would be believed by itself, but contradicts the other maps",
-  refused: "not believed, or too doubtful for the budget of false joins",
-};
-
 export interface Hypothesis {
   transform: SE2;
   score: number;

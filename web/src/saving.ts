@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { mapLabel } from "./badge";
 import { announce, copyButton, download } from "./clipboard";
-import { h, replace } from "./dom";
+import { h, replace, say } from "./dom";
 import { asInitialPoses, commandWith } from "./formats";
 import { NumberField } from "./number_field";
 import { radians } from "./numbers";
@@ -22,11 +22,11 @@ export class Saving {
   private readonly poseProblem: () => string | null;
   private readonly sd = new NumberField({
     id: "hand-sd", what: "the deviation of positions", label: "Standard deviation of the positions, in metres", least: 0.001, most: 100000,
-    step: 0.1, isKept: true, typed: () => this.judge(),
+    step: 0.1, note: "hand-reason", isKept: true, typed: () => this.judge(),
   });
   private readonly sdTheta = new NumberField({
     id: "hand-sd-theta", what: "the deviation of directions", label: "Standard deviation of the directions, in degrees", least: 0.01, most: 360,
-    step: 0.5, isKept: true, typed: () => this.judge(),
+    step: 0.5, note: "hand-reason", isKept: true, typed: () => this.judge(),
   });
   private readonly reason = h("p", { class: "invalid", id: "hand-reason", role: "status" });
   private buttons: HTMLButtonElement[] = [];
@@ -73,8 +73,11 @@ export class Saving {
 
   /** Nothing is saved that is not as the fields show it. */
   private judge(): void {
-    const problem = this.poseProblem() ?? this.sd.problem ?? this.sdTheta.problem;
-    this.reason.textContent = problem === null ? "" : `Not to be saved: ${problem}.`;
+    const poseProblem = this.poseProblem();
+    const problem = poseProblem ?? this.sd.problem ?? this.sdTheta.problem;
+    // Screen readers hear of a wrong pose beside its fields.
+    this.reason.setAttribute("aria-live", poseProblem === null ? "polite" : "off");
+    say(this.reason, problem === null ? "" : `Not to be saved: ${problem}.`);
     for (const button of this.buttons) button.disabled = problem !== null;
   }
 

@@ -5,6 +5,8 @@ import type { Point } from "./se2";
 /** Pixels per metre. Nearer there is nothing more to see, and coordinates far from the origin have no finer steps. */
 const mostScale = 2000;
 const leastScale = 1e-6;
+/** As far as zooming goes, unless the view is farther already: it shows all of a larger scene. */
+const leastZoomed = 0.01;
 
 /** A rectangle of a scene, in metres. */
 export interface Box {
@@ -74,7 +76,7 @@ export function looking(center: Point, metres: number, width: number, height: nu
 
 /** Zooms by `factor` so that what is under the pixel `at` stays there. */
 export function zoomed(view: Viewport, factor: number, at: Point): Viewport {
-  const scale = Math.min(mostScale, Math.max(0.01, view.scale * factor));
+  const scale = Math.min(mostScale, Math.max(Math.min(leastZoomed, view.scale), view.scale * factor));
   const held = toScene(view, at);
   return {
     ...view,

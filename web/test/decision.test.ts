@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { decision, needsExplanation, ownVerdict, placementOf, withoutWitnesses } from "../src/decision";
+import { decision, needsExplanation, outcomeMeaning, ownVerdict, placementOf, withoutWitnesses } from "../src/decision";
 import { type Join, heading, isUsed, outcomes } from "../src/report";
 import { type SE2, identity } from "../src/se2";
 import { join, reportOf } from "./reports";
@@ -38,6 +38,13 @@ test("what is said of a join contradicts nothing else that is said of it", () =>
         assert.ok(!/a pose that was given/.test(said), about);
       }
     }
+  }
+});
+
+test("what an outcome means holds for all its joins", () => {
+  for (const one of everyJoin()) {
+    const isBelieved = one.by_themselves?.verdict === "accepted";
+    if (!isUsed(one) && !isBelieved) assert.ok(!/would be believed/.test(outcomeMeaning[one.outcome]), one.outcome);
   }
 });
 

@@ -36,6 +36,13 @@ test("zooming holds what is under the pointer, within bounds", () => {
   assert.ok(zoomed(view, 1e9, at).scale <= 2000 && zoomed(view, 1e-9, at).scale >= 0.01);
 });
 
+test("zooming out never comes nearer, however far the view is", () => {
+  const far = looking({ x: 0, y: 0 }, 1e6, 800, 600);
+  const at = { x: 400, y: 300 };
+  assert.equal(zoomed(far, 0.5, at).scale, far.scale);
+  assert.ok(zoomed(far, 1.5, at).scale > far.scale);
+});
+
 test("panning moves what is seen with the pointer", () => {
   const view = { width: 800, height: 600, center: { x: 3, y: -4 }, scale: 25 };
   near(toScene(panned(view, 30, -40), { x: 130, y: 460 }), toScene(view, { x: 100, y: 500 }));
