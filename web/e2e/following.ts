@@ -189,6 +189,7 @@ test("the page goes on following, whatever has the focus", () => follow(mergeInt
 
 test("what is hidden comes back as strong as it was, and a page that is loaded twice at once keeps its fields", () => follow(mergeInto("three", examples), async (tab, page, _node, next) => {
   await page.fill("#strength-1", "30");
+  await page.fill("#strength-2", "0");
   await page.click("#layer-1");
   await page.click("#tab-transforms");
   await page.fill("#tf-parent", "site");
@@ -205,6 +206,7 @@ test("what is hidden comes back as strong as it was, and a page that is loaded t
   await next();
   assert.equal(await page.evaluate(() => sessionStorage.getItem("twice")), null);
   assert.equal(await page.inputValue("#tf-parent"), "site");
+  assert.ok(await page.isChecked("#layer-2"), "it is shown as weakly as can be, and not hidden");
   await page.click("#layer-1");
   assert.equal(await page.inputValue("#strength-1"), "30");
 }));

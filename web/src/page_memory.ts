@@ -26,8 +26,8 @@ interface KeptFocus {
 
 interface Memory {
   view: KeptView;
-  /** How strongly layers are drawn, those too that are hidden: the merge's own, and by map. */
-  opacities: { own: number[]; maps: [string, number][] };
+  /** How layers are drawn, those too that are hidden: the merge's own, and by map. */
+  looks: { own: Look[]; maps: [string, Look][] };
   inHand: string | null;
   query: string;
   sorting: Sorting;
@@ -37,6 +37,8 @@ interface Memory {
   scrolled: [string, number][];
   focus: KeptFocus;
 }
+
+const plain = ({ visible, opacity }: Look): Look => ({ visible, opacity });
 
 const ownLooks = ({ merged, agreement, plan }: State): Look[] => [merged, agreement, plan];
 
@@ -73,7 +75,7 @@ export class PageMemory {
     const keys = keysOf(report);
     const memory: Memory = {
       view: keptView(report, parts.shared.view(), state.allByHand()),
-      opacities: { own: ownLooks(state).map(({ opacity }) => opacity), maps: state.looks.map(({ opacity }, map) => [keys[map], opacity]) },
+      looks: { own: ownLooks(state).map(plain), maps: state.looks.map((look, map) => [keys[map], plain(look)]) },
       inHand: handled === null ? null : keys[handled],
       query: state.query,
       sorting: parts.sorting,
@@ -112,9 +114,9 @@ export class PageMemory {
     const { view, hand } = carriedOver(state.report, memory.view);
     state.layByHand(hand);
     parts.shared.show(view);
-    ownLooks(state).forEach((look, i) => (look.opacity = memory.opacities.own[i]));
-    const opacities = new Map(memory.opacities.maps);
-    state.looks.forEach((look, map) => (look.opacity = opacities.get(keys[map]) ?? 1));
+    ownLooks(state).forEach((look, i) => Object.assign(look, memory.looks.own[i]));
+    const looks = new Map(memory.looks.maps);
+    state.looks.forEach((look, map) => Object.assign(look, looks.get(keys[map])));
     state.changed("looks");
     state.search(memory.query);
     parts.sorting = memory.sorting;
