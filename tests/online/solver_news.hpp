@@ -30,6 +30,12 @@ inline RobotNews map_news(OccupancyGrid map, int second = 0) {
   return news;
 }
 
+inline RobotNews gone_news() {
+  RobotNews news;
+  news.is_gone = true;
+  return news;
+}
+
 /// The maps of the first robots at a moment, heard in the order of their names. The fourth is a stranger.
 inline News news_at(const Explorers& explorers, int step, int robots = 3) {
   News news;
@@ -43,6 +49,11 @@ inline const RobotStatus& status_of(const TeamAnswer& answer, const std::string&
     if (robot.name == name) return robot;
   }
   throw std::out_of_range(name);
+}
+
+inline bool has_event(const TeamAnswer& answer, TeamEvent::Kind kind, const std::string& robot) {
+  return std::any_of(answer.events.begin(), answer.events.end(),
+                     [&](const TeamEvent& event) { return event.kind == kind && event.robot == robot; });
 }
 
 /// With less in common maps are placed less exactly.

@@ -3,15 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <stdexcept>
 #include <thread>
 
 #include "explorers.hpp"
 #include "gridmerge/grid/execution.hpp"
-#include "gridmerge/grid/resample.hpp"
 #include "solver_news.hpp"
 
 namespace gridmerge::internal {
@@ -19,17 +16,13 @@ namespace {
 
 using Effort = TeamSolver::Effort;
 using test::expect_at;
-using test::expect_consistent;
 using test::Explorers;
+using test::gone_news;
+using test::has_event;
 using test::kNames;
 using test::map_news;
 using test::news_at;
 using test::status_of;
-
-bool has_event(const TeamAnswer& answer, TeamEvent::Kind kind, const std::string& robot) {
-  return std::any_of(answer.events.begin(), answer.events.end(),
-                     [&](const TeamEvent& event) { return event.kind == kind && event.robot == robot; });
-}
 
 TEST(TeamSolver, ExplorersComeTogetherAndTheStrangerDoesNot) {
   const Explorers explorers;
@@ -210,12 +203,6 @@ TEST(TeamSolver, TheFrameIsThatOfTheRobotHeardFirstForAsLongAsItLives) {
   EXPECT_EQ(answer.components.at(0).anchor, "carl");
 }
 
-RobotNews gone_news() {
-  RobotNews news;
-  news.is_gone = true;
-  return news;
-}
-
 TEST(TeamSolver, NothingIsLeftOfARobotThatIsHeardAndForgottenAtOnce) {
   const Explorers explorers;
   TeamSolver solver({});
@@ -329,85 +316,6 @@ TEST(TeamSolver, SaysWhatItWaitsFor) {
   EXPECT_EQ(status_of(answer, "anna").why, "there is no other map yet");
   EXPECT_EQ(status_of(answer, "bert").why, "no map came yet");
   EXPECT_TRUE(answer.components.empty());
-}
-
-/// Two fixed robots lie together however far apart they are.
-News too_far_apart(const std::string& second = "bert") {
-  News news;
-  news["anna"].known_pose = KnownPose{{0.0, 0.0, 0.0}, 0.0, 0.0, true};
-  news[second].known_pose = KnownPose{{9e6, 9e6, 0.0}, 0.0, 0.0, true};
-  return news;
-}
-
-TEST(TeamSolver, AMapTooLargeToMergeIsAProblemNotTheEnd) {
-  const Explorers explorers;
-  for (const Effort effort : {Effort::soon, Effort::further, Effort::full}) {
-    TeamSolver solver({});
-    solver.take(news_at(explorers, 5));
-    const TeamAnswer before = solver.solve(Effort::full);
-    EXPECT_EQ(before.problem, "");
-    EXPECT_TRUE(before.settled);
-    expect_consistent(before);
-    News news = too_far_apart();
-    solver.take(news);
-    TeamAnswer answer = solver.solve(effort);
-    EXPECT_NE(answer.problem, "");
-    EXPECT_FALSE(answer.settled);
-    EXPECT_EQ(answer.number, before.number + 1);
-    EXPECT_TRUE(answer.events.empty());
-    ASSERT_EQ(answer.components.size(), before.components.size());
-    EXPECT_EQ(answer.components[0].map, before.components[0].map);
-    ASSERT_EQ(answer.robots.size(), before.robots.size());
-    for (const RobotStatus& robot : before.robots) {
-      EXPECT_EQ(status_of(answer, robot.name).T_world_map, robot.T_world_map);
-      EXPECT_EQ(status_of(answer, robot.name).component, robot.component);
-    }
-    expect_consistent(answer);
-    news["bert"].known_pose = std::optional<KnownPose>();
-    news["anna"].known_pose = std::optional<KnownPose>();
-    solver.take(news);
-    answer = solver.solve(Effort::full);
-    EXPECT_EQ(answer.problem, "");
-    EXPECT_TRUE(answer.settled);
-    expect_consistent(answer);
-  }
-}
-
-TEST(TeamSolver, AnAnswerThatIsMadeAgainHasNoPosesOfMapsThatAreGone) {
-  const Explorers explorers;
-  TeamSolver solver({});
-  solver.take(news_at(explorers, 5));
-  ASSERT_EQ(solver.solve(Effort::full).components.size(), 1u);
-  News news = too_far_apart("dora");
-  news["carl"] = gone_news();
-  add_news(news["carl"], map_news(explorers.map(2, 5), 9));
-  add_news(news["dora"], map_news(explorers.map(3, 5), 10));
-  solver.take(news);
-  TeamAnswer answer = solver.solve(Effort::further);
-  EXPECT_NE(answer.problem, "");
-  expect_consistent(answer);
-  for (const char* name : {"carl", "dora"}) {
-    EXPECT_EQ(status_of(answer, name).state, RobotState::waiting);
-    EXPECT_EQ(status_of(answer, name).why, "what was heard of it could not be merged yet");
-    EXPECT_EQ(status_of(answer, name).maps_heard, 1u);
-  }
-  // In another frame, that a robot takes by itself.
-  OccupancyGrid map = explorers.map(1, 4);
-  map.origin = SE2{5.0, 7.0, 2.0} * map.origin;
-  solver.take({{"bert", map_news(map, 1)}});
-  answer = solver.solve(Effort::further);
-  EXPECT_NE(answer.problem, "");
-  EXPECT_EQ(status_of(answer, "bert").component, std::nullopt);
-  EXPECT_TRUE(answer.events.empty());
-  // Who is asked next tells what happened in between.
-  news = {};
-  news["anna"] = news["bert"] = gone_news();
-  solver.take(news);
-  answer = solver.solve(Effort::full);
-  EXPECT_EQ(answer.problem, "");
-  EXPECT_TRUE(has_event(answer, TeamEvent::Kind::left, "anna"));
-  EXPECT_FALSE(has_event(answer, TeamEvent::Kind::restarted, "bert")) << "who is gone";
-  expect_consistent(answer);
 }
 
 }  // namespace
