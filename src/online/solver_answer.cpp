@@ -183,6 +183,7 @@ TeamAnswer TeamSolver::answer_before() const {
     status.name = name;
     status.maps_heard = robot.maps_heard;
     status.heard_first = robot.since;
+    status.has_known_pose = robot.known_pose.has_value();
     answer.robots.push_back(std::move(status));
   }
   return answer;

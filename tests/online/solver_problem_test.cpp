@@ -2,7 +2,9 @@
 // Answers that say why there is no newer one.
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "solver_news.hpp"
 
@@ -59,6 +61,33 @@ TEST(TeamSolverProblem, AMapTooLargeToMergeIsAProblemNotTheEnd) {
     EXPECT_TRUE(answer.settled);
     expect_consistent(answer);
   }
+}
+
+/// Who hears that it has none forgets the pose that he gave.
+TEST(TeamSolverProblem, SaysWhichRobotsHaveAKnownPose) {
+  const Explorers explorers;
+  TeamSolver solver({});
+  News news = news_at(explorers, 5);  // nothing was told of any of them before
+  for (auto& [name, one] : too_far_apart()) add_news(news[name], std::move(one));
+  solver.take(news);
+  TeamAnswer answer = solver.solve(Effort::soon);
+  EXPECT_NE(answer.problem, "");
+  EXPECT_TRUE(status_of(answer, "anna").has_known_pose);
+  EXPECT_TRUE(status_of(answer, "bert").has_known_pose);
+  EXPECT_FALSE(status_of(answer, "carl").has_known_pose);
+  news = {};
+  news["bert"].known_pose = std::optional<KnownPose>();
+  solver.take(news);
+  answer = solver.solve(Effort::soon);
+  EXPECT_EQ(answer.problem, "");
+  // Of each of them something was told now.
+  news = too_far_apart("carl");
+  solver.take(news);
+  answer = solver.solve(Effort::soon);
+  EXPECT_NE(answer.problem, "");
+  EXPECT_TRUE(status_of(answer, "anna").has_known_pose);
+  EXPECT_FALSE(status_of(answer, "bert").has_known_pose);
+  EXPECT_TRUE(status_of(answer, "carl").has_known_pose);
 }
 
 TEST(TeamSolverProblem, AnAnswerThatIsMadeAgainHasNoPosesOfMapsThatAreGone) {
