@@ -211,8 +211,8 @@ class Team:
     def set_known_pose(self, robot: str, pose: InitialPose | PoseLike | None, *, fixed: bool = False) -> None:
         """What is known of where a robot's map lies, heard or not yet; None for nothing any more.
 
-        It holds until the robot's map starts anew (hear()). ValueError for `fixed` without a pose: a team's frame is
-        that of the robot which was heard first.
+        It counts for the newest map that was heard before, and holds until the robot's map starts anew (hear()).
+        ValueError for `fixed` without a pose: a team's frame is that of the robot which was heard first.
         """
         if pose is None and fixed:
             raise ValueError("fixed: needs a pose")

@@ -36,8 +36,11 @@ void add_news(RobotNews& earlier, RobotNews later) {
     earlier = RobotNews{};
     earlier.is_gone = true;
   }
+  if (later.known_pose) {
+    earlier.known_pose = later.known_pose;
+    earlier.map_of_pose = later.map_of_pose ? std::move(later.map_of_pose) : earlier.map;
+  }
   if (later.map) earlier.map = std::move(later.map);
-  if (later.known_pose) earlier.known_pose = later.known_pose;
   if (later.since) earlier.since = std::min(earlier.since.value_or(TeamTime::max()), *later.since);
   earlier.maps_heard += later.maps_heard;
 }
@@ -139,18 +142,23 @@ void TeamSolver::apply(const std::string& name, RobotNews& news) {
     remove(name);
     news.is_gone = false;
   }
-  if (news.known_pose) {
-    Robot& robot = robots_.try_emplace(name, Robot{}).first->second;
-    robot.known_pose = *news.known_pose;
-    if (robot.id) merger_.set_known_pose(*robot.id, robot.known_pose);
-    placements_.forget(name);
-    is_weighed_ = false;
-    news.known_pose.reset();
-  }
   if (news.since) {
     Robot& robot = robots_.try_emplace(name, Robot{}).first->second;
     if (*news.since < robot.since) is_weighed_ = false;  // frames follow from who was heard first
     robot.since = std::min(robot.since, *news.since);
+  }
+  if (news.map_of_pose) {
+    set_map(name, news.map_of_pose);
+    news.map_of_pose.reset();
+  }
+  if (news.known_pose) {
+    Robot& robot = robots_.try_emplace(name, Robot{}).first->second;
+    robot.known_pose = *news.known_pose;
+    if (robot.id) merger_.set_known_pose(*robot.id, robot.known_pose);
+    if (robot.known_pose) lost_poses_.erase(name);  // it has another one
+    placements_.forget(name);
+    is_weighed_ = false;
+    news.known_pose.reset();
   }
   if (news.map) set_map(name, news.map);
   if (const auto robot = robots_.find(name); robot != robots_.end())
@@ -209,7 +217,7 @@ bool TeamSolver::may_lie_with_copies(const std::string& name) const {
   return known_cells.size() < group->robots.size();
 }
 
-/// Gives the merger the robot's newest map. May be cancelled: all is as before then.
+/// Gives the merger the robot's newest map. May be cancelled: but for begin_to_weigh() all is as before then.
 void TeamSolver::weigh(const std::string& name, Robot& robot, std::shared_ptr<const OccupancyGrid> map) {
   const MapChange change = change_between(*robot.weighed.map, *map);
   const double searched_from = options_.search_again * (is_placed(name) ? 1.0 : kSooner);
@@ -221,13 +229,13 @@ void TeamSolver::weigh(const std::string& name, Robot& robot, std::shared_ptr<co
   Weighed weighed = to_be_weighed(map);
   begin_to_weigh(name);
   if (change.other_frame) {
+    merger_.update(*robot.id, *map);
     restarted_.insert(name);
     if (loses_pose) {  // it was that of a frame which is no more
       lost_poses_.insert(name);
       robot.known_pose.reset();
       merger_.set_known_pose(*robot.id, std::nullopt);
     }
-    merger_.update(*robot.id, *map);
     placements_.forget(name);
     told_robots_.erase(name);
   } else {

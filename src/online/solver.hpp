@@ -24,12 +24,15 @@ struct RobotNews {
   std::optional<TeamTime> since;                       ///< when it was heard first, by the oldest account
   bool is_gone = false;                                ///< before all the rest of this
   std::optional<std::optional<KnownPose>> known_pose;  ///< what is known now, where that has changed
+  /// The newest that was heard before `known_pose` was: in its frame the pose counts. Null where none waited.
+  std::shared_ptr<const OccupancyGrid> map_of_pose;
 };
 
 /// All that was heard, by robot.
 using News = std::map<std::string, RobotNews>;
 
-/// Adds later news to earlier ones. Of a robot that is gone nothing earlier counts.
+/// Adds later news to earlier ones. Of a robot that is gone nothing earlier counts. A known pose counts for
+/// the map before it, and is lost with a later map that starts anew.
 void add_news(RobotNews& earlier, RobotNews later);
 
 /// The team without its thread: takes news, and says what follows from them. The same news in the same steps

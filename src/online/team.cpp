@@ -132,9 +132,11 @@ class __attribute__((visibility("hidden"))) Team::Worker {  // or it is as publi
       count_repeated(robot);
       return true;
     }
-    // The solver may be at work on what it was given; what still lies in the inbox is ours.
+    // The solver may be at work on what it was given; what still lies in the inbox is ours, but a known pose
+    // may be of the map as it was.
     const auto waiting = news_.find(robot);
-    const bool is_ours = waiting != news_.end() && waiting->second.map == newest->second;
+    const bool is_ours = waiting != news_.end() && waiting->second.map == newest->second &&
+                         waiting->second.map_of_pose != newest->second;
     auto map = is_ours ? newest->second : std::make_shared<OccupancyGrid>(whole);
     draw(part, column, row, *map);
     newest->second = map;

@@ -136,7 +136,7 @@ GRIDMERGE_EXPORT void validate(const TeamOptions& options);
 ///
 /// A thread of its own merges the newest map of each, never a queue of old ones. All methods may be called
 /// from any thread, and none waits for that work, except where it says so. Memory is bounded by the maps:
-/// six of each robot at most.
+/// six of each robot at most, and two more while a known pose of a newer map waits.
 ///
 /// Answers are steady. A robot's pose follows the evidence, but a robot that was placed moves elsewhere only
 /// when that is confirmed (TeamOptions::confirmations, TeamOptions::quiet), and each jump is reported. A
@@ -178,8 +178,9 @@ class GRIDMERGE_EXPORT Team {
   /// this map. Components, their maps and TeamAnswer::merge go without it from the next answer on. O(robots).
   void forget(const std::string& robot);
 
-  /// What is known of where a robot's map lies, heard or not yet. It holds until its map starts anew
-  /// (hear()). Throws std::invalid_argument as merge(), and for a robot too many.
+  /// What is known of where a robot's map lies, heard or not yet. It counts for the newest map that was heard
+  /// before, and holds until the map starts anew (hear()). Throws std::invalid_argument as merge(), and for a
+  /// robot too many.
   void set_known_pose(const std::string& robot, std::optional<KnownPose> known_pose);
 
   /// The newest, never null.
