@@ -305,6 +305,8 @@ void RosNode::State::publish() {
                   Clock::now());
       if (event.kind == TeamEvent::Kind::restarted) count_restart(event.robot);
     }
+    for (const RobotStatus& robot : answer->robots)  // of a pose that was lost its event has told
+      if (!robot.has_known_pose) options_.known_poses.erase(robot.name);
     options_.detail(fmt::format("answer {}: {:.3f} s, {} merged maps of {} robots{}", answer->number,
                                 answer->seconds, answer->components.size(), answer->robots.size(),
                                 answer->problem.empty() ? "" : "; " + answer->problem));
