@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "gridmerge/grid/resample.hpp"
+#include "gridmerge/merge/merge.hpp"
 #include "patience.hpp"
 #include "solver_news.hpp"
 
@@ -67,7 +68,13 @@ TEST(RepeatedMaps, DoNotPutOffTheSearchOfAll) {
     team.hear("bert", map);
     team.hear("anna", explorers.map(0, 5));
   } while (!team.wait_until_settled(1ms));
-  EXPECT_EQ(team.answer()->robots.at(1).name, "bert");
+  const auto answer = team.answer();
+  EXPECT_TRUE(answer->settled);
+  EXPECT_EQ(answer->merge->maps.at(1)->cells, map.cells);
+  const MergeResult merged = merge({explorers.map(0, 5), map});
+  ASSERT_EQ(answer->components.size(), 1u);
+  EXPECT_EQ(answer->components[0].map->cells, merged.components.at(0).fused.grid.cells)
+      << "what was drawn too";
 }
 
 TEST(RepeatedMaps, HaveTheNumberOfTheAnswerBefore) {

@@ -58,7 +58,7 @@ TEST(TeamSolverGroups, KeepTheirNumbersWhenALargerOneComes) {
   EXPECT_EQ(number_of(answer, "anna"), 1u);
   EXPECT_EQ(number_of(answer, "fred"), 2u);
   expect_consistent(answer);
-  // One of them loses what it knew, and the last two of the others go.
+  // With the first two apart, the others keep their number.
   solver.take({{"bert", map_news(make_grid(50, 50, 0.05))}});
   answer = solver.solve(Effort::full);
   EXPECT_EQ(number_of(answer, "anna"), 0u);
