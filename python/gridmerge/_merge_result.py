@@ -178,7 +178,7 @@ class MergeResult:
     """What became of the maps that were merged."""
 
     components: tuple[Component, ...]
-    """Of two or more maps each, most members first."""
+    """Of two or more maps each, most members first; those of a team by number, as in its answer."""
     joins: tuple[Join, ...]
     """Every comparison that was made, whatever its outcome."""
     left_out: tuple[LeftOut, ...]

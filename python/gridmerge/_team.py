@@ -226,6 +226,7 @@ class Team:
     def merge_result(self) -> MergeResult:
         """The newest answer as merge() would give it: to plot, save and export, with the figures behind each join.
 
+        Components are those of the answer, by number: the first one, saved as merged.yaml, need not be the largest.
         Names are the robots', of those with maps, in the order in which they came. While the answer holds a change
         back, its joins can already say otherwise. No file that a map was heard from is written over.
         """

@@ -171,7 +171,7 @@ struct NotCompared {
 
 /// What a merge made of its maps.
 struct MergeResult {
-  std::vector<Component> components;  ///< of two or more maps each, most members first
+  std::vector<Component> components;  ///< of two or more maps each, most members first; a team's by number
   std::vector<Join> joins;            ///< every comparison made, whatever its outcome
   std::vector<LeftOut> left_out;      ///< ascending by map
   std::vector<OpenWay> open_ways;     ///< most probable first. The tree knows none

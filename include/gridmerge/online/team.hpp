@@ -102,15 +102,15 @@ struct TeamAnswer {
   std::vector<TeamEvent> events;          ///< since the answer before
   double seconds = 0.0;                   ///< that it took to find out
   /// The newest maps were searched as merge() does, nothing is held against them: the components and poses
-  /// are those of merge() with these maps, in the order of first hearing.
+  /// are those of merge() with these maps, in the order of first hearing; components are by number.
   bool settled = true;
   std::shared_ptr<const TeamMerge> merge = std::make_shared<const TeamMerge>();  ///< never null
   /// Why this is the answer before, made again; empty where there is none. Such an answer is never settled.
   std::string problem;
 };
 
-/// TeamAnswer::merge with the fused grids: as merge() would give it, for outputs. O(cells of the merged
-/// maps).
+/// TeamAnswer::merge with the fused grids: as merge() would give it, for outputs, but with components by
+/// number. So the first need not be the largest. O(cells of the merged maps).
 GRIDMERGE_EXPORT MergeResult merge_result(const TeamAnswer& answer);
 
 /// How a team works.
