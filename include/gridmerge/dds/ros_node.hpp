@@ -46,10 +46,10 @@ struct RosNodeOptions {
   std::vector<std::string> patterns;
   std::map<std::string, std::string> robots;     ///< further topics of maps, by the names of their robots
   std::map<std::string, KnownPose> known_poses;  ///< what is known of robots' map frames, by their names
-  std::string world_frame = "world";             ///< the frame of the largest merged map
+  std::string world_frame = "world";             ///< the frame of merged map 1; others get `_2`, ...
   std::string name = "gridmerge";                ///< of the node
   std::string enclave = "/";                     ///< of DDS Security, where ROS_SECURITY_ENABLE is true
-  std::string output = "/merged_map";  ///< topic of the largest merged map; further ones get `_2`, ...
+  std::string output = "/merged_map";            ///< topic of merged map 1, likewise (TeamComponent::number)
   TransformTopic transforms = TransformTopic::tf_static;  ///< where the robots' transforms go
   TeamOptions team;                                       ///< how maps are merged
   /// Recorded maps that are published, and heard as any others. The first maps of all recordings come at
