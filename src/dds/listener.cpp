@@ -289,8 +289,10 @@ void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapSa
     keep_aside(robot, writer, message, written);
     return;
   }
-  // After an outage a publisher sends again what it keeps. The updates since then are not to be undone.
-  if (heard.maps > 0 && heard.publisher == writer.guid && robot.map_written == written) return;
+  // After an outage a publisher sends again what it keeps. The updates since then are not to be undone. A
+  // publisher that does not say when it wrote a map may send another one at the same time, 0.
+  const bool is_known = written > 0 && robot.map_written == written;
+  if (heard.maps > 0 && heard.publisher == writer.guid && is_known) return;
   try {
     use_map(robot, writer, read_map(message), written);
   } catch (const RefusedMessage& error) {
@@ -346,9 +348,16 @@ void MapListener::take_over(Robot& robot) {
     if (!kept) return;
     try {
       use_map(robot, kept->writer, std::move(kept->map), kept->written);
-      for (const HeardPart& part : kept->parts) use_part(robot, part);
     } catch (const RefusedMessage& error) {
       refuse(robot, error.what());
+      continue;
+    }
+    for (const HeardPart& part : kept->parts) {
+      try {
+        use_part(robot, part);
+      } catch (const RefusedMessage& error) {
+        refuse(robot, error.what());
+      }
     }
   }
 }
@@ -368,7 +377,7 @@ void MapListener::take_part(Robot& robot, const RemoteWriter& writer, const Upda
     }
     // Both are written by one clock. The times in the messages are the user's, and may be 0, or go back.
     const bool is_late = std::chrono::steady_clock::now() - robot.map_taken > kLatest;
-    if (written < robot.map_written && !is_late) {
+    if (written > 0 && written < robot.map_written && !is_late) {
       ++robot.heard.outdated;  // the map has it already
       return;
     }

@@ -96,7 +96,7 @@ class MapListener {
 
   struct Robot {
     HeardRobot heard;
-    dds_time_t map_written = 0;                       // of the newest whole map, by its publisher's clock
+    dds_time_t map_written = 0;  // of the newest whole map, by its publisher's clock; 0 where it does not say
     std::chrono::steady_clock::time_point map_taken;  // likewise
     Readers maps;
     Readers parts;

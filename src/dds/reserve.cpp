@@ -17,7 +17,7 @@ bool Reserve::keep(const std::string& participant, HeardPart part, dds_time_t wr
     return one.writer.participant == participant && one.map.frame == part.frame;
   });
   if (kept == kept_.end()) return false;
-  if (written < kept->written) return true;
+  if (written > 0 && written < kept->written) return true;
   if (kept->parts.size() == kMaxParts) kept->parts.erase(kept->parts.begin());
   kept->parts.push_back(std::move(part));
   return true;

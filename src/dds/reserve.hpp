@@ -21,7 +21,7 @@ class Reserve {
   struct Kept {
     RemoteWriter writer;
     HeardMap map;
-    dds_time_t written = 0;
+    dds_time_t written = 0;        // by its publisher's clock; 0 where it does not say
     std::vector<HeardPart> parts;  // since then, oldest first
   };
 
@@ -41,10 +41,10 @@ class Reserve {
   /// Of all maps and parts.
   std::size_t cells() const;
 
- private:
   static constexpr std::size_t kMaxKept = 4;
   static constexpr std::size_t kMaxParts = 64;
 
+ private:
   std::vector<Kept> kept_;  // oldest first
 };
 

@@ -49,7 +49,7 @@ void MapTopic::publish(const RawMap& map) const {
   sample.info.origin.position = {map.x, map.y, 0.0};
   sample.info.origin.orientation = {0.0, 0.0, std::sin(map.yaw / 2), std::cos(map.yaw / 2)};
   refer(sample.data, map.data);
-  require_dds(dds_write(writer_.get(), &sample), "writing a map");
+  require_dds(dds_write_ts(writer_.get(), &sample, map.written.value_or(dds_time())), "writing a map");
 }
 
 Peer::Peer(std::uint32_t domain)

@@ -27,6 +27,7 @@ struct RawMap {
   double y = 0.0;
   double yaw = 0.0;
   std::vector<std::int8_t> data{0};
+  std::optional<dds_time_t> written = {};  // by the publisher's clock; now where it is not given
 };
 
 RawMap raw_map(const std::string& frame, const OccupancyGrid& grid);
@@ -40,7 +41,7 @@ struct RawUpdate {
   std::uint32_t width = 1;
   std::uint32_t height = 1;
   std::vector<std::int8_t> data{0};
-  std::optional<dds_time_t> written = {};  // by the publisher's clock; now where it is not given
+  std::optional<dds_time_t> written = {};  // likewise
 };
 
 struct RawTransform {
