@@ -105,15 +105,19 @@ class Participant::Log {
     LogLine line{{}, std::string(text)};
     line.kind = kind_of_line(line.text);
     const std::lock_guard lock(mutex_);
-    const auto like_it = std::find_if(lines_.begin(), lines_.end(),
-                                      [&](const LogLine& other) { return other.kind == line.kind; });
-    if (like_it != lines_.end()) {
-      ++like_it->count;
-    } else if (lines_.size() < kMaxLogLines) {
-      lines_.push_back(std::move(line));
-    } else {
-      ++lines_.back().count;
+    const auto find = [&] {
+      return std::find_if(lines_.begin(), lines_.end(),
+                          [&](const LogLine& other) { return other.kind == line.kind; });
+    };
+    auto like_it = find();
+    if (like_it == lines_.end() && lines_.size() + 1 >= kMaxLogLines) {
+      line.kind.clear();  // the last line is that of all further kinds
+      like_it = find();
     }
+    if (like_it != lines_.end())
+      ++like_it->count;
+    else
+      lines_.push_back(std::move(line));
   }
 
   std::mutex mutex_;

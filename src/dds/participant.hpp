@@ -43,7 +43,8 @@ class Participant {
     std::uint64_t count = 1;
   };
 
-  /// What it warned of since it was last asked, at most kMaxLogLines kinds of it.
+  /// What it warned of since it was last asked, at most kMaxLogLines lines: beyond it, further kinds are one
+  /// that has no name.
   std::vector<LogLine> take_log();
   /// Messages of peers that were no such messages at all.
   std::uint64_t undecodable() const;

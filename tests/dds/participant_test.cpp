@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dds/participant.hpp"
 
+#include <dds/dds.h>
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <set>
 #include <stdexcept>
@@ -64,6 +66,25 @@ TEST(Participant, CountsWhatIsLoggedAgainAndAgain) {
   })) << count;
   EXPECT_TRUE(kinds.contains("malformed packet received"));
   ::close(socket);
+}
+
+TEST(Participant, CountsFurtherKindsAsOne) {
+  test::own_domain();
+  Participant participant(read_ros_environment(process_environment), 1 << 20);
+  participant.take_log();
+  constexpr std::size_t kKinds = Participant::kMaxLogLines + 10;
+  for (int times = 0; times < 3; ++times)
+    for (std::size_t i = 0; i < kKinds; ++i)
+      dds_log(DDS_LC_WARNING, __FILE__, __LINE__, __func__, "%s\n", std::string(i + 1, 'x').c_str());
+  const std::vector<Participant::LogLine> lines = participant.take_log();
+  ASSERT_EQ(lines.size(), Participant::kMaxLogLines);
+  for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
+    EXPECT_EQ(lines[i].kind, std::string(i + 1, 'x'));
+    EXPECT_EQ(lines[i].count, 3u);
+  }
+  EXPECT_EQ(lines.back().kind, "");
+  EXPECT_EQ(lines.back().text, std::string(Participant::kMaxLogLines, 'x'));
+  EXPECT_EQ(lines.back().count, 3 * 11u);
 }
 
 TEST(Participant, SaysWhyItIsNotLetIn) {
