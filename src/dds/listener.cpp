@@ -74,6 +74,7 @@ MapListener::MapListener(const Participant& participant, dds_entity_t waitset, R
 
 void MapListener::join(const Participant& participant) {
   participant_ = participant.get();
+  if (!robots_.empty()) awaits_until_ = std::chrono::steady_clock::now() + kAwaited;
   discovery_.emplace(participant.get(), participant.guid());
   dds_set_status_mask(discovery_->reader(), DDS_DATA_AVAILABLE_STATUS);
   require_dds(dds_waitset_attach(waitset_, discovery_->reader(), 0), "waiting for publishers");
@@ -81,9 +82,6 @@ void MapListener::join(const Participant& participant) {
 
 void MapListener::leave() {
   for (auto& [topic, robot] : robots_) {
-    const auto followed = robot.followed ? writers_.find(*robot.followed) : writers_.end();
-    // What this program plays will have another number, and is no robot that starts anew.
-    if (followed != writers_.end() && followed->second.writer.is_own) robot.heard.publisher.clear();
     robot.followed.reset();
     robot.others.clear();
     robot.maps.clear();
@@ -116,7 +114,10 @@ void MapListener::hear_age(const RobotAge& age) {
 
 std::vector<HeardRobot> MapListener::robots() const {
   std::vector<HeardRobot> heard;
-  for (const auto& [topic, robot] : robots_) heard.push_back(robot.heard);
+  for (const auto& [topic, robot] : robots_) {
+    heard.push_back(robot.heard);
+    heard.back().awaited = is_awaited(robot);
+  }
   return heard;
 }
 
@@ -145,8 +146,7 @@ void MapListener::discover() {
     go(event.writer.handle);
     if (event.alive) come(event.writer);
   }
-  if (!events.empty())
-    for (auto& [topic, robot] : robots_) take_over(robot);
+  for (auto& [topic, robot] : robots_) take_over(robot);
   // Robots that went without ever sending a map make room.
   std::erase_if(robots_, [](const auto& entry) {
     const Robot& robot = entry.second;
@@ -197,7 +197,7 @@ bool MapListener::offer(const RemoteWriter& writer) {
   }
   writers_[writer.handle] = Known{writer, topic, is_parts};
   ++(is_parts ? robot->second.part_publishers : robot->second.heard.publishers);
-  if (!is_parts && !robot->second.followed && robot->second.heard.publisher == writer.guid)
+  if (!is_parts && !robot->second.followed && is_publisher(robot->second, writer))
     robot->second.followed = writer.handle;  // it was away
   const TopicQos qos = reader_qos(writer, is_parts ? kPartsKept : 1);
   Readers& readers = is_parts ? robot->second.parts : robot->second.maps;
@@ -233,6 +233,17 @@ std::vector<WriterEvent> MapListener::take_events() {
   std::vector<WriterEvent> more = discovery_->take();
   std::move(more.begin(), more.end(), std::back_inserter(events));
   return events;
+}
+
+/// Whether the writer is the one whose maps were heard last. What this program plays has another number after
+/// join(), and is no robot that starts anew.
+bool MapListener::is_publisher(const Robot& robot, const RemoteWriter& writer) {
+  return writer.is_own ? robot.is_own : robot.heard.publisher == writer.guid;
+}
+
+/// Whether the robot's publisher may be there, and is only not discovered yet.
+bool MapListener::is_awaited(const Robot& robot) const {
+  return !robot.followed && robot.heard.maps > 0 && std::chrono::steady_clock::now() < awaits_until_;
 }
 
 /// The writer of a sample. Its first one may be here before discover() saw the writer: only what came is
@@ -289,6 +300,7 @@ void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapSa
     keep_aside(robot, writer, message, written);
     return;
   }
+  if (is_awaited(robot) && !is_publisher(robot, writer)) return keep_aside(robot, writer, message, written);
   // After an outage a publisher sends again what it keeps. The updates since then are not to be undone. A
   // publisher that does not say when it wrote a map may send another one at the same time, 0.
   const bool is_known = written > 0 && robot.map_written == written;
@@ -308,8 +320,7 @@ void MapListener::use_map(Robot& robot, const RemoteWriter& writer, HeardMap map
     if (!has_room_for(robot, cells)) throw RefusedMessage("all maps together have above 2^30 cells");
   }
   const TeamTime now = std::chrono::system_clock::now();
-  const bool is_other = !heard.publisher.empty() && heard.publisher != writer.guid;
-  const bool restarted = heard.maps > 0 && (is_other || heard.frame != map.frame);
+  const bool restarted = heard.maps > 0 && (!is_publisher(robot, writer) || heard.frame != map.frame);
   const std::string frame = map.frame;
   callbacks_.map(heard.name, std::move(map), restarted);  // may refuse it
   robot.followed = writer.handle;
@@ -317,6 +328,7 @@ void MapListener::use_map(Robot& robot, const RemoteWriter& writer, HeardMap map
   robot.map_taken = std::chrono::steady_clock::now();
   if (heard.maps == 0 || restarted) heard.heard_first = now;
   heard.publisher = writer.guid;
+  robot.is_own = writer.is_own;
   heard.frame = frame;
   heard.cells = cells;
   if (heard.maps++ == 0) ++news_;
@@ -343,7 +355,7 @@ void MapListener::keep_aside(Robot& robot, const RemoteWriter& writer, const Map
 /// Where the publisher that was heard is gone, one of the others is heard from now on.
 void MapListener::take_over(Robot& robot) {
   robot.others.keep_only([&](const RemoteWriter& writer) { return writers_.contains(writer.handle); });
-  while (!robot.followed) {
+  while (!robot.followed && !is_awaited(robot)) {
     std::optional<Reserve::Kept> kept = robot.others.take_newest();
     if (!kept) return;
     try {
@@ -366,12 +378,13 @@ void MapListener::take_part(Robot& robot, const RemoteWriter& writer, const Upda
                             dds_time_t written) {
   const Known* map = robot.followed ? find(*robot.followed) : nullptr;
   try {
-    if (map == nullptr) throw RefusedMessage("an update without a map before it");
     HeardPart part = read_update(message);
-    if (map->writer.participant != writer.participant) {
+    if (map == nullptr || map->writer.participant != writer.participant) {
       const bool has_room = has_room_for(robot, robot.heard.cells + part.grid.cells.size());
       if (!has_room || !robot.others.keep(writer.participant, std::move(part), written))
-        throw RefusedMessage("an update by another program than the one that publishes the map");
+        throw RefusedMessage(map == nullptr
+                                 ? "an update without a map before it"
+                                 : "an update by another program than the one that publishes the map");
       ++robot.heard.unheard;
       return;
     }

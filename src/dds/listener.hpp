@@ -41,13 +41,15 @@ struct HeardRobot {
   std::uint64_t outdated = 0;  // updates that their publisher wrote before its map
   std::size_t publishers = 0;  // of the map that are there now
   std::uint64_t unheard = 0;   // messages of publishers beside the one that is heard
-  std::string publisher;       // RemoteWriter::guid of the one that is heard; empty where it is not known
+  bool awaited = false;        // after join(): the publisher may be there, and not be discovered yet
+  std::string publisher;       // RemoteWriter::guid of the one that is heard; empty before the first map
   TeamTime heard_first;        // since when this frame is heard, by the oldest account
 };
 
 /// Hears the maps of robots and their updates. One publisher of a topic is heard: the first that sent a map.
 /// When it goes, the one that sent a map last takes its place, with that map; it is the map of a robot that
-/// was started anew. A publisher that comes back after an outage goes on with its map.
+/// was started anew. A publisher that comes back after an outage goes on with its map. After join() it is
+/// waited for, so that no other takes its place that is discovered earlier.
 class MapListener {
  public:
   struct Callbacks {
@@ -88,6 +90,8 @@ class MapListener {
   std::vector<std::string> near_misses() const;
 
   static constexpr std::size_t kMaxNear = 64;
+  /// So long after join() publishers that were heard before are waited for.
+  static constexpr std::chrono::seconds kAwaited{5};
 
  private:
   /// Readers of one topic, one for each kind of writers: a reader that asks for more than a writer offers
@@ -101,6 +105,7 @@ class MapListener {
     Readers maps;
     Readers parts;
     std::optional<dds_instance_handle_t> followed;  // the writer whose maps count
+    bool is_own = false;                            // what is heard is played by this program
     Reserve others;
     std::size_t part_publishers = 0;
   };
@@ -126,6 +131,8 @@ class MapListener {
   bool has_room_for(const Robot& robot, std::size_t cells) const;
   void keep_aside(Robot& robot, const RemoteWriter& writer, const MapSample& message, dds_time_t written);
   void refuse(Robot& robot, const std::string& why) const;
+  static bool is_publisher(const Robot& robot, const RemoteWriter& writer);
+  bool is_awaited(const Robot& robot) const;
   const Known* find(dds_instance_handle_t handle);
   std::vector<WriterEvent> take_events();
 
@@ -134,6 +141,7 @@ class MapListener {
   RobotSelection selection_;
   Callbacks callbacks_;
   std::optional<Discovery> discovery_;
+  std::chrono::steady_clock::time_point awaits_until_;
   std::vector<WriterEvent> pending_;     // what discovery told, for the next discover()
   std::map<std::string, Robot> robots_;  // by topic of the map
   std::map<dds_instance_handle_t, Known> writers_;

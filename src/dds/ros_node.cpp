@@ -88,6 +88,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   void count_restart(const std::string& robot);
   void hear_ages();
   void wait();
+  void look_at_dds();
   void tell_changes();
   void publish();
   void publish_node();
@@ -129,6 +130,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   std::map<std::string, std::string> withheld_;    // as it was told last
   std::map<std::string, Restarts> restarts_;
   std::uint64_t dds_warnings_ = 0;
+  std::uint64_t undecodable_ = 0;  // of participants before
   LineLimiter told_{kEventsOfAKind, options_.tell};
   LineLimiter warned_{1, options_.warn};
   bool all_sent_ = true;
@@ -231,6 +233,8 @@ void RosNode::State::look_at_network() {
 
 /// Cyclone DDS never looks again at the network that it began with. What was heard is kept.
 void RosNode::State::begin_anew() {
+  look_at_dds();
+  undecodable_ += participant_->undecodable();
   ages_.reset();
   listener_.leave();
   player_.leave();
@@ -242,7 +246,6 @@ void RosNode::State::begin_anew() {
   listener_.join(*participant_);
   ages_.emplace(*participant_);
   all_sent_ = false;
-  for (auto& [robot, publishers] : publishers_) publishers = 0;
 }
 
 /// False where it was stopped meanwhile: a recording may be long, or made to be.
@@ -273,12 +276,17 @@ void RosNode::State::wait() {
   dds_take_guardcondition(wake_.get(), &was_set);
 }
 
-void RosNode::State::tell_changes() {
-  const Clock::time_point now = Clock::now();
+/// What Cyclone DDS warned of. A participant that goes takes it along.
+void RosNode::State::look_at_dds() {
   for (const Participant::LogLine& line : participant_->take_log()) {
-    warned_.write("DDS " + line.kind, "DDS: " + line.text, now, line.count);
+    warned_.write("DDS " + line.kind, "DDS: " + line.text, Clock::now(), line.count);
     dds_warnings_ += line.count;
   }
+}
+
+void RosNode::State::tell_changes() {
+  const Clock::time_point now = Clock::now();
+  look_at_dds();
   told_.tell_more(now);
   warned_.tell_more(now);
   if (listener_.news() != news_) {
@@ -287,7 +295,7 @@ void RosNode::State::tell_changes() {
   }
   for (const HeardRobot& robot : listener_.robots()) {
     const auto before = publishers_.find(robot.name);
-    if (before == publishers_.end()) continue;
+    if (before == publishers_.end() || robot.awaited) continue;
     if (before->second > 0 && robot.publishers == 0)
       told_.write("gone " + robot.name, robot.name + ": its publisher is gone; its map is kept", now);
     before->second = robot.publishers;
@@ -330,9 +338,9 @@ void RosNode::State::publish() {
   if (is_new) next_diagnoses_ = std::min(next_diagnoses_, diagnosed_ + kDiagnosesApart);
   const bool is_last = enough_ && team_.is_at_rest();  // `once`: who listens is told how it ended
   if (Clock::now() >= next_diagnoses_ || is_last) {
-    publisher_->publish_diagnoses(diagnose(
-        *answer, robots, transforms,
-        {options_.name, participant_->undecodable(), listener_.over_limit(), dds_warnings_, restarts_}));
+    publisher_->publish_diagnoses(diagnose(*answer, robots, transforms,
+                                           {options_.name, undecodable_ + participant_->undecodable(),
+                                            listener_.over_limit(), dds_warnings_, restarts_}));
     diagnosed_ = Clock::now();
     next_diagnoses_ = diagnosed_ + kDiagnosesEvery;
   }

@@ -4,6 +4,7 @@
 #include <dds/dds.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -205,6 +206,36 @@ TEST_F(HeardByListener, AWrongUpdateOfAPublisherThatTakesOverHoldsNoOtherBack) {
   ASSERT_TRUE(hears_maps(2));
   EXPECT_EQ(told, (Told{"map first", "new map second", "update of 1 cells", "update of 1 cells"}));
   EXPECT_EQ(listener.robots().front().refused, 1u);
+}
+
+TEST_F(HeardByListener, AfterTheNetworkWasJoinedAnewThePublisherIsWaitedFor) {
+  test::Peer second(domain);
+  std::optional<MapTopic> first = peer.maps("/a/map");
+  first->publish(RawMap{.frame = "first"});
+  ASSERT_TRUE(hears_maps(1));
+  const MapTopic other = second.maps("/a/map");
+  other.publish(RawMap{.frame = "second"});
+  ASSERT_TRUE(hears([](const HeardRobot& robot) { return robot.unheard == 1; }));
+  // Whichever is discovered first.
+  for (int times = 0; times < 5; ++times) {
+    listener.leave();
+    listener.join(participant);
+    EXPECT_TRUE(listener.robots().front().awaited);
+    ASSERT_TRUE(hears([](const HeardRobot& robot) { return robot.publishers == 2; }));
+    EXPECT_FALSE(listener.robots().front().awaited);
+  }
+  EXPECT_EQ(told, Told{"map first"});
+  // One that went meanwhile is not waited for in vain.
+  listener.leave();
+  first.reset();
+  listener.join(participant);
+  const auto joined = std::chrono::steady_clock::now();
+  ASSERT_TRUE(hears([](const HeardRobot& robot) { return robot.publishers == 1; }));
+  second.publish_update("/a/map_updates", {.frame = "second"});
+  ASSERT_TRUE(hears_maps(2));
+  EXPECT_GE(std::chrono::steady_clock::now() - joined, MapListener::kAwaited - std::chrono::milliseconds(50));
+  EXPECT_EQ(told, (Told{"map first", "new map second", "update of 1 cells"}));
+  EXPECT_EQ(warnings.size(), 1u);  // of several publishers
 }
 
 TEST(AnotherParticipant, TakesOverWhatIsHeardAndPlayed) {

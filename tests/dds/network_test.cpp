@@ -151,6 +151,35 @@ TEST(Network, IsJoinedWheneverItComesAndChanges) {
   if (!was_run || !has_interfaces) GTEST_SKIP() << "no network of its own can be made here";
 }
 
+TEST(Network, ThatIsReplacedHidesNoPublisherThatWent) {
+  const std::uint32_t domain = own_domain();
+  const Variable everywhere("ROS_LOCALHOST_ONLY", "0");
+  bool has_interfaces = false;
+  const bool was_run = in_own_network([&] {
+    set_loopback(true);
+    has_interfaces = can({"ip link add gm0 type veth peer name gm1", "ip address add 10.99.0.1/24 dev gm0",
+                          "ip link set gm0 up", "ip link set gm1 up"});
+    if (!has_interfaces) return;
+    RunningProgram program({"node"});
+    EXPECT_NE(program.read_line(), "");
+    {
+      const internal::Participant network(internal::read_ros_environment(internal::process_environment),
+                                          1 << 20);
+      const Peer peer(domain);
+      const MapTopic map = peer.maps("/a/map");
+      map.publish(RawMap{.frame = "a"});
+      EXPECT_EQ(program.read_line().rfind("a: first map", 0), 0u);
+      // Nobody hears how it goes.
+      ASSERT_TRUE(can({"ip link set gm0 down", "ip address del 10.99.0.1/24 dev gm0"}));
+    }
+    ASSERT_TRUE(can({"ip address add 10.99.0.9/24 dev gm0", "ip link set gm0 up"}));
+    EXPECT_EQ(program.read_line(), kJoins);
+    EXPECT_EQ(program.read_line(), "a: its publisher is gone; its map is kept");
+    EXPECT_EQ(program.end_with(SIGTERM).exit_code, 0);
+  });
+  if (!was_run || !has_interfaces) GTEST_SKIP() << "no network of its own can be made here";
+}
+
 TEST(Network, ThatIsReplacedKeepsNoNodeFromEnding) {
   own_domain();
   bool has_interfaces = false;
