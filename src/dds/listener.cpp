@@ -186,6 +186,7 @@ bool MapListener::offer(const RemoteWriter& writer) {
       if (over_limit_.size() < kMaxOverLimit) over_limit_.emplace(writer.handle, writer);
       if (!warned_of_limit_)
         callbacks_.warn(
+            "too many robots",
             fmt::format("{} and perhaps others are not heard: there are {} robots", topic, kMaxRobots));
       warned_of_limit_ = true;
       return true;
@@ -296,7 +297,8 @@ void MapListener::take_map(Robot& robot, const RemoteWriter& writer, const MapSa
   HeardRobot& heard = robot.heard;
   if (robot.followed && *robot.followed != writer.handle) {
     if (heard.unheard++ == 0)
-      callbacks_.warn(fmt::format("{}: has several publishers, and the first one is heard", heard.topic));
+      callbacks_.warn("several " + heard.topic,
+                      fmt::format("{}: has several publishers, and the first one is heard", heard.topic));
     keep_aside(robot, writer, message, written);
     return;
   }
@@ -410,7 +412,8 @@ void MapListener::use_part(Robot& robot, const HeardPart& part) const {
 
 void MapListener::refuse(Robot& robot, const std::string& why) const {
   HeardRobot& heard = robot.heard;
-  if (heard.refused++ == 0) callbacks_.warn(fmt::format("{}: a message is refused: {}", heard.topic, why));
+  if (heard.refused++ == 0)
+    callbacks_.warn("refused " + heard.topic, fmt::format("{}: a message is refused: {}", heard.topic, why));
   heard.last_refusal = why;
 }
 

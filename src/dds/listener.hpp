@@ -58,8 +58,9 @@ class MapListener {
     std::function<void(const std::string& robot, HeardMap map, bool restarted)> map;
     /// A part of the newest map; returns whether it fits in there.
     std::function<bool(const std::string& robot, const HeardPart& part)> part;
-    /// For people, when something is seen for the first time: of a topic or of a message.
-    std::function<void(const std::string& text)> warn;
+    /// For people, when something is seen for the first time: of a topic or of a message. `kind` is the same
+    /// where the topic comes anew.
+    std::function<void(const std::string& kind, const std::string& text)> warn;
   };
 
   /// What wakes `waitset` is then dealt with by hear().

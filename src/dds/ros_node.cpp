@@ -7,17 +7,18 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "dds/ages.hpp"
 #include "dds/entity.hpp"
 #include "dds/environment.hpp"
-#include "dds/line_limiter.hpp"
 #include "dds/listener.hpp"
 #include "dds/map_times.hpp"
 #include "dds/message.hpp"
 #include "dds/network.hpp"
+#include "dds/node_log.hpp"
 #include "dds/options.hpp"
 #include "dds/participant.hpp"
 #include "dds/player.hpp"
@@ -44,7 +45,6 @@ constexpr milliseconds kQuiet{3000};               // `once`: so long nothing ne
 constexpr milliseconds kFlush{5000};               // `once`: so long subscribers may take
 constexpr double kWaitOnce = 10.0;                 // `once`: for a first map, and for robots to come [s]
 constexpr double kRemindAfter = 10.0;              // without `wait`: then it is said what is waited for [s]
-constexpr std::size_t kEventsOfAKind = 3;          // of one robot, that are told at once
 constexpr std::uint64_t kHeadOfMessage = 1 << 16;  // beside the cells
 constexpr std::uint64_t kLargestMessage = kMaxGridCells + kHeadOfMessage;
 
@@ -88,14 +88,12 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   void count_restart(const std::string& robot);
   void hear_ages();
   void wait();
-  void look_at_dds();
   void tell_changes();
   void publish();
   void publish_node();
   void check_wait();
   std::optional<End> check_once();
   bool is_complete() const;
-  std::string explain_silence() const;
 
   void wake() { dds_set_guardcondition(wake_.get(), true); }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
@@ -126,13 +124,10 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   Clock::time_point next_look_ = began_;
   std::uint64_t news_ = 0;
   std::uint64_t told_answer_ = 0;
-  std::map<std::string, std::size_t> publishers_;  // of each robot, at the last look
-  std::map<std::string, std::string> withheld_;    // as it was told last
+  std::set<std::string> introduced_;  // robots whose first map was told
   std::map<std::string, Restarts> restarts_;
-  std::uint64_t dds_warnings_ = 0;
   std::uint64_t undecodable_ = 0;  // of participants before
-  LineLimiter told_{kEventsOfAKind, options_.tell};
-  LineLimiter warned_{1, options_.warn};
+  NodeLog log_{options_.tell, options_.warn};
   bool all_sent_ = true;
   bool reminded_ = false;
   bool enough_ = false;  // `once`: what is heard is what is merged
@@ -148,7 +143,7 @@ MapListener::Callbacks RosNode::State::callbacks() {
             if (fits) times_.hear_part(robot, part.stamp);
             return fits;
           },
-          options_.warn};
+          [this](const std::string& kind, const std::string& text) { log_.warn(kind, text); }};
 }
 
 void RosNode::State::take_map(const std::string& robot, HeardMap map, bool restarted) {
@@ -160,16 +155,16 @@ void RosNode::State::take_map(const std::string& robot, HeardMap map, bool resta
     team_.forget(robot);
     times_.forget(robot);
     team_.set_known_pose(robot, std::nullopt);
-    told_.write("anew " + robot, fmt::format("{}: started anew: {}", robot, content), Clock::now());
+    log_.tell("anew " + robot, fmt::format("{}: started anew: {}", robot, content));
     count_restart(robot);
     if (known != options_.known_poses.end()) {
-      options_.warn(fmt::format("{}: started anew, so that the pose given for it holds no longer", robot));
+      log_.warn("pose " + robot,
+                fmt::format("{}: started anew, so that the pose given for it holds no longer", robot));
       options_.known_poses.erase(known);
     }
-  } else if (!publishers_.contains(robot)) {
-    options_.tell(fmt::format("{}: first map: {}", robot, content));
+  } else if (introduced_.insert(robot).second) {
+    log_.tell("first map " + robot, fmt::format("{}: first map: {}", robot, content));
   }
-  publishers_.emplace(robot, 0);
   try {
     team_.hear(robot, std::move(map.grid));
     times_.hear_map(robot, map.stamp);
@@ -187,7 +182,7 @@ void RosNode::State::count_restart(const std::string& robot) {
   const auto heard =
       std::find_if(robots.begin(), robots.end(), [&](const HeardRobot& one) { return one.name == robot; });
   if (heard != robots.end())
-    warned_.write("many restarts " + robot, robot + ": " + say_many_restarts(heard->topic), now);
+    log_.warn("many restarts " + robot, robot + ": " + say_many_restarts(heard->topic));
 }
 
 RosNode::End RosNode::State::run() {
@@ -221,19 +216,18 @@ void RosNode::State::look_at_network() {
     case NetworkWatch::Change::none:
       return;
     case NetworkWatch::Change::gone:
-      return warned_.write("network is gone",
-                           "the network is gone: other machines are not heard until it is back",
-                           Clock::now());
+      return log_.warn("network is gone",
+                       "the network is gone: other machines are not heard until it is back");
     case NetworkWatch::Change::replaced:
-      told_.write("network is replaced",
-                  "this machine has other addresses in the network: the node joins it anew", Clock::now());
+      log_.tell("network is replaced",
+                "this machine has other addresses in the network: the node joins it anew");
       return begin_anew();
   }
 }
 
 /// Cyclone DDS never looks again at the network that it began with. What was heard is kept.
 void RosNode::State::begin_anew() {
-  look_at_dds();
+  log_.warn_of_dds(participant_->take_log());  // which goes with it
   undecodable_ += participant_->undecodable();
   ages_.reset();
   listener_.leave();
@@ -276,30 +270,13 @@ void RosNode::State::wait() {
   dds_take_guardcondition(wake_.get(), &was_set);
 }
 
-/// What Cyclone DDS warned of. A participant that goes takes it along.
-void RosNode::State::look_at_dds() {
-  for (const Participant::LogLine& line : participant_->take_log()) {
-    warned_.write("DDS " + line.kind, "DDS: " + line.text, Clock::now(), line.count);
-    dds_warnings_ += line.count;
-  }
-}
-
 void RosNode::State::tell_changes() {
-  const Clock::time_point now = Clock::now();
-  look_at_dds();
-  told_.tell_more(now);
-  warned_.tell_more(now);
-  if (listener_.news() != news_) {
-    news_ = listener_.news();
-    news_at_ = now;
-  }
-  for (const HeardRobot& robot : listener_.robots()) {
-    const auto before = publishers_.find(robot.name);
-    if (before == publishers_.end() || robot.awaited) continue;
-    if (before->second > 0 && robot.publishers == 0)
-      told_.write("gone " + robot.name, robot.name + ": its publisher is gone; its map is kept", now);
-    before->second = robot.publishers;
-  }
+  log_.warn_of_dds(participant_->take_log());
+  log_.tell_gone(listener_.robots());
+  log_.tell_more();
+  if (listener_.news() == news_) return;
+  news_ = listener_.news();
+  news_at_ = Clock::now();
 }
 
 void RosNode::State::publish() {
@@ -308,11 +285,10 @@ void RosNode::State::publish() {
   const bool is_new = answer->number != told_answer_;
   if (is_new) {
     told_answer_ = answer->number;
-    for (const TeamEvent& event : team_.take_events()) {
-      told_.write(fmt::format("event {} {}", static_cast<int>(event.kind), event.robot), event.text,
-                  Clock::now());
+    const std::vector<TeamEvent> events = team_.take_events();
+    log_.tell_events(events);
+    for (const TeamEvent& event : events)
       if (event.kind == TeamEvent::Kind::restarted) count_restart(event.robot);
-    }
     for (const RobotStatus& robot : answer->robots)  // of a pose that was lost its event has told
       if (!robot.has_known_pose) options_.known_poses.erase(robot.name);
     options_.detail(fmt::format("answer {}: {:.3f} s, {} merged maps of {} robots{}", answer->number,
@@ -327,20 +303,14 @@ void RosNode::State::publish() {
   if (is_tick) next_tick_ = std::max(next_tick_ + kTick, now);
   if (is_tick || options_.transforms == TransformTopic::tf_static)
     publisher_->publish_transforms(transforms.transforms);
-  if (transforms.withheld != withheld_) {
-    for (const auto& [robot, why] : transforms.withheld)
-      if (!withheld_.contains(robot))
-        warned_.write("no transform " + robot, fmt::format("{}: no transform is published: {}", robot, why),
-                      now);
-    withheld_ = transforms.withheld;
-  }
+  log_.warn_of_withheld(transforms.withheld);
   publish_node();
   if (is_new) next_diagnoses_ = std::min(next_diagnoses_, diagnosed_ + kDiagnosesApart);
   const bool is_last = enough_ && team_.is_at_rest();  // `once`: who listens is told how it ended
   if (Clock::now() >= next_diagnoses_ || is_last) {
     publisher_->publish_diagnoses(diagnose(*answer, robots, transforms,
                                            {options_.name, undecodable_ + participant_->undecodable(),
-                                            listener_.over_limit(), dds_warnings_, restarts_}));
+                                            listener_.over_limit(), log_.dds_warnings(), restarts_}));
     diagnosed_ = Clock::now();
     next_diagnoses_ = diagnosed_ + kDiagnosesEvery;
   }
@@ -358,24 +328,11 @@ void RosNode::State::check_wait() {
   if (reminded_ || seconds() < most) return;
   reminded_ = true;
   if (has_maps()) return;
-  const std::string text = fmt::format("no map within {:.3g} s: {}", most, explain_silence());
+  const std::string text =
+      fmt::format("no map within {:.3g} s: waiting for {} in domain {}; {}", most, selection_.describe(),
+                  environment_.domain, explain_silence(listener_.robots(), listener_.near_misses()));
   if (is_bounded) throw std::runtime_error(text);
   options_.warn(text);
-}
-
-std::string RosNode::State::explain_silence() const {
-  std::string text = fmt::format("waiting for {} in domain {}", selection_.describe(), environment_.domain);
-  std::vector<std::string> seen;
-  for (const HeardRobot& robot : listener_.robots()) {
-    if (robot.refused > 0)
-      seen.push_back(fmt::format("{}: refused: {}", robot.topic, robot.last_refusal));
-    else if (robot.publishers > 0)
-      seen.push_back(robot.topic + ": is there, but nothing was received");
-  }
-  for (const std::string& near : listener_.near_misses()) seen.push_back(near);
-  if (!seen.empty()) return text + fmt::format("; there is {}", fmt::join(seen, "; "));
-  return text +
-         "; no such topic is there: does ROS_DOMAIN_ID fit, and does the network let multicast through?";
 }
 
 /// `once`: whether every robot that is to be heard was.

@@ -155,6 +155,20 @@ std::vector<Diagnosis> diagnose(const TeamAnswer& answer, const std::vector<Hear
   return diagnoses;
 }
 
+std::string explain_silence(const std::vector<HeardRobot>& robots,
+                            const std::vector<std::string>& near_misses) {
+  std::vector<std::string> seen;
+  for (const HeardRobot& robot : robots) {
+    if (robot.refused > 0)
+      seen.push_back(fmt::format("{}: refused: {}", robot.topic, robot.last_refusal));
+    else if (robot.publishers > 0)
+      seen.push_back(robot.topic + ": is there, but nothing was received");
+  }
+  seen.insert(seen.end(), near_misses.begin(), near_misses.end());
+  if (!seen.empty()) return fmt::format("there is {}", fmt::join(seen, "; "));
+  return "no such topic is there: does ROS_DOMAIN_ID fit, and does the network let multicast through?";
+}
+
 std::string describe_team(const TeamAnswer& answer, const std::vector<HeardRobot>& robots) {
   std::string text;
   for (const auto& [name, status] : statuses_of(answer, robots)) {

@@ -66,6 +66,10 @@ std::string say_many_restarts(const std::string& topic);
 std::vector<Diagnosis> diagnose(const TeamAnswer& answer, const std::vector<HeardRobot>& robots,
                                 const TeamTransforms& transforms, const NodeHealth& health);
 
+/// Why no map was heard: which topics come near, each with why it is none.
+std::string explain_silence(const std::vector<HeardRobot>& robots,
+                            const std::vector<std::string>& near_misses);
+
 /// The same robots in lines for people: "tb1: placed at ..." and so on.
 std::string describe_team(const TeamAnswer& answer, const std::vector<HeardRobot>& robots);
 

@@ -66,7 +66,7 @@ class HeardByListener : public Listening {
                           told.push_back("update of " + std::to_string(part.grid.cells.size()) + " cells");
                           return true;
                         },
-                        [&](const std::string& text) { warnings.push_back(text); }}};
+                        [&](const std::string&, const std::string& text) { warnings.push_back(text); }}};
 };
 
 using Told = std::vector<std::string>;
@@ -110,7 +110,7 @@ TEST_F(Listening, HearsAMapOfAPublisherThatCameInBetween) {
   };
   MapListener listener(participant, waitset.get(), RobotSelection({"/*/map"}, {}),
                        {take, [](const std::string&, const HeardPart&) { return true; },
-                        [](const std::string& text) { ADD_FAILURE() << text; }});
+                        [](const std::string&, const std::string& text) { ADD_FAILURE() << text; }});
   ASSERT_TRUE(comes_true([&] {
     listener.hear();
     return listener.robots().size() == 2;
@@ -257,7 +257,8 @@ TEST(AnotherParticipant, TakesOverWhatIsHeardAndPlayed) {
     told.push_back((is_new ? "new map " : "map ") + map.frame);
   };
   MapListener listener(*participant, waitset.get(), RobotSelection({"/*/map"}, {}),
-                       {take, [](const std::string&, const HeardPart&) { return true; }, fail});
+                       {take, [](const std::string&, const HeardPart&) { return true; },
+                        [&](const std::string&, const std::string& text) { fail(text); }});
   const auto hears = [&](std::size_t count) {
     return comes_true([&] {
       player.play(0.0);
