@@ -17,11 +17,11 @@ void LineLimiter::write(const std::string& kind, const std::string& line, Clock:
   tell_more(now);
   const bool has_room = kinds_.contains(kind) || kinds_.size() < kMaxKinds;
   Kind& found = kinds_.try_emplace(has_room ? kind : std::string(), Kind{now, 0, 0, {}}).first->second;
-  found.more += count;
+  found.untold += count;
   found.last = line;
   if (found.written == at_once_) return;
   ++found.written;
-  --found.more;
+  --found.untold;
   write_(line);
 }
 
@@ -30,12 +30,12 @@ void LineLimiter::tell_more(Clock::time_point now) {
     Kind& kind = at->second;
     if (now - kind.began < kWindow) {
       ++at;
-    } else if (kind.more == 0) {
+    } else if (kind.untold == 0) {
       at = kinds_.erase(at);
     } else {
-      write_(fmt::format("{} ({} more like it in {} s)", kind.last, kind.more, kWindow.count()));
+      write_(fmt::format("{} ({} more like it in {} s)", kind.last, kind.untold, kWindow.count()));
       kind.began = now;
-      kind.more = 0;
+      kind.untold = 0;
       ++at;
     }
   }

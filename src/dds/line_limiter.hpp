@@ -33,7 +33,7 @@ class LineLimiter {
   struct Kind {
     Clock::time_point began;
     std::size_t written = 0;
-    std::uint64_t more = 0;
+    std::uint64_t untold = 0;
     std::string last;
   };
 

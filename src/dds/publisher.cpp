@@ -10,14 +10,15 @@
 
 #include "dds/names.hpp"
 #include "dds/samples.hpp"
+#include "grid/equal_grids.hpp"
 
 namespace gridmerge::internal {
 
 namespace {
 
+/// Whether messages of both maps are the same: these have no probabilities.
 bool is_same(const OccupancyGrid& a, const OccupancyGrid& b) {
-  return a.width == b.width && a.height == b.height && a.resolution == b.resolution && a.origin == b.origin &&
-         a.cells == b.cells;
+  return a.origin == b.origin && has_equal_cells(a, b);
 }
 
 rmw_dds_common_msg_dds__Gid_ gid_of(const dds_guid_t& guid) {
