@@ -60,12 +60,14 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
         participant_(std::in_place, environment_, kLargestMessage),
         waitset_(dds_create_waitset(DDS_CYCLONEDDS_HANDLE), "a wait set"),
         wake_(dds_create_guardcondition(DDS_CYCLONEDDS_HANDLE), "a guard condition"),
+        deaf_waitset_(dds_create_waitset(DDS_CYCLONEDDS_HANDLE), "a wait set"),
         publisher_(std::in_place, *participant_, options_),
         player_(*participant_, options_.played, options_.play_rate, options_.warn),
         listener_(*participant_, waitset_.get(), selection_, callbacks()),
         ages_(std::in_place, *participant_),
         team_(options_.team, [this](const std::shared_ptr<const TeamAnswer>&) { wake(); }) {
-    require_dds(dds_waitset_attach(waitset_.get(), wake_.get(), 0), "waiting for answers");
+    for (const DdsEntity* waitset : {&waitset_, &deaf_waitset_})
+      require_dds(dds_waitset_attach(waitset->get(), wake_.get(), 0), "waiting for answers");
     for (const auto& [robot, pose] : options_.known_poses) team_.set_known_pose(robot, pose);
     publish_node();
   }
@@ -90,6 +92,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   void wait();
   void tell_changes();
   void publish();
+  void publish_diagnoses(const TeamAnswer& answer);
   void publish_node();
   void check_wait();
   std::optional<End> check_once();
@@ -107,8 +110,9 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
   RosEnvironment environment_;
   NetworkWatch network_;
   std::optional<Participant> participant_;  // as the others, made anew for another network
-  DdsEntity waitset_;                       // these two stay: the team's thread wakes the node
+  DdsEntity waitset_;                       // these three stay: the team's thread wakes the node
   DdsEntity wake_;
+  DdsEntity deaf_waitset_;  // wakes for the team alone, not for what is heard
   std::optional<Publisher> publisher_;
   Player player_;
   MapListener listener_;
@@ -201,10 +205,7 @@ RosNode::End RosNode::State::run() {
     tell_changes();
     publish();
     check_wait();
-    if (const std::optional<End> end = check_once()) {
-      publisher_->flush(kFlush);
-      return *end;
-    }
+    if (const std::optional<End> end = check_once()) return *end;
   }
   return End::stopped;
 }
@@ -265,7 +266,9 @@ void RosNode::State::hear_ages() {
 
 void RosNode::State::wait() {
   const std::chrono::nanoseconds longest = std::max(next_tick_ - Clock::now(), Clock::duration(0));
-  require_dds(dds_waitset_wait(waitset_.get(), nullptr, 0, longest.count()), "waiting");
+  // What is not taken any more would wake the node on and on.
+  const DdsEntity& waitset = enough_ ? deaf_waitset_ : waitset_;
+  require_dds(dds_waitset_wait(waitset.get(), nullptr, 0, longest.count()), "waiting");
   bool was_set = false;
   dds_take_guardcondition(wake_.get(), &was_set);
 }
@@ -306,14 +309,17 @@ void RosNode::State::publish() {
   log_.warn_of_withheld(transforms.withheld);
   publish_node();
   if (is_new) next_diagnoses_ = std::min(next_diagnoses_, diagnosed_ + kDiagnosesApart);
-  const bool is_last = enough_ && team_.is_at_rest();  // `once`: who listens is told how it ended
-  if (Clock::now() >= next_diagnoses_ || is_last) {
-    publisher_->publish_diagnoses(diagnose(*answer, robots, transforms,
-                                           {options_.name, undecodable_ + participant_->undecodable(),
-                                            listener_.over_limit(), log_.dds_warnings(), restarts_}));
-    diagnosed_ = Clock::now();
-    next_diagnoses_ = diagnosed_ + kDiagnosesEvery;
-  }
+  if (Clock::now() >= next_diagnoses_) publish_diagnoses(*answer);
+}
+
+void RosNode::State::publish_diagnoses(const TeamAnswer& answer) {
+  const std::vector<HeardRobot> robots = listener_.robots();
+  publisher_->publish_diagnoses(diagnose(answer, robots,
+                                         team_transforms(answer, robots, options_.world_frame),
+                                         {options_.name, undecodable_ + participant_->undecodable(),
+                                          listener_.over_limit(), log_.dds_warnings(), restarts_}));
+  diagnosed_ = Clock::now();
+  next_diagnoses_ = diagnosed_ + kDiagnosesEvery;
 }
 
 void RosNode::State::publish_node() {
@@ -356,6 +362,8 @@ std::optional<RosNode::End> RosNode::State::check_once() {
   if (!enough_ || !team_.is_at_rest()) return std::nullopt;
   const std::shared_ptr<const TeamAnswer> answer = team_.answer();
   if (answer->number != told_answer_) return std::nullopt;  // it is published first
+  publish_diagnoses(*answer);                               // who listens is told how it ended
+  publisher_->flush(kFlush);
   if (!answer->problem.empty()) throw std::runtime_error("the maps cannot be merged: " + answer->problem);
   const bool all =
       answer->components.size() == 1 && answer->components.front().robots.size() == answer->robots.size();

@@ -125,6 +125,20 @@ TEST_F(NodeTest, EndsOnceThoughMapsCannotBeMerged) {
   }
 }
 
+TEST_F(NodeTest, TellsHowItIsWhenItEnds) {
+  options.once = true;
+  options.team.quiet = std::chrono::milliseconds(0);
+  options.wait = 2.2;  // most of a second after the last of the regular diagnoses
+  start();
+  const MapTopic topic = peer->maps("/a/map");
+  topic.publish(map_of(0, "a"));
+  ASSERT_TRUE(diagnosed("a", "maps", "1"));
+  node->end();
+  const double ended =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  EXPECT_LT(ended - diagnosis("a").stamp, 0.5);
+}
+
 TEST_F(NodeTest, EndsOnceThoughRobotsMapOn) {
   options.once = true;
   options.wait = 30.0;

@@ -139,6 +139,7 @@ const std::map<std::string, RawDiagnosis>& Peer::diagnoses() {
           const auto& one = sample.status._buffer[i];
           RawDiagnosis& diagnosis = diagnoses_[one.name];
           diagnosis.received = received_;
+          diagnosis.stamp = sample.header.stamp.sec + 1e-9 * sample.header.stamp.nanosec;
           diagnosis.level = one.level;
           diagnosis.message = one.message;
           for (std::uint32_t j = 0; j < one.values._length; ++j)

@@ -52,6 +52,7 @@ struct RawTransform {
 
 struct RawDiagnosis {
   std::uint64_t received = 0;  // messages of all nodes up to the one that has it
+  double stamp = 0.0;          // its time [s since 1970]
   int level = -1;
   std::string message;
   std::map<std::string, std::string> values;
