@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <future>
 #include <memory>
 #include <optional>
@@ -22,10 +24,14 @@ namespace gridmerge::cli {
 
 namespace {
 
-constexpr std::chrono::seconds kLongestEnd{5};
+// Longer than a node takes that is let go of: with --once it gives its subscribers 5 s.
+constexpr std::chrono::seconds kLongestEnd{10};
 
-void warn_of_network() {
+/// Another thread still works on the node: no destructor may run any more.
+[[noreturn]] void end_without_network(int exit_code) {
   print_error("warning: the network does not let go of the node: it ends without telling others");
+  std::fflush(nullptr);
+  std::_Exit(exit_code);
 }
 
 /// Stops the node at the first signal, for as long as this lives. DDS may wait for good for a network that is
@@ -37,8 +43,7 @@ class StopAtSignal {
           signal_.wait();
           node.stop();
           if (ended_.get_future().wait_for(kLongestEnd) == std::future_status::ready) return;
-          warn_of_network();
-          std::_Exit(kDone);
+          end_without_network(kDone);
         }) {}
   ~StopAtSignal() {
     ended_.set_value();
@@ -54,13 +59,18 @@ class StopAtSignal {
   std::thread waiter_;  // last: it uses what is above
 };
 
-/// Deletes a node, and waits for that no longer than kLongestEnd.
+/// Deletes a node. Where that takes longer than kLongestEnd, the program ends there.
 struct TakeDown {
+  int exit_code = kError;
+  std::string error = {};  // that is on its way, and would not be told then
+
   void operator()(RosNode* node) const {
     std::packaged_task<void()> take_down([node] { delete node; });
     const std::future<void> done = take_down.get_future();
-    std::thread(std::move(take_down)).detach();
-    if (done.wait_for(kLongestEnd) != std::future_status::ready) warn_of_network();
+    std::thread thread(std::move(take_down));
+    if (done.wait_for(kLongestEnd) == std::future_status::ready) return thread.join();
+    if (!error.empty()) print_error(error);
+    end_without_network(exit_code);
   }
 };
 
@@ -94,12 +104,16 @@ int run_node(const NodeCommandOptions& options) {
     tell("page: " + server->url());
   }
   RosNode::End end = RosNode::End::stopped;
-  {
+  try {
     const StopAtSignal stop(signal, *node);
     end = node->run();
+  } catch (const std::exception& error) {
+    node.get_deleter().error = error.what();
+    throw;
   }
   if (end != RosNode::End::stopped) print(node->describe());
   const int exit_code = end == RosNode::End::refused ? kRefused : kDone;
+  node.get_deleter().exit_code = exit_code;
   node.reset();  // peers are told that it leaves, whatever the server waits for
   if (server) server->end(exit_code);
   return exit_code;
