@@ -66,7 +66,7 @@ class KnownPoses : public testing::Test {
     });
   }
 
-  const Explorers explorers;
+  Explorers explorers;
   const SE2 T_new_old{5.0, 7.0, 2.0};
   const SE2 T_world_anna{100.0, 50.0, 1.0};
 };
