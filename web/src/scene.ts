@@ -85,7 +85,7 @@ export function planPlace(report: Report, id: SceneId): PlanPlace | null {
   return report.plan?.places.find(isThere) ?? null;
 }
 
-/** What is shown first: the largest merged map, or if nothing joined, the first map. */
+/** What is shown first: the merged map with the lowest number, or if nothing joined, the first map. */
 export function firstScene(report: Report): SceneId {
   return report.components.length > 0 ? { kind: "component", component: 0 } : { kind: "map", map: 0 };
 }
