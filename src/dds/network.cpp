@@ -8,8 +8,34 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
+#include <string>
+#include <system_error>
 
 namespace gridmerge::internal {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether it is a bridge of virtual interfaces alone.
+bool is_inner_bridge(const std::string& interface) {
+  const fs::path interfaces = "/sys/class/net";
+  std::error_code error;
+  fs::directory_iterator port(interfaces / interface / "brif", error);
+  if (error) return false;
+  for (; !error && port != fs::directory_iterator(); port.increment(error))
+    if (fs::exists(interfaces / port->path().filename() / "device", error)) return false;
+  return true;
+}
+
+bool contains(const NetworkAddresses& addresses, const NetworkAddress& one) {
+  return std::any_of(addresses.begin(), addresses.end(), [&](const NetworkAddress& other) {
+    return other.interface == one.interface && other.index == one.index && other.ipv4 == one.ipv4;
+  });
+}
+
+}  // namespace
 
 NetworkAddresses network_addresses() {
   ifaddrs* all = nullptr;
@@ -20,7 +46,8 @@ NetworkAddresses network_addresses() {
     if (!is_up || one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
     sockaddr_in address{};
     std::memcpy(&address, one->ifa_addr, sizeof address);
-    addresses.insert({one->ifa_name, ::if_nametoindex(one->ifa_name), address.sin_addr.s_addr});
+    const bool leads_out = (one->ifa_flags & IFF_RUNNING) != 0 && !is_inner_bridge(one->ifa_name);
+    addresses.insert({one->ifa_name, ::if_nametoindex(one->ifa_name), address.sin_addr.s_addr, leads_out});
   }
   ::freeifaddrs(all);
   return addresses;
@@ -36,8 +63,15 @@ NetworkWatch::Change NetworkWatch::look(const NetworkAddresses& now) {
     return was_there ? Change::gone : Change::none;
   }
   is_gone_ = false;
-  const bool has_all = std::includes(now.begin(), now.end(), begun_with_.begin(), begun_with_.end());
-  if (has_all && !begun_with_.empty()) return Change::none;
+  const auto leads_out = [](const NetworkAddress& one) { return one.leads_out; };
+  const bool has_all = std::all_of(begun_with_.begin(), begun_with_.end(),
+                                   [&](const NetworkAddress& one) { return contains(now, one); });
+  // A carrier that comes later is no reason: DDS has the address already.
+  const bool is_first_out = std::none_of(begun_with_.begin(), begun_with_.end(), leads_out) &&
+                            std::any_of(now.begin(), now.end(), [&](const NetworkAddress& one) {
+                              return one.leads_out && !contains(begun_with_, one);
+                            });
+  if (has_all && !begun_with_.empty() && !is_first_out) return Change::none;
   begun_with_ = now;
   return Change::replaced;
 }

@@ -13,13 +13,15 @@ struct NetworkAddress {
   std::string interface;
   unsigned index = 0;      // of the interface: another one when it was made anew under the same name
   std::uint32_t ipv4 = 0;  // in network byte order
+  bool leads_out = true;   // to other machines, as far as can be seen: see network_addresses()
 
   // NOLINTNEXTLINE(modernize-use-nullptr): the 0 is one that the compiler puts there
   friend auto operator<=>(const NetworkAddress&, const NetworkAddress&) = default;
 };
 using NetworkAddresses = std::set<NetworkAddress>;
 
-/// Those of interfaces that are up, without the loopback one.
+/// Those of interfaces that are up, without the loopback one. One without a carrier, and a bridge that has no
+/// device among its ports, as docker's, lead to no other machine.
 NetworkAddresses network_addresses();
 
 /// Tells when DDS has to begin anew: it keeps to the addresses that were there when it began.
@@ -28,10 +30,13 @@ class NetworkWatch {
   enum class Change {
     none,
     gone,     // there is no network any more; told once
-    replaced  // there is another one, and DDS does not hear it
+    replaced  // there is another one, and DDS does not hear it; or it may be the first that leads out
   };
 
   explicit NetworkWatch(const NetworkAddresses& begun_with) : begun_with_(begun_with), last_(begun_with) {}
+
+  /// What DDS begins with: at first, and after `replaced`.
+  const NetworkAddresses& begun_with() const { return begun_with_; }
 
   /// What has become of the network. Addresses count once they were there in two looks in a row: a network
   /// that comes up gets them one by one.

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "dds/line_limiter.hpp"
-#include "dds/network.hpp"
 #include "gridmerge/export.hpp"
 
 // These two take the place of Cyclone DDS's own, which the dynamic linker finds later than the program's.
@@ -125,13 +124,13 @@ class Participant::Log {
   std::atomic<std::uint64_t> undecodable_{0};
 };
 
-Participant::Participant(const RosEnvironment& environment, std::uint64_t largest_message)
+Participant::Participant(const RosEnvironment& environment, std::uint64_t largest_message,
+                         const NetworkAddresses& network)
     : log_(std::make_unique<Log>()) {
   try {
     domain_ = DdsEntity(
-        dds_create_domain(
-            environment.domain,
-            cyclone_configuration(environment, largest_message, !network_addresses().empty()).c_str()),
+        dds_create_domain(environment.domain,
+                          cyclone_configuration(environment, largest_message, !network.empty()).c_str()),
         fmt::format("domain {}", environment.domain));
     const QosPtr qos = participant_qos(environment);
     participant_ = DdsEntity(dds_create_participant(environment.domain, qos.get(), nullptr),

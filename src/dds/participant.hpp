@@ -10,6 +10,7 @@
 
 #include "dds/entity.hpp"
 #include "dds/environment.hpp"
+#include "dds/network.hpp"
 
 namespace gridmerge::internal {
 
@@ -26,9 +27,10 @@ QosPtr participant_qos(const RosEnvironment& environment);
 /// DDS logs goes to whoever set its sink last.
 class Participant {
  public:
-  /// Throws std::runtime_error, with what Cyclone DDS says of it, when the configuration or the network does
-  /// not let it in.
-  Participant(const RosEnvironment& environment, std::uint64_t largest_message);
+  /// `network` are the addresses of this machine. Throws std::runtime_error, with what Cyclone DDS says of
+  /// it, when the configuration or the network does not let it in.
+  Participant(const RosEnvironment& environment, std::uint64_t largest_message,
+              const NetworkAddresses& network = network_addresses());
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;

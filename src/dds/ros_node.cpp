@@ -57,7 +57,7 @@ class __attribute__((visibility("hidden"))) RosNode::State {  // or it is as pub
         selection_(select(options_)),
         environment_(read_ros_environment(process_environment, options_.enclave)),
         network_(network_addresses()),
-        participant_(std::in_place, environment_, kLargestMessage),
+        participant_(std::in_place, environment_, kLargestMessage, network_.begun_with()),
         waitset_(dds_create_waitset(DDS_CYCLONEDDS_HANDLE), "a wait set"),
         wake_(dds_create_guardcondition(DDS_CYCLONEDDS_HANDLE), "a guard condition"),
         deaf_waitset_(dds_create_waitset(DDS_CYCLONEDDS_HANDLE), "a wait set"),
@@ -235,7 +235,7 @@ void RosNode::State::begin_anew() {
   player_.leave();
   publisher_.reset();
   participant_.reset();
-  participant_.emplace(environment_, kLargestMessage);
+  participant_.emplace(environment_, kLargestMessage, network_.begun_with());
   publisher_.emplace(*participant_, options_);
   player_.join(*participant_);
   listener_.join(*participant_);

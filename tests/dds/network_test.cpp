@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What becomes of the node when its network changes. The network is one of the test's own.
+#include "dds/network.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -127,6 +129,44 @@ void expect_heard(RunningProgram& program, std::uint32_t domain, const std::stri
   const MapTopic map = peer.maps("/" + robot + "/map");
   map.publish(RawMap{.frame = robot});
   EXPECT_EQ(program.read_line().rfind(robot + ": first map", 0), 0u);
+}
+
+TEST(Network, LeadsOutWhereThereIsACarrier) {
+  bool has_interfaces = false;
+  const bool was_run = in_own_network([&] {
+    has_interfaces = can({"ip link add gm0 type veth peer name gm1", "ip address add 10.99.0.1/24 dev gm0",
+                          "ip link set gm0 up"});
+    if (!has_interfaces) return;
+    const auto leads_out = [] {
+      const internal::NetworkAddresses addresses = internal::network_addresses();
+      return addresses.size() == 1 && addresses.begin()->leads_out;
+    };
+    EXPECT_EQ(internal::network_addresses().size(), 1u);
+    EXPECT_FALSE(leads_out());
+    ASSERT_TRUE(can({"ip link set gm1 up"}));
+    EXPECT_TRUE(comes_true(leads_out));
+  });
+  if (!was_run || !has_interfaces) GTEST_SKIP() << "no network of its own can be made here";
+}
+
+/// As at boot, where docker may be up before the network is.
+TEST(Network, IsJoinedWhereABridgeToNowhereWasFirst) {
+  own_domain();
+  const Variable everywhere("ROS_LOCALHOST_ONLY", "0");
+  bool has_interfaces = false;
+  const bool was_run = in_own_network([&] {
+    set_loopback(true);
+    // A carrier that is missing makes it one.
+    has_interfaces = can({"ip link add gm0 type veth peer name gm1", "ip address add 172.17.0.1/16 dev gm0",
+                          "ip link set gm0 up", "ip link add gm2 type veth peer name gm3"});
+    if (!has_interfaces) return;
+    RunningProgram program({"node"});
+    EXPECT_NE(program.read_line(), "");
+    ASSERT_TRUE(can({"ip address add 10.99.0.1/24 dev gm2", "ip link set gm2 up", "ip link set gm3 up"}));
+    EXPECT_EQ(program.read_line(), kJoins);
+    EXPECT_EQ(program.end_with(SIGTERM).exit_code, 0);
+  });
+  if (!was_run || !has_interfaces) GTEST_SKIP() << "no network of its own can be made here";
 }
 
 TEST(Network, IsJoinedWheneverItComesAndChanges) {
