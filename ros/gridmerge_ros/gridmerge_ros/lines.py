@@ -10,6 +10,9 @@ from time import monotonic
 WINDOW, MOST = 60.0, 3
 """So many lines of one kind are written in so long [s], and how many more there were."""
 
+MOST_KINDS = 1024
+"""Further kinds count as one."""
+
 
 @dataclass(slots=True)
 class _Kind:
@@ -19,18 +22,17 @@ class _Kind:
 
 
 class Lines:
-    """Writes lines for people, a few of each kind in a minute.
-
-    Lines that begin alike, up to the second colon, are of one kind: "tb1: started anew: ...".
-    """
+    """Writes lines for people, a few of each kind in a minute: what peers do decides how many there are."""
 
     def __init__(self, write: Callable[[str], None]) -> None:
         self._write = write
         self._kinds: dict[str, _Kind] = {}
 
-    def __call__(self, line: str) -> None:
+    def __call__(self, kind: str, line: str) -> None:
+        """A line; `kind` is the same for lines that differ in numbers alone."""
         self.look()
-        kind = ":".join(line.split(":", 2)[:2])
+        if kind not in self._kinds and len(self._kinds) >= MOST_KINDS:
+            kind = ""
         seen = self._kinds.setdefault(kind, _Kind(monotonic()))
         seen.lines += 1
         seen.last = line

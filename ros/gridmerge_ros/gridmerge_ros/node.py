@@ -131,7 +131,7 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
         self._robots = Robots(self._team, settings.max_robots, self._tell, self._warn)
         self._publishers_of_team = Publishers(self, settings)
         if not HEARS_UPDATES:
-            self._warn(_NO_UPDATES)
+            self._warn("no updates", _NO_UPDATES)
 
     def _activate(self) -> None:
         settings, robots = self._settings, self._robots
@@ -196,7 +196,7 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
                 self._last_events.append(event.text)
                 if event.kind == "restarted":
                     self._robots.count_restart(event.robot)
-                self._tell(event.text)
+                self._tell(f"{event.kind} {event.robot}", event.text)
             self._robots.follow(answer)
             self._told_answer = answer.number
         if answer.number == self._sent_answer or monotonic() < self._next_maps:
@@ -207,7 +207,9 @@ class GridmergeNode(LifecycleNode):  # type: ignore[misc]
             answer, self._robots.all, self._settings.world_frame, self._settings.robot_map_frame
         )
         for robot in sorted(transforms.withheld.keys() - self._transforms.withheld.keys()):
-            self._warn(f"{robot}: no transform is published: {transforms.withheld[robot]}")
+            self._warn(
+                f"no transform {robot}", f"{robot}: no transform is published: {transforms.withheld[robot]}"
+            )
         self._transforms = transforms
         self._publishers_of_team.send_transforms(transforms.transforms)
         self._publishers_of_team.send_maps(answer)

@@ -20,7 +20,7 @@ MOST_CELLS_TOGETHER = 2**30
 LATEST = 5.0
 """An update that comes so long after a map was not sent before it, whatever the publisher's clock says [s]."""
 
-TOO_OFTEN = 3, 60.0
+TOO_OFTEN = 4, 60.0
 """A robot that starts anew so many times in so long [s] is perhaps two robots."""
 
 Publisher = tuple[int, ...]
@@ -90,11 +90,11 @@ class Robots:
     Args:
         team: what merges.
         most: a robot beyond that many is not heard.
-        tell, warn: are given a line for people on what happened, and on what should not have.
+        tell, warn: are given a line for people on what happened, and on what should not have, behind its kind.
     """
 
     def __init__(
-        self, team: Team, most: int, tell: Callable[[str], None], warn: Callable[[str], None]
+        self, team: Team, most: int, tell: Callable[[str, str], None], warn: Callable[[str, str], None]
     ) -> None:
         self._team = team
         self._most = most
@@ -122,13 +122,16 @@ class Robots:
         """
         if len(self._robots) >= self._most:
             if not self.over_limit:
-                self._warn(f"{topic} and perhaps others are not heard: there are {self._most} robots")
+                self._warn(
+                    "too many robots",
+                    f"{topic} and perhaps others are not heard: there are {self._most} robots",
+                )
             self.over_limit.add(topic)
             return False
         robot = self._robots[name] = HeardRobot(name, topic)
         if isinstance(pose, str):
             robot.pose = pose
-            self._warn(f"{name}: {pose}")
+            self._warn(f"pose {name}", f"{name}: {pose}")
         elif pose is not None:
             self._set_pose(robot, pose)
         return True
@@ -137,9 +140,12 @@ class Robots:
         """Who publishes the robot's map now."""
         robot = self._robots[name]
         if robot.publishers > 0 and not publishers:
-            self._tell(f"{name}: its publisher is gone; its map is kept")
+            self._tell(f"gone {name}", f"{name}: its publisher is gone; its map is kept")
         if robot.publishers <= 1 < len(publishers):
-            self._warn(f"{robot.topic}: has {len(publishers)} publishers; all are taken for one robot")
+            self._warn(
+                f"several {name}",
+                f"{robot.topic}: has {len(publishers)} publishers; all are taken for one robot",
+            )
         robot.publishers = len(publishers)
 
     def hear_map(self, name: str, message: Any, publishers: Collection[Publisher], written: int = 0) -> None:
@@ -158,7 +164,7 @@ class Robots:
             return
         content = f"{heard.grid.width} x {heard.grid.height} cells of {heard.grid.resolution:.4g} m in {heard.frame}"
         if robot.maps == 0:
-            self._tell(f"{name}: first map: {content}")
+            self._tell(f"first map {name}", f"{name}: first map: {content}")
         elif heard.frame != robot.frame or self._is_another(robot, publishers):
             self._restart(robot, content)
         now = time.time()
@@ -215,7 +221,7 @@ class Robots:
         robot.restarts += 1
         robot.last_restarts.append(time.monotonic())
         if robot.doubt:
-            self._warn(f"{name}: {robot.doubt}")
+            self._warn(f"many restarts {name}", f"{name}: {robot.doubt}")
 
     def follow(self, answer: TeamAnswer) -> None:
         """A known pose that the team has given up holds no longer."""
@@ -247,14 +253,14 @@ class Robots:
             )
         except ValueError as error:
             robot.pose = f"the initial pose cannot be: {error}"
-            self._warn(f"{robot.name}: {robot.pose}")
+            self._warn(f"pose {robot.name}", f"{robot.name}: {robot.pose}")
             return
         self._poses[robot.name] = pose
         robot.pose = "fixed" if pose.fixed else "a start"
 
     def _restart(self, robot: HeardRobot, content: str) -> None:
         """What was known of the old map's frame says nothing of the new one, whatever its name."""
-        self._tell(f"{robot.name}: started anew: {content}")
+        self._tell(f"anew {robot.name}", f"{robot.name}: started anew: {content}")
         self.count_restart(robot.name)
         self._team.forget(robot.name)
         robot.heard_first = None
@@ -265,10 +271,10 @@ class Robots:
     def _lose_pose(self, robot: HeardRobot) -> None:
         del self._poses[robot.name]
         robot.pose = "holds no longer: the robot started anew"
-        self._warn(f"{robot.name}: its initial pose {robot.pose}")
+        self._warn(f"pose {robot.name}", f"{robot.name}: its initial pose {robot.pose}")
 
     def _refuse(self, robot: HeardRobot, why: str) -> None:
         if robot.refused == 0:
-            self._warn(f"{robot.topic}: a message is refused: {why}")
+            self._warn(f"refused {robot.name}", f"{robot.topic}: a message is refused: {why}")
         robot.refused += 1
         robot.last_refusal = why

@@ -53,8 +53,13 @@ class Heard:
         self.account = Account()
         self.lines: list[str] = []
         team: Any = self.account
-        self.robots = Robots(team, most, self.lines.append, self.lines.append)
+        self.kinds: list[str] = []
+        self.robots = Robots(team, most, self._write, self._write)
         assert self.robots.add("tb1", "/tb1/map")
+
+    def _write(self, kind: str, line: str) -> None:
+        self.kinds.append(kind)
+        self.lines.append(line)
 
     @property
     def tb1(self) -> Any:
@@ -165,13 +170,14 @@ def test_a_robot_that_starts_anew(how: str) -> None:
 
 
 def test_two_robots_on_one_topic(heard: Heard, monkeypatch: pytest.MonkeyPatch) -> None:
-    for frame in ("a", "b", "a"):
+    for frame in ("a", "b", "a", "b"):
         heard.robots.hear_map("tb1", map_message(CELLS, 3, 2, frame), [FIRST])
     assert heard.tb1.doubt == ""  # that may be
     heard.robots.count_restart("tb1")  # as the team sees by its map
     assert "do two robots publish on /tb1/map?" in heard.tb1.doubt
     assert heard.lines[-1] == f"tb1: {heard.tb1.doubt}"
-    assert heard.tb1.restarts == 3
+    assert heard.tb1.restarts == 4
+    assert heard.kinds == ["first map tb1", *["anew tb1"] * 3, "many restarts tb1"]
     heard.robots.count_restart("nobody")
     later = time.monotonic() + 61.0
     monkeypatch.setattr(time, "monotonic", lambda: later)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from gridmerge import OccupancyGrid, RobotStatus, TeamAnswer, TeamComponent, Transform
-from gridmerge_ros.robots import HeardRobot
+from gridmerge_ros.robots import TOO_OFTEN, HeardRobot
 from gridmerge_ros.status import OK, WARNING, NodeHealth, TeamTransforms, diagnose, team_transforms
 
 GRID = OccupancyGrid(np.zeros((2, 2), np.int8), 0.05)
@@ -60,7 +60,7 @@ def test_a_robot_that_is_perhaps_two() -> None:
     robots = heard("a/map")
     placed_one = answer(placed("tb0", 0, 1.0))
     assert diagnose(placed_one, robots, TeamTransforms((), {}), HEALTH)[1].level == OK
-    robots["tb0"].last_restarts.extend([monotonic()] * 3)
+    robots["tb0"].last_restarts.extend([monotonic()] * TOO_OFTEN[0])
     one = diagnose(placed_one, robots, TeamTransforms((), {}), HEALTH)[1]
     assert one.level == WARNING
     assert "do two robots publish on /tb0/map?" in one.message
