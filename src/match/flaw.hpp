@@ -2,14 +2,13 @@
 #pragma once
 
 #include "gridmerge/match/match_result.hpp"
-#include "internal_export.hpp"
 
 namespace gridmerge::internal {
 
 /// What it has that no match of two maps can have found, in words that begin with a verb; null if nothing.
-GRIDMERGE_INTERNAL_EXPORT const char* flaw_of(const PairPose& pose);
+const char* flaw_of(const PairPose& pose);
 
 /// The same of a whole result. O(hypotheses).
-GRIDMERGE_INTERNAL_EXPORT const char* flaw_of(const MatchResult& match);
+const char* flaw_of(const MatchResult& match);
 
 }  // namespace gridmerge::internal
