@@ -11,7 +11,7 @@
 
 #include "dds/loan.hpp"
 #include "dds/names.hpp"
-#include "ros_messages.h"
+#include "dds/samples.hpp"
 
 namespace gridmerge::internal {
 
@@ -30,38 +30,6 @@ bool is_type(const RemoteWriter& writer, const TopicType& type) {
 
 TopicQos reader_qos(const RemoteWriter& writer, std::int32_t depth) {
   return {writer.qos.reliable, writer.qos.transient_local, depth};
-}
-
-template <typename Sequence>
-std::span<const std::int8_t> values_of(const Sequence& sequence) {
-  return {reinterpret_cast<const std::int8_t*>(sequence._buffer), sequence._length};
-}
-
-MapSample view_of(const nav_msgs_msg_dds__OccupancyGrid_& sample) {
-  MapSample message;
-  message.stamp = {sample.header.stamp.sec, sample.header.stamp.nanosec};
-  message.frame = text_of(sample.header.frame_id);
-  message.resolution = sample.info.resolution;
-  message.width = sample.info.width;
-  message.height = sample.info.height;
-  const auto& position = sample.info.origin.position;
-  const auto& orientation = sample.info.origin.orientation;
-  message.position = {position.x, position.y, position.z};
-  message.orientation = {orientation.x, orientation.y, orientation.z, orientation.w};
-  message.data = values_of(sample.data);
-  return message;
-}
-
-UpdateSample view_of(const map_msgs_msg_dds__OccupancyGridUpdate_& sample) {
-  UpdateSample message;
-  message.stamp = {sample.header.stamp.sec, sample.header.stamp.nanosec};
-  message.frame = text_of(sample.header.frame_id);
-  message.x = sample.x;
-  message.y = sample.y;
-  message.width = sample.width;
-  message.height = sample.height;
-  message.data = values_of(sample.data);
-  return message;
 }
 
 }  // namespace
@@ -362,16 +330,9 @@ void MapListener::take_over(Robot& robot) {
     if (!kept) return;
     try {
       use_map(robot, kept->writer, std::move(kept->map), kept->written);
+      for (const HeardPart& part : kept->parts) use_part(robot, part);
     } catch (const RefusedMessage& error) {
       refuse(robot, error.what());
-      continue;
-    }
-    for (const HeardPart& part : kept->parts) {
-      try {
-        use_part(robot, part);
-      } catch (const RefusedMessage& error) {
-        refuse(robot, error.what());
-      }
     }
   }
 }
@@ -405,8 +366,8 @@ void MapListener::take_part(Robot& robot, const RemoteWriter& writer, const Upda
 void MapListener::use_part(Robot& robot, const HeardPart& part) const {
   HeardRobot& heard = robot.heard;
   if (part.frame != heard.frame)
-    throw RefusedMessage(fmt::format("an update in the frame {}, of a map in {}", part.frame, heard.frame));
-  if (!callbacks_.part(heard.name, part)) throw RefusedMessage("an update that reaches beyond its map");
+    return refuse(robot, fmt::format("an update in the frame {}, of a map in {}", part.frame, heard.frame));
+  if (!callbacks_.part(heard.name, part)) return refuse(robot, "an update that reaches beyond its map");
   ++heard.parts;
 }
 

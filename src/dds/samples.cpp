@@ -5,8 +5,47 @@
 
 #include <chrono>
 #include <cmath>
+#include <span>
+
+#include "dds/loan.hpp"
 
 namespace gridmerge::internal {
+
+namespace {
+
+template <typename Sequence>
+std::span<const std::int8_t> values_of(const Sequence& sequence) {
+  return {reinterpret_cast<const std::int8_t*>(sequence._buffer), sequence._length};
+}
+
+}  // namespace
+
+MapSample view_of(const nav_msgs_msg_dds__OccupancyGrid_& sample) {
+  MapSample message;
+  message.stamp = {sample.header.stamp.sec, sample.header.stamp.nanosec};
+  message.frame = text_of(sample.header.frame_id);
+  message.resolution = sample.info.resolution;
+  message.width = sample.info.width;
+  message.height = sample.info.height;
+  const auto& position = sample.info.origin.position;
+  const auto& orientation = sample.info.origin.orientation;
+  message.position = {position.x, position.y, position.z};
+  message.orientation = {orientation.x, orientation.y, orientation.z, orientation.w};
+  message.data = values_of(sample.data);
+  return message;
+}
+
+UpdateSample view_of(const map_msgs_msg_dds__OccupancyGridUpdate_& sample) {
+  UpdateSample message;
+  message.stamp = {sample.header.stamp.sec, sample.header.stamp.nanosec};
+  message.frame = text_of(sample.header.frame_id);
+  message.x = sample.x;
+  message.y = sample.y;
+  message.width = sample.width;
+  message.height = sample.height;
+  message.data = values_of(sample.data);
+  return message;
+}
 
 Stamp now() {
   const auto since = std::chrono::system_clock::now().time_since_epoch();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples as Cyclone DDS takes them: they refer to our values, and are written before these go.
+// Samples as Cyclone DDS takes them: they refer to our values, and are written before these go. And samples
+// as it gives them, to which what is read refers.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +32,10 @@ void refer(Sequence& sequence, const std::vector<Element>& elements) {
 inline builtin_interfaces_msg_dds__Time_ time_of(const Stamp& stamp) {
   return {stamp.seconds, stamp.nanoseconds};
 }
+
+/// A sample that was received, with nothing checked.
+MapSample view_of(const nav_msgs_msg_dds__OccupancyGrid_& sample);
+UpdateSample view_of(const map_msgs_msg_dds__OccupancyGridUpdate_& sample);
 
 /// The system's time.
 Stamp now();
