@@ -153,6 +153,7 @@ TEST_F(NodeTest, HearsSoManyRobotsAndNoMore) {
   options.team.quiet = std::chrono::milliseconds(0);
   start();
   std::vector<MapTopic> topics;
+  topics.reserve(300);
   for (int i = 0; i < 300; ++i) topics.push_back(peer->maps("/r" + std::to_string(i) + "/map"));
   EXPECT_TRUE(comes_true([&] {
     const auto& all = peer->diagnoses();
