@@ -42,16 +42,6 @@ std::vector<UsedCandidate> used_in_all(const JoinWeights& weights, const NodeGro
   return all;
 }
 
-double expected_false_joins_of(const NodeGroups& groups) {
-  double expected = 0.0;
-  for (const NodeGroup& group : groups) {
-    // Every map is doubted given the others: two maps doubt one join twice.
-    const double share = static_cast<double>(group.size() - 1) / static_cast<double>(group.size());
-    for (const PlacedNode& node : group) expected += share * (1.0 - node.probability);
-  }
-  return expected;
-}
-
 }  // namespace
 
 ConsistentSet find_consistent_set(const JoinProblem& problem, double accept_probability) {
@@ -89,7 +79,13 @@ std::vector<OpenJoin> find_open_joins(const JoinProblem& problem, const Consiste
 }
 
 double expected_false_joins(const ConsistentSet& consistent_set) {
-  return expected_false_joins_of(consistent_set.groups);
+  double expected = 0.0;
+  for (const NodeGroup& group : consistent_set.groups) {
+    // Every map is doubted given the others: two maps doubt one join twice.
+    const double share = static_cast<double>(group.size() - 1) / static_cast<double>(group.size());
+    for (const PlacedNode& node : group) expected += share * (1.0 - node.probability);
+  }
+  return expected;
 }
 
 double false_joins_allowed(double max_false_joins, std::size_t maps) {

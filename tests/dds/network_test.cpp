@@ -122,6 +122,12 @@ bool can(std::initializer_list<const char*> commands) {
   });
 }
 
+/// Whether an interface with a carrier could be made in the thread's network: gm0, with 10.99.0.1.
+bool make_interface() {
+  return can({"ip link add gm0 type veth peer name gm1", "ip address add 10.99.0.1/24 dev gm0",
+              "ip link set gm0 up", "ip link set gm1 up"});
+}
+
 /// Publishes this robot's map until the node says that it heard it.
 void expect_heard(RunningProgram& program, std::uint32_t domain, const std::string& robot) {
   const internal::Participant network(internal::read_ros_environment(internal::process_environment), 1 << 20);
@@ -177,8 +183,7 @@ TEST(Network, IsJoinedWheneverItComesAndChanges) {
     set_loopback(true);
     RunningProgram program({"node"});
     EXPECT_NE(program.read_line(), "");
-    has_interfaces = can({"ip link add gm0 type veth peer name gm1", "ip address add 10.99.0.1/24 dev gm0",
-                          "ip link set gm0 up", "ip link set gm1 up"});
+    has_interfaces = make_interface();
     if (!has_interfaces) return;
     EXPECT_EQ(program.read_line(), kJoins);
     expect_heard(program, domain, "a");
@@ -197,8 +202,7 @@ TEST(Network, ThatIsReplacedHidesNoPublisherThatWent) {
   bool has_interfaces = false;
   const bool was_run = in_own_network([&] {
     set_loopback(true);
-    has_interfaces = can({"ip link add gm0 type veth peer name gm1", "ip address add 10.99.0.1/24 dev gm0",
-                          "ip link set gm0 up", "ip link set gm1 up"});
+    has_interfaces = make_interface();
     if (!has_interfaces) return;
     RunningProgram program({"node"});
     EXPECT_NE(program.read_line(), "");
@@ -225,8 +229,7 @@ TEST(Network, ThatIsReplacedKeepsNoNodeFromEnding) {
   bool has_interfaces = false;
   const bool was_run = in_own_network([&] {
     set_loopback(true);
-    has_interfaces = can({"ip link add gm0 type veth peer name gm1", "ip address add 10.99.0.1/24 dev gm0",
-                          "ip link set gm0 up", "ip link set gm1 up"});
+    has_interfaces = make_interface();
     if (!has_interfaces) return;
     RunOptions options;
     options.environment = {"ROS_LOCALHOST_ONLY=0", kWaitsForGood};
