@@ -38,7 +38,7 @@ double draw_resolution(const std::vector<OccupancyGrid>& maps) {
     side += 2.0 * (kFarthestPose + std::hypot(map.origin.x, map.origin.y) +
                    std::hypot(map.width, map.height) * map.resolution);
   }
-  return side / finest > kMostCellsASide ? side / kMostCellsASide : 0.0;
+  return side / finest > kMostCellsASide ? std::min(kMaxResolution, side / kMostCellsASide) : 0.0;
 }
 
 /// A map has no more freedom than was asked for.

@@ -63,7 +63,7 @@ void validate(const OccupancyGrid& grid) {
   if (!grid.probability.empty() && grid.probability.size() != size) {
     throw std::invalid_argument("the map's probabilities do not number width times height");
   }
-  if (!(grid.resolution >= kMinResolution && grid.resolution <= kMaxResolution))
+  if (!is_resolution(grid.resolution))
     throw std::invalid_argument("the map's resolution must be between 1e-6 and 1000 metres per cell");
   if (!is_finite(grid.origin)) throw std::invalid_argument("the map's origin must be finite");
   if (std::max(std::abs(grid.origin.x), std::abs(grid.origin.y)) > 2.0 * kMaxOrigin)

@@ -73,8 +73,8 @@ OccupancyGrid downsample(const OccupancyGrid& grid, int factor) {
 OccupancyGrid transform_grid(const OccupancyGrid& grid, const SE2& T_target_map, double resolution) {
   validate(grid);
   if (!is_finite(T_target_map)) throw std::invalid_argument("the transform must be finite");
-  if (!std::isfinite(resolution) || resolution <= 0.0)
-    throw std::invalid_argument("the resolution must be a positive number of metres");
+  if (!is_resolution(resolution))
+    throw std::invalid_argument("the resolution must be between 1e-6 and 1000 metres per cell");
   const SE2 T_target_grid = T_target_map * grid.origin;
   const double width_m = grid.width * grid.resolution;
   const double height_m = grid.height * grid.resolution;

@@ -184,7 +184,7 @@ std::string format_map_yaml(const MapYaml& map) {
 }
 
 void check_resolution(double resolution) {
-  if (!(resolution >= kMinResolution && resolution <= kMaxResolution)) {
+  if (!is_resolution(resolution)) {
     throw ParseError(fmt::format("the resolution {} is not in {}..{} metres per cell", resolution,
                                  kMinResolution, kMaxResolution));
   }

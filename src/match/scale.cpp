@@ -28,7 +28,7 @@ std::optional<ScaleFound> find_scale(const OccupancyGrid& fixed, const Occupancy
   const double side = longer_side(moving);
   std::optional<ScaleFound> best;
   for (const double factor : {2.0, 0.5, 2.5, 0.4, 4.0, 0.25, 5.0, 0.2, 10.0, 0.1}) {
-    if (factor * side < kMinSide || factor * side > kMaxSide) continue;
+    if (factor * side < kMinSide || factor * side > kMaxSide || !is_scalable(moving, factor)) continue;
     const MatchResult result = match(fixed, scaled(moving, factor), asked);
     if (result.verdict != Verdict::accepted) continue;
     if (!best || result.probability > best->probability) best = ScaleFound{factor, result.probability};

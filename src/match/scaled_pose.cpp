@@ -37,6 +37,11 @@ OccupancyGrid scaled(OccupancyGrid map, double factor) {
   return map;
 }
 
+bool is_scalable(const OccupancyGrid& map, double factor) {
+  const double farthest = std::max(std::abs(map.origin.x), std::abs(map.origin.y));
+  return is_resolution(map.resolution * factor) && farthest * factor <= 2.0 * kMaxOrigin;
+}
+
 ScoredScaledPose climb(const WallEvidence& evidence, const PoseMetric& metric, const ScaledPose& start,
                        double first_step, double last_step, double least, double most) {
   constexpr int kMaxMoves = 20;

@@ -31,6 +31,10 @@ double displacement(const Point2& centre, double radius, const ScaledPose& a, co
 /// The map drawn `factor` times as large: its resolution and origin are multiplied. O(cells).
 GRIDMERGE_INTERNAL_EXPORT OccupancyGrid scaled(OccupancyGrid map, double factor);
 
+/// Whether the valid map is one still once it is scaled(): neither its resolution nor its origin leaves the
+/// limits of validate().
+GRIDMERGE_INTERNAL_EXPORT bool is_scalable(const OccupancyGrid& map, double factor);
+
 /// A scaled pose between grid frames [cells] and what speaks for it.
 struct ScoredScaledPose {
   ScaledPose pose;

@@ -27,6 +27,8 @@ std::optional<EqualCells> measure_omega(const OccupancyGrid& lattice, const std:
 FusedMap fuse(const std::vector<PlacedMap>& maps, double resolution,
               const std::vector<Deformation>& deformations) {
   if (maps.empty()) throw std::invalid_argument("there is no map to fuse");
+  if (!is_resolution(resolution))
+    throw std::invalid_argument("the output's resolution must be between 1e-6 and 1000 metres per cell");
   const FusedInputs inputs(maps);
   const Lattice lattice = cover(inputs.maps(), resolution, deformations);
   FusedMap fused;

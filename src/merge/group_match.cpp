@@ -33,8 +33,7 @@ struct Meeting {
 std::unique_ptr<PreparedMap> prepare(const NodeGroup& group, const std::vector<MergeInput>& inputs) {
   std::vector<PlacedMap> placed;
   for (const PlacedNode& node : group) placed.push_back({inputs[node.map].grid, node.T_group_map});
-  // Coarser cells are no map's. Of poses so far apart fuse() says what is wrong.
-  const double resolution = std::min(kMaxResolution, fitting_resolution(finest_resolution(placed), placed));
+  const double resolution = fitting_resolution(finest_resolution(placed), placed);
   return std::make_unique<PreparedMap>(fuse(placed, resolution).grid);
 }
 

@@ -11,11 +11,14 @@
 
 namespace gridmerge::internal {
 
-void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution) {
-  if (!std::isfinite(resolution) || resolution < 0.0) {
+void validate_merged_resolution(double resolution) {
+  if (resolution != 0.0 && !is_resolution(resolution))
     throw std::invalid_argument(
-        "the merged map's resolution must be a positive number of metres, or 0 for the finest");
-  }
+        "the output resolution must be between 1e-6 and 1000 metres per cell, or 0 for the finest map's");
+}
+
+void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution) {
+  validate_merged_resolution(resolution);
   for (std::size_t i = 0; i < maps.size(); ++i) {
     try {
       validate(maps[i]);
@@ -60,7 +63,7 @@ double coarsened_to_fit(double resolution, double most_cells, const std::vector<
   if (surely_fit(resolution, most_cells, maps, deformations)) return resolution;
   const Box box = covered_box(maps, deformations);
   while (!fits(box, resolution, most_cells)) resolution *= 2.0;
-  return resolution;
+  return std::min(kMaxResolution, resolution);
 }
 
 }  // namespace

@@ -11,6 +11,10 @@
 
 namespace gridmerge::internal {
 
+/// Throws std::invalid_argument unless merged maps may have this resolution [m/cell], or it is 0: the finest
+/// map's.
+GRIDMERGE_INTERNAL_EXPORT void validate_merged_resolution(double resolution);
+
 /// Throws std::invalid_argument for an invalid map, naming it by its index, or an invalid resolution of the
 /// merged maps.
 void validate_merge(const std::vector<OccupancyGrid>& maps, double resolution);
@@ -20,14 +24,15 @@ GRIDMERGE_INTERNAL_EXPORT double finest_resolution(const std::vector<PlacedMap>&
 
 /// The resolution in which these maps are fused to be compared with another one: `resolution`, or so much
 /// coarser, by a power of two, that the result has at most kMaxGridCells, and, above 2^22 cells, at most 64
-/// per known cell of the maps: a very fine map and a coarse one would else be compared for minutes.
+/// per known cell of the maps: a very fine map and a coarse one would else be compared for minutes. It is
+/// kMaxResolution at most: of maps too far apart for it fuse() says so.
 /// `deformations` as of fuse(). O(maps) where they fit by far, else O(cells).
 double fitting_resolution(double resolution, const std::vector<PlacedMap>& maps,
                           const std::vector<Deformation>& deformations = {});
 
 /// The resolution of a merged map of these: the one that is asked for, or, if that is 0, the finest of theirs
-/// or so much coarser that the merged map fits, up to 16 times. O(maps), O(cells) where it may not fit or a
-/// map is bent.
+/// or so much coarser that the merged map fits, up to 16 times and to kMaxResolution. O(maps), O(cells) where
+/// it may not fit or a map is bent.
 GRIDMERGE_INTERNAL_EXPORT double merged_resolution(double asked_for, const std::vector<PlacedMap>& maps,
                                                    const std::vector<Deformation>& deformations = {});
 

@@ -21,6 +21,7 @@
 #include "io/destination.hpp"
 #include "io/directory_names.hpp"
 #include "io/file_set.hpp"
+#include "merge/joins.hpp"
 #include "report/earlier_merge.hpp"
 #include "report/output_names.hpp"
 #include "report/page.hpp"
@@ -129,9 +130,7 @@ void protect(const std::vector<fs::path>& inputs, const fs::path& directory) {
 std::optional<double> check_merged_size(const std::vector<std::string>& names,
                                         const std::vector<OccupancyGrid>& maps, double resolution) {
   if (names.size() < maps.size()) throw std::out_of_range("there are fewer names than maps");
-  if (resolution != 0.0 && !(resolution >= kMinResolution && resolution <= kMaxResolution))
-    throw std::invalid_argument(
-        "the output resolution must be between 1e-6 and 1000 metres per cell, or 0 for the finest map's");
+  validate_merged_resolution(resolution);
   if (maps.empty()) return std::nullopt;
   double diagonals = 0.0;
   for (const OccupancyGrid& map : maps) {

@@ -92,8 +92,10 @@ class PlanUnderMaps {
   }
 
   /// Into a panel, which grows as far as the plan reaches, but by its longer side on each side at most: the
-  /// maps would be lost on the plan of a whole site.
+  /// maps would be lost on the plan of a whole site. Nothing where no map may be as large as the plan at its
+  /// scale.
   void draw_into(MapPanel& panel) {
+    if (!is_scalable(*plan_, place_->scale)) return;
     Box box = covered_box(panel.maps, panel.deformations);
     walls_ = scaled(walls_of_plan(*plan_), place_->scale);
     const double margin = std::max(box.max_x - box.min_x, box.max_y - box.min_y);

@@ -33,8 +33,13 @@ std::string deflated(const std::vector<Cell>& cells) {
 }  // namespace
 
 OccupancyGrid at_most(OccupancyGrid grid, std::size_t max_cells) {
-  while (grid.cells.size() > max_cells) grid = downsample(grid, 2);
-  return grid;
+  const auto cells_of = [&](int factor) {
+    return (static_cast<std::size_t>(grid.width - 1) / factor + 1) *
+           (static_cast<std::size_t>(grid.height - 1) / factor + 1);
+  };
+  int factor = 1;
+  while (cells_of(factor) > max_cells) factor *= 2;
+  return factor == 1 ? grid : downsample(grid, factor);
 }
 
 ShownMap show_map(const OccupancyGrid& grid, std::size_t max_cells) {

@@ -13,8 +13,8 @@ namespace gridmerge::internal {
 inline constexpr std::size_t kMaxShownCells = std::size_t{1} << 25;
 
 /// The grid, or where it has more than `max_cells` cells, the grid with cells of twice the side, as often as
-/// it takes: occupied where any of the four cells is, else free where any is. `max_cells` is at least 1.
-/// O(cells).
+/// it takes: occupied where any of the four cells is, else free where any is. `max_cells` is at least 1. The
+/// grid has a cell at least. O(cells).
 OccupancyGrid at_most(OccupancyGrid grid, std::size_t max_cells);
 
 /// A map as the report page takes it: cropped to what is known.

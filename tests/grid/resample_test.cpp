@@ -169,6 +169,7 @@ TEST(TransformGrid, RefusesWhatNoGridCanBe) {
   const OccupancyGrid grid = make_grid(100, 100, 1.0);
   EXPECT_THROW(transform_grid(grid, {}, 0.0), std::invalid_argument);
   EXPECT_THROW(transform_grid(grid, {}, -1.0), std::invalid_argument);
+  EXPECT_THROW(transform_grid(grid, {}, 1.01 * kMaxResolution), std::invalid_argument);
   EXPECT_THROW(transform_grid(grid, {}, std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
   EXPECT_THROW(transform_grid(grid, {}, std::numeric_limits<double>::infinity()), std::invalid_argument);
   EXPECT_THROW(transform_grid(grid, {}, 1e-3), std::invalid_argument);  // 10^10 cells
@@ -185,8 +186,8 @@ TEST(Resample, RefusesGridsThatAreNone) {
 }
 
 TEST(TransformGrid, FindsNothingUnderAFarCentre) {
-  const OccupancyGrid grid = make_grid(2, 2, 0.01, {}, Cell::occupied);
-  EXPECT_EQ(transform_grid(grid, {}, 1e12).cells, std::vector<Cell>{Cell::unknown});
+  const OccupancyGrid grid = make_grid(2, 2, kMinResolution, {}, Cell::occupied);
+  EXPECT_EQ(transform_grid(grid, {}, kMaxResolution).cells, std::vector<Cell>{Cell::unknown});
 }
 
 RC_GTEST_PROP(QuarterTurned, KeepsEveryCellWhereItIsInTheMapFrame, ()) {

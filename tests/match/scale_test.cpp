@@ -36,5 +36,11 @@ TEST(Scale, IsNotFoundBetweenStrangersNorOfNothing) {
   EXPECT_FALSE(find_scale(test::draw_building(1), make_grid(40, 30, 0.1)));
 }
 
+TEST(Scale, IsNotSoughtWhereTheScaledMapWouldBeNone) {
+  OccupancyGrid far = test::draw_building(2);
+  far.origin.x = kMaxOrigin;  // ten times that is no map's
+  EXPECT_NO_THROW(find_scale(test::draw_building(1), far));
+}
+
 }  // namespace
 }  // namespace gridmerge

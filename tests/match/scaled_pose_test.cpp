@@ -85,6 +85,24 @@ TEST(Scaled, DrawsAMapLargerAboutItsFramesOrigin) {
   EXPECT_NEAR(larger_corner.y, 1.5 * corner.y, 1e-12);
 }
 
+TEST(Scaled, IsAMapWhereItIsScalable) {
+  const auto is_a_map = [](const OccupancyGrid& map) {
+    try {
+      validate(map);
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+    return true;
+  };
+  for (const double resolution : {kMinResolution, 0.05, kMaxResolution}) {
+    for (const double x : {0.0, -7.0, kMaxOrigin}) {
+      const OccupancyGrid map = make_grid(2, 2, resolution, {0.5 * x, x, 0.3});
+      for (const double factor : {0.01, 0.5, 1.0, 2.0, 2.5, 40.0})
+        EXPECT_EQ(is_scalable(map, factor), is_a_map(scaled(map, factor))) << resolution << x << factor;
+    }
+  }
+}
+
 /// A building on itself, drawn a little smaller.
 TEST(Climb, FindsTheScaleAndStaysInItsBounds) {
   const OccupancyGrid building = test::draw_building(1);

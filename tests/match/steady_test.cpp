@@ -156,7 +156,9 @@ TEST(Symmetric, WhatClimbsToOnePlaceInAnEmptyRoomIsOneHypothesis) {
     EXPECT_EQ(result.T_fixed_moving, SE2{}) << seed;
     for (std::size_t i = 1; i < result.hypotheses.size(); ++i) {
       const SE2& T = result.hypotheses[i].T_fixed_moving;
-      if (std::abs(T.theta) < 0.1) EXPECT_GT(std::hypot(T.x, T.y), 0.3) << seed << ' ' << i;
+      if (std::abs(T.theta) < 0.1) {
+        EXPECT_GT(std::hypot(T.x, T.y), 0.3) << seed << ' ' << i;
+      }
     }
   }
 }

@@ -154,7 +154,8 @@ TEST(Fuse, MixesResolutions) {
 TEST(Fuse, RefusesWhatItCannotFuse) {
   EXPECT_THROW(fuse({}, 1.0), std::invalid_argument);
   const OccupancyGrid map = map_from({"#"});
-  EXPECT_THROW(fuse({{&map, {}}}, 0.0), std::invalid_argument);
+  for (const double resolution : {0.0, -0.05, 0.5 * kMinResolution, 1.01 * kMaxResolution, std::nan("")})
+    EXPECT_THROW(fuse({{&map, {}}}, resolution), std::invalid_argument) << resolution;
   EXPECT_THROW(fuse({{&map, {}}}, 1e-5), std::invalid_argument) << "10^10 cells";
   OccupancyGrid broken = map;
   broken.cells.clear();

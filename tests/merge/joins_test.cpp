@@ -136,12 +136,13 @@ TEST(FittingResolution, IsCoarserWhereTheMapsWouldNotFit) {
   };
   EXPECT_EQ(fits(500.0), 0.05);
   EXPECT_EQ(fits(1500.0), 0.1);
-  for (const double far : {700.0, 815.0, 818.0, 822.0, 4000.0, 1e9}) {
+  for (const double far : {700.0, 815.0, 818.0, 822.0, 4000.0, 1e7}) {
     const std::vector<PlacedMap> maps{{&map, {}}, {&map, {far, far, 0.4}}};
     const double resolution = fits(far);
     EXPECT_NO_THROW(cover(maps, resolution)) << far;  // fits, and none that is much finer does
     EXPECT_TRUE(resolution == 0.05 || far / (0.5 * resolution) > 16000.0) << far;
   }
+  EXPECT_EQ(fits(1e9), kMaxResolution) << "and then it is refused";
   const OccupancyGrid unknown = make_grid(2, 2, 0.2);
   EXPECT_EQ(fitting_resolution(0.3, {{&unknown, {}}}), 0.3);
 }
@@ -185,12 +186,18 @@ TEST(MergedResolution, IsTheOneAskedForOrTheFinest) {
   EXPECT_EQ(merged_resolution(0.05, far), 0.05);
   EXPECT_EQ(merged_resolution(0.0, {{&known, {}}, {&known, {1e6, 1e6, 0.0}}}), 0.8)
       << "and then it is refused";
+  // Coarser than any map it is never.
+  const OccupancyGrid coarsest = make_grid(2, 2, kMaxResolution, {}, Cell::free);
+  EXPECT_EQ(merged_resolution(0.0, {{&coarsest, {}}, {&coarsest, {1e8, 1e8, 0.0}}}), kMaxResolution);
 }
 
 TEST(ValidateMerge, RefusesResolutionsThatMakeNoSense) {
   EXPECT_NO_THROW(validate_merge({}, 0.0));
   EXPECT_NO_THROW(validate_merge({make_grid(1, 1, 0.1)}, 0.3));
-  for (const double resolution : {-0.1, std::nan(""), HUGE_VAL, -HUGE_VAL})
+  EXPECT_NO_THROW(validate_merge({}, kMinResolution));
+  EXPECT_NO_THROW(validate_merge({}, kMaxResolution));
+  for (const double resolution :
+       {-0.1, 0.5 * kMinResolution, 1.01 * kMaxResolution, std::nan(""), HUGE_VAL, -HUGE_VAL})
     EXPECT_THROW(validate_merge({}, resolution), std::invalid_argument) << resolution;
 }
 

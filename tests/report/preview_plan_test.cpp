@@ -67,6 +67,15 @@ TEST(PreviewPlan, ThePlanOfAWholeSiteLeavesMapsLarge) {
   EXPECT_EQ(drawn.cells(Colours::kSharedWall), 2u);
 }
 
+TEST(PreviewPlan, LeavesOutAPlanThatNoMapMayBeAsLargeAs) {
+  const std::vector<OccupancyGrid> maps{map_from({"#..#"}, 0.5), map_from({"#..#"}, 0.5)};
+  const OccupancyGrid plan = map_from({"######", "#....#", "#....#", "######"}, kMaxResolution);
+  MergeResult result = test::merged(maps, {{{0, {}}, {1, {}}}});
+  result.plan = PlanPlacement{"floor.png", 2.0, {{{0, 1}, {}, 2.0, 0.99, Reason::none}}, kMaxResolution};
+  const Picture drawn = preview_on_a_plan(maps, result, &plan);
+  EXPECT_EQ(drawn.cells(Colours::kSharedWall), 2u);
+}
+
 TEST(PreviewPlan, DrawsThePlanUnderBentMaps) {
   const std::vector<OccupancyGrid> maps{map_from({"#..#"}, 0.5), map_from({"#..#"}, 0.5)};
   const OccupancyGrid plan = map_from({"######", "#....#", "#....#", "######"}, 0.25);

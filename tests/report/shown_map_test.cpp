@@ -78,5 +78,12 @@ TEST(AtMost, DoublesTheCellsAsOftenAsItTakes) {
   EXPECT_EQ(twice.cells, map_from({"##"}, 1.0).cells);
 }
 
+TEST(AtMost, ShowsMapsOfTheLargestCellsToo) {
+  const OccupancyGrid map = make_grid(9, 9, kMaxResolution, {}, Cell::free);
+  const OccupancyGrid shown = at_most(map, 4);
+  EXPECT_EQ(shown.cells.size(), 4u);
+  EXPECT_EQ(shown.resolution, 8.0 * kMaxResolution);
+}
+
 }  // namespace
 }  // namespace gridmerge

@@ -60,6 +60,11 @@ inline constexpr double kMinResolution = 1e-6;
 /// Nor are resolutions above this [m/cell].
 inline constexpr double kMaxResolution = 1e3;
 
+/// Whether a map may have this resolution [m/cell]: it lies within [kMinResolution, kMaxResolution].
+constexpr bool is_resolution(double resolution) {
+  return resolution >= kMinResolution && resolution <= kMaxResolution;
+}
+
 /// [m] Origins further from zero are in no file and no bag: far beyond any map, and still far from where a
 /// double stops resolving micrometres. A grid's may lie twice as far: what is cut out of maps, or merged of
 /// them, reaches beyond their origins.

@@ -39,8 +39,8 @@ struct FusedMap {
 /// Where most of what an input knows was painted black (see PreparedMap), what was painted counts as unknown:
 /// it would hide what others have seen. The sums are integers, so
 /// the result does not depend on the inputs' order. Throws std::invalid_argument for no input, an invalid
-/// grid, a transform that is not finite, a resolution that is not positive, and a result of more than
-/// kMaxGridCells. O(cells of the inputs + cells of the result).
+/// grid, a transform that is not finite, a resolution that is no map's (see is_resolution()), and a result of
+/// more than kMaxGridCells. O(cells of the inputs + cells of the result).
 ///
 /// `deformations[i]`, where there is one, bends input i before its transform places it; it may be shorter
 /// than `maps`. Each cell of the result looks up the bent input where it comes from, to a tenth of a cell,

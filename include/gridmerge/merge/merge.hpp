@@ -27,8 +27,8 @@ struct MergeOptions {
   /// Of more than 50 maps only likely pairs are matched: those left out hide, as far as is known, at most
   /// this share of all joins. Up to 0.2, and of fewer maps, all pairs are matched. In [0, 1).
   double max_missed = 0.0;
-  /// Of the merged maps [m]; 0 = the finest among a map's inputs, or so much coarser, by a power of two up to
-  /// 16, that the merged map has at most kMaxGridCells.
+  /// Of the merged maps [m/cell], as is_resolution() allows; 0 = the finest among a map's inputs, or so much
+  /// coarser, by a power of two up to 16, that the merged map has at most kMaxGridCells.
   double resolution = 0.0;
   /// What is done to maps so that walls that are one come to lie on each other: `similarity` and `affine` are
   /// for maps of a false scale or sheared axes, `elastic` is for maps that drift has bent. It changes neither

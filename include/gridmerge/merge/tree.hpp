@@ -17,8 +17,7 @@ using Matcher = std::function<MatchResult(const OccupancyGrid& fixed, const Occu
 
 /// How maps are merged up a tree.
 struct TreeOptions {
-  /// Of the merged maps [m]; 0 = the finest among a map's inputs, or so much coarser, by a power of two up to
-  /// 16, that the merged map has at most kMaxGridCells.
+  /// As MergeOptions::resolution.
   double resolution = 0.0;
   /// Called after every comparison with the number of finished ones and of those to be expected in all if
   /// nothing more joined (a join changes the latter), from the calling thread.
