@@ -183,6 +183,39 @@ TEST_F(OptionValues, AreDecimal) {
                      "--robots: '0x10' is not a whole number from 1 to 1000");
 }
 
+TEST_F(OptionValues, AreWholeNumbersUpToTheMostAndNoFurther) {
+  struct Most {
+    Words words;  ///< of a command that fails once its options are read
+    const char* option;
+    const char* range;
+    std::uint64_t most;
+  };
+  const Words walk{"match", "none.yaml", "none.yaml", "--search", "random-walk"};
+  const Words simulate{"simulate", "-o", left + "/in_a_file"};
+  for (const Most& one :
+       {Most{{"match", "none.yaml", "none.yaml"}, "--threads", "0 to 1024", 1024},
+        Most{walk, "--restarts", "1 to 1000", 1000},
+        Most{walk, "--least-common-cells", "0 to 1099511627776", std::uint64_t{1} << 40},
+        Most{{"measure", "none.yaml", "none.yaml", "--pose", "0,0,0", "--dmap", "d.png"},
+             "--dmap-of",
+             "0 to 1048576",
+             1 << 20},
+        Most{{"view", "none"}, "--port", "0 to 65535", 65535}, Most{simulate, "--robots", "1 to 1000", 1000},
+        Most{simulate, "--steps", "1 to 1000", 1000}, Most{simulate, "--others", "0 to 1000", 1000}}) {
+    const auto run_with = [&](std::uint64_t value) {
+      Words words = one.words;
+      words.insert(words.end(), {one.option, std::to_string(value)});
+      return run(words);
+    };
+    const Outcome most = run_with(one.most);
+    EXPECT_NE(most.exit_code, 0) << one.option;
+    EXPECT_EQ(most.err.find("whole number"), std::string::npos) << most.err;
+    expect_usage_error(run_with(one.most + 1), std::string(one.option) + ": '" +
+                                                   std::to_string(one.most + 1) +
+                                                   "' is not a whole number from " + one.range);
+  }
+}
+
 TEST_F(OptionValues, AreWrittenAsPeopleWriteNumbers) {
   for (const char* accept : {"0x1p-1", " 0.5", "0.5 ", "1e-1x", "nan"})
     expect_usage_error(run({"match", left, right, "--accept", accept}), "--accept: ");
