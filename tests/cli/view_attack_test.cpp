@@ -83,6 +83,17 @@ TEST_F(ViewUnderAttack, TooLongAHeadIsToldSo) {
   expect_refused(request_line() + "Cookie: " + std::string(12000, 'x') + "\r\n\r\n", "200");
 }
 
+/// Closed at once, the connection would be reset, and an answer that is still on its way would be lost.
+TEST_F(ViewUnderAttack, WhoSendsOnAfterTheAnswerIsHeardForAWhile) {
+  const Connection connection = connect();
+  ASSERT_TRUE(connection.send(head() + "Content-Length: 9000000\r\n\r\n"));
+  EXPECT_TRUE(connection.receive(10).starts_with("HTTP/1.1 413 "));
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_TRUE(connection.send(std::string(1000, 'x'))) << i;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
 TEST_F(ViewUnderAttack, SlowClientsKeepNobodyWaiting) {
   const long before = memory();
   std::vector<Connection> slow;
