@@ -78,6 +78,7 @@ TEST_F(Streams, TheProgressBarIsForTerminalsAndGoesAway) {
   EXPECT_NE(shown.err.find("\revaluating ["), std::string::npos) << "no bar in a run of " << shown.out;
   EXPECT_NE(shown.err.find("%, "), std::string::npos) << shown.err;
   EXPECT_NE(shown.err.find(" left"), std::string::npos) << shown.err;
+  EXPECT_EQ(shown.err.find(" h left"), std::string::npos) << "from when on does it count?" << shown.err;
   const std::string erase = "\r\x1b[K";
   ASSERT_GE(shown.err.size(), erase.size());
   EXPECT_EQ(shown.err.substr(shown.err.size() - erase.size()), erase);
