@@ -26,8 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!map.is_there()) return 0;
   const OccupancyGrid grid = map.grid();
   validate(grid);
-  fuzz::require(grid.cells.size() <= fuzz::kMaxPixels && grid.resolution >= kMinResolution &&
-                grid.resolution <= kMaxResolution);
+  fuzz::require(grid.cells.size() <= fuzz::kMaxPixels && is_resolution(grid.resolution));
   const auto sound = [](float p) { return !(p < 0.0f || p > 1.0f); };  // unknown is NaN
   fuzz::require(std::all_of(grid.probability.begin(), grid.probability.end(), sound));
   map.warnings(grid);

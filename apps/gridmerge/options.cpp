@@ -90,7 +90,7 @@ const CLI::Validator kNumbersNotNegative(
 const CLI::Validator kMetresPerCell(
     [](std::string& text) {
       const auto value = parse_number(text);
-      return value && *value >= kMinResolution && *value <= kMaxResolution
+      return value && is_resolution(*value)
                  ? std::string()
                  : fmt::format("'{}' is not between {} and {} metres", text, kMinResolution, kMaxResolution);
     },

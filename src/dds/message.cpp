@@ -14,10 +14,6 @@ namespace gridmerge::internal {
 
 namespace {
 
-// What map files may have: the reader of files says so to its users.
-constexpr double kSmallestResolution = 1e-6;
-constexpr double kLargestResolution = 1e3;
-
 constexpr std::int8_t kUnknown = -1;
 constexpr std::int8_t kFree = 0;
 constexpr std::int8_t kOccupied = 100;
@@ -42,8 +38,7 @@ OccupancyGrid read_cells(std::uint32_t width, std::uint32_t height, double resol
 double read_resolution(float resolution) {
   if (!std::isfinite(resolution)) throw RefusedMessage(fmt::format("a resolution of {} m", resolution));
   const double read = decimal_of(resolution);
-  if (!(read >= kSmallestResolution && read <= kLargestResolution))
-    throw RefusedMessage(fmt::format("a resolution of {} m", resolution));
+  if (!is_resolution(read)) throw RefusedMessage(fmt::format("a resolution of {} m", resolution));
   return read;
 }
 

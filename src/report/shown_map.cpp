@@ -39,7 +39,8 @@ OccupancyGrid at_most(OccupancyGrid grid, std::size_t max_cells) {
   };
   int factor = 1;
   while (cells_of(factor) > max_cells) factor *= 2;
-  return factor == 1 ? grid : downsample(grid, factor);
+  if (factor > 1) return downsample(grid, factor);
+  return grid;
 }
 
 ShownMap show_map(const OccupancyGrid& grid, std::size_t max_cells) {
