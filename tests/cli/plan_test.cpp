@@ -126,8 +126,8 @@ TEST_F(MergePlan, MapsThatThePlanAloneJoinsAreNotBent) {
       write_map(directory, "here", map_part(draw_building(2), {0, 0, 13, 13}, T_left_building));
   const std::string there =
       write_map(directory, "there", map_part(draw_building(2), {5, 0, 18, 13}, T_right_building));
-  const Outcome both = run(
-      {"merge", west, east, here, there, "--plan", plan, "--plan-scale", "1.1:1.4", "--elastic", "-o", output});
+  const Outcome both = run({"merge", west, east, here, there, "--plan", plan, "--plan-scale", "1.1:1.4",
+                            "--elastic", "-o", output});
   EXPECT_EQ(both.exit_code, 3) << both.out << both.err;
   EXPECT_NE(both.out.find("no map is bent: by what they say, bending would bring their walls no nearer\n"),
             std::string::npos)
